@@ -1,0 +1,90 @@
+# Rules shared by every target of this project.
+set(PCPHYS_GENERATED ${PROJECT_BINARY_DIR}/generated)
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+  set(PCPHYS_X86 TRUE)
+else()
+  set(PCPHYS_X86 FALSE)
+endif()
+
+# Language level, warnings, and no contraction: one fused multiply-add anywhere would end the equality with the GPU.
+function(pcphys_own target)
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wno-psabi -ffp-contract=off)
+  if(PCPHYS_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  target_compile_definitions(${target} PRIVATE PCPHYS_VERSION="${PROJECT_VERSION}")
+  if(PCPHYS_X86)
+    target_compile_definitions(${target} PRIVATE PCPHYS_HAVE_X86_LANES)
+  endif()
+endfunction()
+
+# Tests, benchmarks and scenes may look inside: they pin stages and kernels, not only the public API.
+function(pcphys_sees_inside target)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src ${PCPHYS_GENERATED})
+endfunction()
+
+# Lanes of 4 and 8 exist on x86-64 only; elsewhere the scalar instantiations remain.
+macro(pcphys_drop_foreign_lanes sources)
+  if(NOT PCPHYS_X86)
+    list(FILTER ${sources} EXCLUDE REGEX "/src/cpu/kernels_[fd](4|8)\\.cpp$")
+  endif()
+endmacro()
+
+# One file per instantiation, each with the instruction set it may use; which one runs is chosen at run time.
+# -mno-fma: a compiler driver that defaults to a newer processor must not bring fused operations back.
+function(pcphys_set_lane_flags)
+  foreach(name f1 f4 f8 d1 d4)
+    set(flags ${PCPHYS_KERNEL_FLAGS} $<$<NOT:$<CONFIG:Debug>>:-O3>)
+    if(PCPHYS_X86 AND name STREQUAL f4)
+      list(APPEND flags -msse4.2 -mno-fma)
+    elseif(PCPHYS_X86 AND name MATCHES "^(f8|d4)$")
+      list(APPEND flags -mavx2 -mno-fma)
+    endif()
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/src/cpu/kernels_${name}.cpp PROPERTIES COMPILE_OPTIONS "${flags}")
+  endforeach()
+endfunction()
+
+# Puts the text of the files into the library as `pcphys::embedded_source(name)`, so that a host ships no shader files.
+# The value of `out` is the generated source; any edit of a file regenerates it.
+function(pcphys_embed out)
+  file(GLOB files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${ARGN})
+  set(script ${PROJECT_SOURCE_DIR}/cmake/embed.cmake)
+  set(output ${PCPHYS_GENERATED}/embedded.cpp)
+  string(REPLACE ";" "|" joined "${files}")
+  add_custom_command(OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DFILES=${joined} -P ${script}
+    DEPENDS ${files} ${script}
+    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+    COMMENT "Embedding kernel sources" VERBATIM)
+  file(WRITE ${PCPHYS_GENERATED}/embedded.h.new [[
+#pragma once
+#include <string_view>
+
+namespace pcphys {
+// Text of a kernel or GLSL file by its file name ("integrate.inl"), or nullptr when there is none of that name.
+const char* embedded_source(std::string_view name);
+}
+]])
+  file(COPY_FILE ${PCPHYS_GENERATED}/embedded.h.new ${PCPHYS_GENERATED}/embedded.h ONLY_IF_DIFFERENT)
+  set(${out} ${output} PARENT_SCOPE)
+endfunction()
+
+# One clear stop when a development package is missing, with the Debian package that brings it.
+function(pcphys_require name package option)
+  find_package(${name} QUIET ${ARGN})
+  if(NOT ${name}_FOUND)
+    message(FATAL_ERROR "pcphys: ${name} was not found. Install it (Debian, Ubuntu: apt-get install ${package}), "
+      "run scripts/install-dependencies, or configure with -D${option}=OFF.")
+  endif()
+endfunction()
+
+# tinygltf is used where it is found (PCPHYS_HAVE_TINYGLTF); nothing fails without it.
+function(pcphys_link_tinygltf target)
+  find_package(TinyGLTF QUIET CONFIG)
+  if(TARGET TinyGLTF::TinyGLTF)
+    target_link_libraries(${target} PRIVATE TinyGLTF::TinyGLTF)
+    target_compile_definitions(${target} PRIVATE PCPHYS_HAVE_TINYGLTF)
+  endif()
+endfunction()
