@@ -1,0 +1,70 @@
+// Errors are values: a code with a name, and a sentence that tells the caller what to do.
+// No function of the library throws across its border.
+#pragma once
+#include <cassert>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace pcphys {
+
+enum class ErrorCode {
+  none,
+  not_finite,           // a number is NaN or infinite
+  bad_mass,             // a dynamic body's mass is not above zero, or its inertia is impossible
+  degenerate_shape,     // a shape has no volume, or is smaller or larger than the library resolves
+  not_unit_quaternion,  // an orientation is further than 1e-3 from unit length
+  bad_time_step,        // dt or the number of sub-steps is not above zero
+  stale_id,             // the object was destroyed, or the id never named one
+  bad_joint,            // the two bodies are the same, or neither can move
+  bad_argument,         // any other value outside its range
+  unknown_name,         // a scene, property or option of that name does not exist
+  unavailable,          // what was asked for is not on this machine (no GL, no such lane width, no FCL)
+  buffer_full,          // a fixed capacity is too small; the message says how much is needed
+  device_error,         // the GL driver refused a program, a buffer or a dispatch
+  bad_file,             // a file cannot be read or written, or does not hold what it should
+  bad_snapshot          // bytes that are not a snapshot of a world of this kind
+};
+
+/// "bad_mass" and so on: the name in error messages and in JSON.
+const char* name(ErrorCode code);
+
+struct Error {
+  ErrorCode code = ErrorCode::none;
+  std::string message;  // a whole sentence: what was wrong and what to do
+};
+
+/// A value, or why there is none.
+template <class T> class [[nodiscard]] Result {
+ public:
+  Result(T value) : content_(std::in_place_index<0>, std::move(value)) {}
+  Result(Error error) : content_(std::in_place_index<1>, std::move(error)) {}
+
+  explicit operator bool() const { return content_.index() == 0; }
+  T& operator*() & { assert(*this); return *std::get_if<0>(&content_); }
+  const T& operator*() const& { assert(*this); return *std::get_if<0>(&content_); }
+  T&& operator*() && { assert(*this); return std::move(*std::get_if<0>(&content_)); }
+  T* operator->() { assert(*this); return std::get_if<0>(&content_); }
+  const T* operator->() const { assert(*this); return std::get_if<0>(&content_); }
+  const Error& error() const { assert(!*this); return *std::get_if<1>(&content_); }
+
+ private:
+  std::variant<T, Error> content_;
+};
+
+/// Success, or an error.
+template <> class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : error_(std::move(error)) {}
+
+  explicit operator bool() const { return error_.code == ErrorCode::none; }
+  const Error& error() const { assert(!*this); return error_; }
+
+ private:
+  Error error_;
+};
+
+using Status = Result<void>;
+
+}  // namespace pcphys

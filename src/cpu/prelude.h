@@ -1,0 +1,101 @@
+// The C++ side of the kernel text: what src/kernels/*.inl mean by Real, Vec3, pc_select, PC_GATHER and so
+// on, for PC_LANES lanes (1, 4 or 8) of PC_SCALAR (float or double).
+//
+// Everything stands in the namespace PC_NAMESPACE, one per translation unit, and is forced inline: these
+// units are compiled for different instruction sets, and a shared inline function would let the linker
+// pick the copy that the processor lacks. For the same reason nothing of the standard library is called.
+#pragma once
+#if !defined(PC_SCALAR) || !defined(PC_LANES) || !defined(PC_NAMESPACE)
+#error "define PC_SCALAR, PC_LANES and PC_NAMESPACE before including this"
+#endif
+#include <cstddef>
+#include <cstdint>
+#if PC_LANES > 1
+#include <immintrin.h>
+#endif
+
+#define PC_INLINE inline __attribute__((always_inline))
+#define PC_FN static PC_INLINE
+#define PC_INOUT(T) T&
+#define PC_REAL(x) Real(Scalar(x))
+#define precise
+
+namespace pcphys {
+namespace PC_NAMESPACE {
+
+using uint = std::uint32_t;
+using Scalar = PC_SCALAR;
+struct Slot { uint block; };
+
+#if PC_LANES == 1
+using Real = Scalar;
+using Mask = bool;
+struct Index { uint i; };
+PC_INLINE Real pc_select(Mask m, Real a, Real b) { return m ? a : b; }
+PC_INLINE Mask pc_and(Mask a, Mask b) { return a && b; }
+PC_INLINE Mask pc_or(Mask a, Mask b) { return a || b; }
+PC_INLINE Real pc_abs(Real a) { return sizeof(Real) == 4 ? Real(__builtin_fabsf(float(a))) : Real(__builtin_fabs(double(a))); }
+PC_INLINE Real pc_div(Real a, Real b) { return a / b; }
+PC_INLINE Real pc_sqrt(Real a) { return sizeof(Real) == 4 ? Real(__builtin_sqrtf(float(a))) : Real(__builtin_sqrt(double(a))); }
+PC_INLINE Real pc_load(const Scalar* p) { return *p; }
+PC_INLINE void pc_store(Scalar* p, Real x) { *p = x; }
+PC_INLINE Index pc_index(const uint* p) { return {*p}; }
+#else
+#include "cpu/lanes.h"
+#endif
+
+struct Vec3 {
+  Real x, y, z;
+  Vec3() = default;
+  PC_INLINE Vec3(Real a, Real b, Real c) : x(a), y(b), z(c) {}
+  friend PC_INLINE Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend PC_INLINE Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend PC_INLINE Vec3 operator*(Vec3 a, Real s) { return {a.x * s, a.y * s, a.z * s}; }
+};
+
+#include "kernels/math.inl"
+
+// Four consecutive reals of row i: quad k of a buffer with `quads` of them a row.
+PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) {
+  Quad q;
+#if PC_LANES == 1
+  const Scalar* p = buffer + (std::size_t(i.i) * quads + k) * 4;
+  q.v = Vec3(p[0], p[1], p[2]);
+  q.s = p[3];
+#else
+  const Scalar* p[PC_LANES];
+  for (uint l = 0; l < PC_LANES; l++) p[l] = buffer + (std::size_t(i.i[l]) * quads + k) * 4;
+  Real o[4];
+  pc_transpose_in(p, o);
+  q.v = Vec3(o[0], o[1], o[2]);
+  q.s = o[3];
+#endif
+  return q;
+}
+PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
+#if PC_LANES == 1
+  Scalar* p = buffer + (std::size_t(i.i) * quads + k) * 4;
+  p[0] = q.v.x; p[1] = q.v.y; p[2] = q.v.z; p[3] = q.s;
+#else
+  Scalar* p[PC_LANES];
+  for (uint l = 0; l < PC_LANES; l++) p[l] = buffer + (std::size_t(i.i[l]) * quads + k) * 4;
+  const Real o[4] = {q.v.x, q.v.y, q.v.z, q.s};
+  pc_transpose_out(p, o);
+#endif
+}
+
+}  // namespace PC_NAMESPACE
+}  // namespace pcphys
+
+// Buffer access inside a kernel. `io` is the kernel's own struct of pointers, const where it declared a read.
+#define PC_IO const Io &io,
+#define PC_PASS io,
+#define PC_INFO(field) Real(io.info->field)
+#define PC_GATHER(buffer, i, k) pc_gather(io.buffer, i, quads_##buffer, k)
+#define PC_SCATTER(buffer, i, k, q) pc_scatter(io.buffer, i, quads_##buffer, k, q)
+// A store that other lanes need not see: on the CPU the unchanged value may as well be written.
+#define PC_SCATTER_IF(mask, buffer, i, k, q) pc_scatter(io.buffer, i, quads_##buffer, k, q)
+#define PC_LD(buffer, slot, f) pc_load(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES)
+#define PC_ST(buffer, slot, f, x) pc_store(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES, x)
+#define PC_ENDS(buffer, slot, side) pc_index(io.buffer + (std::size_t((slot).block) * 2u + (side)) * PC_LANES)
+#define PC_ORDER(buffer, slot) pc_index(io.buffer + std::size_t((slot).block) * PC_LANES)

@@ -1,0 +1,112 @@
+// Once a step: the rows of a manifold. Effective masses and responses between its rows, from the inertia at
+// the start of the step (kernel-study of the project's docs: the solver touches each body once per visit).
+#include "body_state.inl"
+#include "contact_rows.inl"
+
+PC_FN void pc_st3_rows(PC_IO Slot m, uint f, Vec3 v) {
+  PC_ST(contact_rows, m, f, v.x); PC_ST(contact_rows, m, f + 1u, v.y); PC_ST(contact_rows, m, f + 2u, v.z);
+}
+PC_FN Sym3 pc_responding_inertia(BodyState b) {
+  precise Real xx = b.inertia.xx * b.response; precise Real xy = b.inertia.xy * b.response; precise Real xz = b.inertia.xz * b.response;
+  precise Real yy = b.inertia.yy * b.response; precise Real yz = b.inertia.yz * b.response; precise Real zz = b.inertia.zz * b.response;
+  Sym3 r; r.xx = xx; r.xy = xy; r.xz = xz; r.yy = yy; r.yz = yz; r.zz = zz; return r;
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
+  Quad head = PC_GATHER(contact, record, 0u);
+  Quad p0 = PC_GATHER(contact, record, 1u); Quad p1 = PC_GATHER(contact, record, 2u); Quad p2 = PC_GATHER(contact, record, 3u); Quad p3 = PC_GATHER(contact, record, 4u);
+  Quad pushes = PC_GATHER(contact, record, 5u); Quad drag = PC_GATHER(contact, record, 6u); Quad material = PC_GATHER(contact, record, 7u);
+  Quad place_a = PC_GATHER(pose, ia, 0u); Quad place_b = PC_GATHER(pose, ib, 0u); Quad low_a = PC_GATHER(pose, ia, 2u); Quad low_b = PC_GATHER(pose, ib, 2u);
+  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Sym3 inertia_a = pc_responding_inertia(a); Sym3 inertia_b = pc_responding_inertia(b);
+  Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
+
+  // contact frame
+  Vec3 n = head.v; Real count = head.s;
+  Mask steep = pc_abs(n.x) < PC_REAL(0.57);
+  Vec3 e = Vec3(pc_select(steep, one, zero), pc_select(steep, zero, one), zero);
+  Vec3 t1 = pc_unit_or_zero(pc_madd(e, n, -pc_dot(e, n))); Vec3 t2 = pc_cross(n, t1);
+
+  // centre, and the points about it; a missing point has weight zero
+  Real w0 = pc_select(count > PC_REAL(0.5), one, zero); Real w1 = pc_select(count > PC_REAL(1.5), one, zero);
+  Real w2 = pc_select(count > PC_REAL(2.5), one, zero); Real w3 = pc_select(count > PC_REAL(3.5), one, zero);
+  Real share = pc_inverse_or_zero(count);
+  precise Vec3 ra = (p0.v * w0 + p1.v * w1 + p2.v * w2 + p3.v * w3) * share;
+  Vec3 apart = pc_add(pc_sub(place_a.v, place_b.v), pc_sub(low_a.v, low_b.v));
+  Vec3 rb = pc_add(ra, apart);
+  Vec3 d0 = pc_sub(p0.v, ra); Vec3 d1 = pc_sub(p1.v, ra); Vec3 d2 = pc_sub(p2.v, ra); Vec3 d3 = pc_sub(p3.v, ra);
+  precise Real a0 = pc_dot(d0, t1) * w0; precise Real b0 = pc_dot(d0, t2) * w0;
+  precise Real a1 = pc_dot(d1, t1) * w1; precise Real b1 = pc_dot(d1, t2) * w1;
+  precise Real a2 = pc_dot(d2, t1) * w2; precise Real b2 = pc_dot(d2, t2) * w2;
+  precise Real a3 = pc_dot(d3, t1) * w3; precise Real b3 = pc_dot(d3, t2) * w3;
+
+  // angular parts of unit impulses t1, t2, n at the centre
+  precise Real k = a.inverse_mass + b.inverse_mass;
+  Vec3 ga1 = pc_cross(ra, t1); Vec3 ga2 = pc_cross(ra, t2); Vec3 gan = pc_cross(ra, n);
+  Vec3 gb1 = pc_cross(rb, t1); Vec3 gb2 = pc_cross(rb, t2); Vec3 gbn = pc_cross(rb, n);
+  Vec3 ha1 = pc_sym_mul(inertia_a, ga1); Vec3 ha2 = pc_sym_mul(inertia_a, ga2); Vec3 han = pc_sym_mul(inertia_a, gan);
+  Vec3 hb1 = pc_sym_mul(inertia_b, gb1); Vec3 hb2 = pc_sym_mul(inertia_b, gb2); Vec3 hbn = pc_sym_mul(inertia_b, gbn);
+  Sym3 both = pc_sym_add(inertia_a, inertia_b);
+  Vec3 i1 = pc_sym_mul(both, t1); Vec3 i2 = pc_sym_mul(both, t2); Vec3 in_ = pc_sym_mul(both, n);
+  Vec3 h1 = pc_add(ha1, hb1); Vec3 h2 = pc_add(ha2, hb2); Vec3 hn = pc_add(han, hbn);
+
+  // friction block and twist
+  precise Real k11 = k + pc_dot(ga1, ha1) + pc_dot(gb1, hb1); precise Real k12 = pc_dot(ga1, ha2) + pc_dot(gb1, hb2); precise Real k22 = k + pc_dot(ga2, ha2) + pc_dot(gb2, hb2);
+  precise Real det = k11 * k22 - k12 * k12; Real inverse_det = pc_inverse_or_zero(det);
+  precise Real t11 = k22 * inverse_det; precise Real t12 = -(k12 * inverse_det); precise Real t22 = k11 * inverse_det;
+  Real twist = pc_inverse_or_zero(pc_dot(n, in_));
+  precise Real cn1 = pc_dot(gan, ha1) + pc_dot(gbn, hb1); precise Real cn2 = pc_dot(gan, ha2) + pc_dot(gbn, hb2);
+
+  // normal rows: u_i = K [1, b_i, -a_i] and their products
+  precise Real nn = k + pc_dot(gan, han) + pc_dot(gbn, hbn); Real n1 = pc_dot(t1, hn); Real n2 = pc_dot(t2, hn);
+  Real m11 = pc_dot(t1, i1); Real m12 = pc_dot(t1, i2); Real m22 = pc_dot(t2, i2);
+  precise Real u0 = nn + n1 * b0 - n2 * a0; precise Real v0 = n1 + m11 * b0 - m12 * a0; precise Real x0 = n2 + m12 * b0 - m22 * a0;
+  precise Real u1 = nn + n1 * b1 - n2 * a1; precise Real v1 = n1 + m11 * b1 - m12 * a1; precise Real x1 = n2 + m12 * b1 - m22 * a1;
+  precise Real u2 = nn + n1 * b2 - n2 * a2; precise Real v2 = n1 + m11 * b2 - m12 * a2; precise Real x2 = n2 + m12 * b2 - m22 * a2;
+  precise Real u3 = nn + n1 * b3 - n2 * a3; precise Real v3 = n1 + m11 * b3 - m12 * a3; precise Real x3 = n2 + m12 * b3 - m22 * a3;
+  precise Real e0 = u0 + b0 * v0 - a0 * x0; precise Real q0 = pc_inverse_or_zero(e0) * w0;
+  precise Real e1 = u1 + b1 * v1 - a1 * x1; precise Real q1 = pc_inverse_or_zero(e1) * w1;
+  precise Real e2 = u2 + b2 * v2 - a2 * x2; precise Real q2 = pc_inverse_or_zero(e2) * w2;
+  precise Real e3 = u3 + b3 * v3 - a3 * x3; precise Real q3 = pc_inverse_or_zero(e3) * w3;
+  precise Real d01 = u0 + b1 * v0 - a1 * x0;
+  precise Real d02 = u0 + b2 * v0 - a2 * x0;
+  precise Real d03 = u0 + b3 * v0 - a3 * x0;
+  precise Real d12 = u1 + b2 * v1 - a2 * x1;
+  precise Real d13 = u1 + b3 * v1 - a3 * x1;
+  precise Real d23 = u2 + b3 * v2 - a3 * x2;
+  precise Real spread = (a0 * a0 + b0 * b0 + a1 * a1 + b1 * b1 + a2 * a2 + b2 * b2 + a3 * a3 + b3 * b3) * share;
+
+  // approach of each point, for restitution
+  Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b);
+  Vec3 va = pc_add(a.v, pc_cross(wa, ra)); Vec3 vb = pc_add(b.v, pc_cross(wb, rb));
+  Real vn = pc_dot(n, pc_sub(vb, va)); Real r1 = pc_dot(t1, pc_sub(wb, wa)); Real r2 = pc_dot(t2, pc_sub(wb, wa));
+  precise Real approach0 = vn + b0 * r1 - a0 * r2;
+  precise Real approach1 = vn + b1 * r1 - a1 * r2;
+  precise Real approach2 = vn + b2 * r1 - a2 * r2;
+  precise Real approach3 = vn + b3 * r1 - a3 * r2;
+
+  pc_st3_rows(PC_PASS m, ROW_N, n); pc_st3_rows(PC_PASS m, ROW_T, t1); pc_st3_rows(PC_PASS m, ROW_ARM_A, ra); pc_st3_rows(PC_PASS m, ROW_ARM_B, rb);
+  PC_ST(contact_rows, m, ROW_A, a0); PC_ST(contact_rows, m, ROW_A + 1u, a1); PC_ST(contact_rows, m, ROW_A + 2u, a2); PC_ST(contact_rows, m, ROW_A + 3u, a3);
+  PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
+  PC_ST(contact_rows, m, ROW_S, p0.s); PC_ST(contact_rows, m, ROW_S + 1u, p1.s); PC_ST(contact_rows, m, ROW_S + 2u, p2.s); PC_ST(contact_rows, m, ROW_S + 3u, p3.s);
+  PC_ST(contact_rows, m, ROW_MASS, q0); PC_ST(contact_rows, m, ROW_MASS + 1u, q1); PC_ST(contact_rows, m, ROW_MASS + 2u, q2); PC_ST(contact_rows, m, ROW_MASS + 3u, q3);
+  PC_ST(contact_rows, m, ROW_D, d01); PC_ST(contact_rows, m, ROW_D + 1u, d02); PC_ST(contact_rows, m, ROW_D + 2u, d03); PC_ST(contact_rows, m, ROW_D + 3u, d12); PC_ST(contact_rows, m, ROW_D + 4u, d13); PC_ST(contact_rows, m, ROW_D + 5u, d23);
+  PC_ST(contact_rows, m, ROW_TT, t11); PC_ST(contact_rows, m, ROW_TT + 1u, t12); PC_ST(contact_rows, m, ROW_TT + 2u, t22);
+  PC_ST(contact_rows, m, ROW_KW, pc_dot(n, h1)); PC_ST(contact_rows, m, ROW_KW + 1u, pc_dot(n, h2));
+  PC_ST(contact_rows, m, ROW_TWIST, twist);
+  PC_ST(contact_rows, m, ROW_C, cn1); PC_ST(contact_rows, m, ROW_C + 1u, cn2); PC_ST(contact_rows, m, ROW_C + 2u, pc_dot(n, hn)); PC_ST(contact_rows, m, ROW_C + 3u, pc_dot(t1, h1)); PC_ST(contact_rows, m, ROW_C + 4u, pc_dot(t1, h2)); PC_ST(contact_rows, m, ROW_C + 5u, pc_dot(t1, in_)); PC_ST(contact_rows, m, ROW_C + 6u, pc_dot(t2, h1)); PC_ST(contact_rows, m, ROW_C + 7u, pc_dot(t2, h2)); PC_ST(contact_rows, m, ROW_C + 8u, pc_dot(t2, in_));
+  PC_ST(contact_rows, m, ROW_MU_STATIC, material.v.x);
+  PC_ST(contact_rows, m, ROW_MU_KINETIC, material.v.y);
+  PC_ST(contact_rows, m, ROW_RADIUS, pc_sqrt(spread));
+  PC_ST(contact_rows, m, ROW_E, material.v.z);
+  PC_ST(contact_rows, m, ROW_APPROACH, approach0); PC_ST(contact_rows, m, ROW_APPROACH + 1u, approach1); PC_ST(contact_rows, m, ROW_APPROACH + 2u, approach2); PC_ST(contact_rows, m, ROW_APPROACH + 3u, approach3);
+
+  // remembered impulses; they scale with the sub-step
+  Real ratio = PC_INFO(impulse_ratio);
+  precise Real l0 = pushes.v.x * w0 * ratio; precise Real l1 = pushes.v.y * w1 * ratio; precise Real l2 = pushes.v.z * w2 * ratio; precise Real l3 = pushes.s * w3 * ratio;
+  precise Real f1 = pc_dot(t1, drag.v) * w0 * ratio; precise Real f2 = pc_dot(t2, drag.v) * w0 * ratio; precise Real ft = drag.s * w0 * ratio;
+  PC_ST(contact_impulses, m, 0u, l0); PC_ST(contact_impulses, m, 1u, l1); PC_ST(contact_impulses, m, 2u, l2); PC_ST(contact_impulses, m, 3u, l3);
+  PC_ST(contact_impulses, m, IMPULSE_T, f1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, ft);
+  PC_ST(contact_impulses, m, IMPULSE_LARGEST, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, zero);
+}

@@ -1,0 +1,42 @@
+// Impulse F at the manifold's centre and couple M act on b, their opposites on a. Momentum is what is
+// stored, so both momenta are conserved to rounding: the arms end in one common point (see pc_arms).
+#include "body_state.inl"
+
+PC_FN Vec3 pc_pushed(Vec3 v, Vec3 impulse, Real inverse_mass) { return pc_madd(v, impulse, inverse_mass); }
+
+// The bodies have moved apart by D since the start of the step, so the two frozen arms end D apart; both
+// are drawn to the midpoint. With the frozen arms themselves a sliding contact would exert a couple D x F.
+struct Arms { Vec3 a; Vec3 b; };
+PC_FN Arms pc_arms(PC_IO Slot m, Vec3 moved_a, Vec3 moved_b) {
+  Vec3 d = pc_sub(moved_b, moved_a);
+  Arms r; r.a = pc_madd(pc_ld3_rows(PC_PASS m, ROW_ARM_A), d, PC_REAL(0.5)); r.b = pc_madd(pc_ld3_rows(PC_PASS m, ROW_ARM_B), d, PC_REAL(-0.5)); return r;
+}
+
+PC_FN void pc_apply(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple) {
+  Vec3 torque_a = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arms.b, impulse));
+  precise Real minus_mass = -a.inverse_mass; precise Real minus_response = -a.response;
+  a.v = pc_pushed(a.v, impulse, minus_mass); b.v = pc_pushed(b.v, impulse, b.inverse_mass);
+  a.l = pc_madd(a.l, torque_a, minus_response); b.l = pc_madd(b.l, torque_b, b.response);
+  PC_SCATTER_IF(a.inverse_mass > PC_REAL(0.0), motion, ia, 0u, pc_quad(a.v, a.inverse_mass));
+  PC_SCATTER_IF(a.inverse_mass > PC_REAL(0.0), motion, ia, 1u, pc_quad(a.l, a.phase));
+  PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 0u, pc_quad(b.v, b.inverse_mass));
+  PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 1u, pc_quad(b.l, b.phase));
+}
+
+// Sum of four normal impulses as an impulse along n and a couple in the contact plane.
+struct Push { Real n; Real m1; Real m2; };
+PC_FN Push pc_push(PC_IO Slot m, Real l0, Real l1, Real l2, Real l3) {
+  precise Real n = l0 + l1 + l2 + l3;
+  precise Real m1 = PC_LD(contact_rows, m, ROW_B) * l0 + PC_LD(contact_rows, m, ROW_B + 1u) * l1 + PC_LD(contact_rows, m, ROW_B + 2u) * l2 + PC_LD(contact_rows, m, ROW_B + 3u) * l3;
+  precise Real m2 = PC_LD(contact_rows, m, ROW_A) * l0 + PC_LD(contact_rows, m, ROW_A + 1u) * l1 + PC_LD(contact_rows, m, ROW_A + 2u) * l2 + PC_LD(contact_rows, m, ROW_A + 3u) * l3;
+  Push p; p.n = n; p.m1 = m1; p.m2 = -m2; return p;
+}
+
+// Relative velocity of b against a at the manifold's centre, in the contact frame.
+struct Twist { Real v1; Real v2; Real vn; Real w1; Real w2; Real wn; };
+PC_FN Twist pc_twist(BodyState a, BodyState b, Arms arms, Vec3 n, Vec3 t1, Vec3 t2) {
+  Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b);
+  Vec3 va = pc_add(a.v, pc_cross(wa, arms.a)); Vec3 vb = pc_add(b.v, pc_cross(wb, arms.b));
+  Vec3 v = pc_sub(vb, va); Vec3 w = pc_sub(wb, wa);
+  Twist t; t.v1 = pc_dot(t1, v); t.v2 = pc_dot(t2, v); t.vn = pc_dot(n, v); t.w1 = pc_dot(t1, w); t.w2 = pc_dot(t2, w); t.wn = pc_dot(n, w); return t;
+}

@@ -1,0 +1,41 @@
+// After the last sub-step: rows that were pressed in this step and approached faster than the threshold
+// leave with e times their approach speed (restitution e: the mean of the two bodies', as the original).
+#include "contact_rows.inl"
+#include "contact_response.inl"
+
+PC_FN Real pc_restitution_row(PC_IO Real vn, Real approach, Real largest, Real e, Real mass, Real impulse) {
+  precise Real threshold = -PC_INFO(restitution_threshold);
+  Mask bounces = pc_and(pc_and(largest > PC_REAL(0.0), approach < threshold), e > PC_REAL(0.0));
+  precise Real next = impulse - mass * (vn + e * approach);
+  return pc_select(bounces, pc_snap(pc_max(next, PC_REAL(0.0))), impulse);
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
+  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
+  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
+  Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
+  Twist v = pc_twist(a, b, arms, n, t1, t2);
+  Real e = PC_LD(contact_rows, m, ROW_E);
+  Real vn = v.vn; Real w1 = v.w1; Real w2 = v.w2;
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
+  precise Real v0 = vn + b0 * w1 - a0 * w2;
+  Real l0 = PC_LD(contact_impulses, m, 0u);
+  Real k0 = pc_restitution_row(PC_PASS v0, PC_LD(contact_rows, m, ROW_APPROACH), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), e, PC_LD(contact_rows, m, ROW_MASS), l0); precise Real e0 = k0 - l0; PC_ST(contact_impulses, m, 0u, k0);
+  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
+  precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
+  Real l1 = PC_LD(contact_impulses, m, 1u);
+  Real k1 = pc_restitution_row(PC_PASS v1, PC_LD(contact_rows, m, ROW_APPROACH + 1u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), e, PC_LD(contact_rows, m, ROW_MASS + 1u), l1); precise Real e1 = k1 - l1; PC_ST(contact_impulses, m, 1u, k1);
+  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
+  precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
+  Real l2 = PC_LD(contact_impulses, m, 2u);
+  Real k2 = pc_restitution_row(PC_PASS v2, PC_LD(contact_rows, m, ROW_APPROACH + 2u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), e, PC_LD(contact_rows, m, ROW_MASS + 2u), l2); precise Real e2 = k2 - l2; PC_ST(contact_impulses, m, 2u, k2);
+  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
+  precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
+  Real l3 = PC_LD(contact_impulses, m, 3u);
+  Real k3 = pc_restitution_row(PC_PASS v3, PC_LD(contact_rows, m, ROW_APPROACH + 3u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), e, PC_LD(contact_rows, m, ROW_MASS + 3u), l3); precise Real e3 = k3 - l3; PC_ST(contact_impulses, m, 3u, k3);
+
+  Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
+  pc_apply(PC_PASS ia, ib, a, b, arms, pc_scale(n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, PC_REAL(0.0)));
+}

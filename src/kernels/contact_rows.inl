@@ -1,0 +1,29 @@
+// The row of a contact manifold while it is solved, and how an impulse acts.
+//
+// A manifold is solved in its contact frame (t1, t2, n) at its centre: the two bodies give one relative
+// twist (V, W), point i sees V_n + b_i W_1 - a_i W_2, with (a_i, b_i) its place in the contact plane. The
+// responses between rows are computed once a step; each body is read and written once per visit.
+// Friction acts at the centre: a 2 x 2 block with a circular clamp, and a twist about the normal.
+const uint ROW_N = 0u;         // normal, a to b
+const uint ROW_T = 3u;         // first tangent; the second is n x t1
+const uint ROW_ARM_A = 6u;     // from each centre of mass to the manifold's centre, start of the step
+const uint ROW_ARM_B = 9u;
+const uint ROW_A = 12u;        // a_i along t1
+const uint ROW_B = 16u;        // b_i along t2
+const uint ROW_S = 20u;        // separation at the start of the step
+const uint ROW_MASS = 24u;     // effective mass of each normal row
+const uint ROW_D = 28u;        // response of normal row j to normal row i: 01 02 03 12 13 23
+const uint ROW_TT = 34u;       // inverse of the friction block: 11 12 22
+const uint ROW_KW = 37u;       // response of the twist to friction 1, 2
+const uint ROW_TWIST = 39u;    // effective mass of the twist
+const uint ROW_C = 40u;        // response of V_n, W_1, W_2 to friction 1, 2 and twist
+const uint ROW_MU_STATIC = 49u;
+const uint ROW_MU_KINETIC = 50u;
+const uint ROW_RADIUS = 51u;   // lever of the twist friction: root mean square distance of the points
+const uint ROW_E = 52u;        // restitution
+const uint ROW_APPROACH = 53u; // relative normal velocity of each point at the start of the step
+// impulses: normal 0..3, friction 4 5, twist 6, largest normal impulse of the step 8..11
+const uint IMPULSE_T = 4u;
+const uint IMPULSE_LARGEST = 8u;
+
+PC_FN Vec3 pc_ld3_rows(PC_IO Slot m, uint f) { return Vec3(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u)); }

@@ -1,0 +1,30 @@
+// Stage 1 of a sub-step: forces and drag. With F the drag, a the acceleration:
+//   u' = e^(-F h) u + a h phi(F h),   L' = e^(-G h) L + T h phi(G h)
+// which is exact for constant a, T (errata vi of the method); then the inertia of the new sub-step.
+#include "world_inertia.inl"
+
+PC_FN void pc_kernel(PC_IO Index i) {
+  Quad linear = PC_GATHER(motion, i, 0u);
+  Quad angular = PC_GATHER(motion, i, 1u);
+  Quad push = PC_GATHER(force, i, 0u);
+  Quad turn = PC_GATHER(force, i, 1u);
+  Real h = PC_INFO(h);
+
+  Mask dynamic_body = linear.s > PC_REAL(0.0);
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Vec3 acceleration = pc_madd(gravity, push.v, linear.s);
+  precise Real x = push.s * h;
+  precise Real y = turn.s * h;
+  Decay slow = pc_decay(x);
+  Decay calm = pc_decay(y);
+  precise Real kick = slow.phi * h;
+  precise Real twist = calm.phi * h;
+  precise Vec3 u = linear.v * slow.e + acceleration * kick;
+  precise Vec3 l = angular.v * calm.e + turn.v * twist;
+  linear.v = pc_select3(dynamic_body, pc_snap3(u), linear.v);
+  angular.v = pc_select3(dynamic_body, pc_snap3(l), angular.v);
+  angular.s = PC_REAL(0.0);
+  PC_SCATTER(motion, i, 0u, linear);
+  PC_SCATTER(motion, i, 1u, angular);
+  pc_store_inertia(PC_PASS i, linear.s);
+}

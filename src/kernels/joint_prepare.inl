@@ -1,0 +1,119 @@
+// Start of a sub-step's joints: rows at the present pose, then the last sub-step's impulses act again.
+//
+// Pin (section 9.3 of the original; errata v): K = (1/m_a + 1/m_b) 1 - [r_a] I_a^-1 [r_a] - [r_b] I_b^-1 [r_b].
+// Both arms end in the midpoint of the two pins, so impulses conserve angular momentum exactly.
+// Angles (section 9.4): R = axes_a* axes_b is split into a swing and a roll about x, R = swing * roll:
+//   roll = 2 atan(R_x / R_w); swing = 2 atan(|S_yz| / S_w) (S_y, S_z) / |S_yz| = (pitch, yaw).
+// A cone limits the angle between the two x axes. Every row is a slack >= 0, measured from the nearer
+// limit, or a locked angle.
+#include "body_state.inl"
+#include "joint_rows.inl"
+
+PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
+  // columns of -[r] I^-1 [r]: r x (I^-1 (e_k x r)) with the sign of e_k x r
+  Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)); Vec3 y = Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)); Vec3 z = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(1.0));
+  Vec3 ax = pc_cross(ra, x); Vec3 ay = pc_cross(ra, y); Vec3 az = pc_cross(ra, z);
+  Vec3 bx = pc_cross(rb, x); Vec3 by = pc_cross(rb, y); Vec3 bz = pc_cross(rb, z);
+  Vec3 iax = pc_scale(pc_sym_mul(a.inertia, ax), a.response); Vec3 iay = pc_scale(pc_sym_mul(a.inertia, ay), a.response); Vec3 iaz = pc_scale(pc_sym_mul(a.inertia, az), a.response);
+  Vec3 ibx = pc_scale(pc_sym_mul(b.inertia, bx), b.response); Vec3 iby = pc_scale(pc_sym_mul(b.inertia, by), b.response); Vec3 ibz = pc_scale(pc_sym_mul(b.inertia, bz), b.response);
+  precise Real k = a.inverse_mass + b.inverse_mass;
+  precise Real xx = k + pc_dot(ax, iax) + pc_dot(bx, ibx);
+  precise Real xy = pc_dot(ax, iay) + pc_dot(bx, iby);
+  precise Real xz = pc_dot(ax, iaz) + pc_dot(bx, ibz);
+  precise Real yy = k + pc_dot(ay, iay) + pc_dot(by, iby);
+  precise Real yz = pc_dot(ay, iaz) + pc_dot(by, ibz);
+  precise Real zz = k + pc_dot(az, iaz) + pc_dot(bz, ibz);
+  Sym3 m; m.xx = xx; m.xy = xy; m.xz = xz; m.yy = yy; m.yz = yz; m.zz = zz; return m;
+}
+
+struct Angles { Vec3 value; Vec3 roll_axis; Vec3 second_axis; Vec3 third_axis; };
+PC_FN Angles pc_joint_angles(Quaternion fa, Quaternion fb, Mask is_cone) {
+  Quaternion r0 = pc_quaternion_mul(pc_conjugate(fa), fb);
+  Real flip = pc_select(r0.w < PC_REAL(0.0), PC_REAL(-1.0), PC_REAL(1.0));
+  Vec3 rv = pc_scale(r0.v, flip); precise Real rw = r0.w * flip;
+  // roll
+  precise Real xw = rv.x * rv.x + rw * rw; Real n = pc_sqrt(xw); Real inverse_n = pc_inverse_or_zero(n);
+  precise Real half_roll = pc_angle(pc_abs(rv.x), rw) * PC_REAL(2.0);
+  Real roll = pc_select(rv.x < PC_REAL(0.0), -half_roll, half_roll);
+  // swing
+  precise Real tx = rv.x * inverse_n; precise Real tw = rw * inverse_n;
+  precise Real sy = rv.y * tw - rv.z * tx; precise Real sz = rv.z * tw + rv.y * tx;
+  precise Real ss = sy * sy + sz * sz; Real s = pc_sqrt(ss);
+  precise Real swing = pc_angle(s, n) * PC_REAL(2.0);
+  Real rate = pc_select(s > PC_REAL(1e-6), pc_div(swing, pc_max(s, PC_TINY)), PC_REAL(2.0));
+  precise Real pitch = sy * rate; precise Real yaw = sz * rate;
+  // axes
+  Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));
+  Vec3 xa = pc_rotate(fa, x); Vec3 xb = pc_rotate(fb, x);
+  Vec3 cone_axis = pc_unit_or_zero(pc_cross(xa, xb));
+  precise Real cosine_sum = pc_dot(xa, xb) + PC_REAL(1.0); Vec3 sum = pc_add(xa, xb);
+  Vec3 pitch_axis = pc_rotate(fa, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
+  Vec3 yaw_axis = pc_rotate(fa, Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(1.0)));
+  Angles o; o.value = Vec3(roll, pc_select(is_cone, swing, pitch), pc_select(is_cone, PC_REAL(0.0), yaw));
+  o.roll_axis = pc_scale(sum, pc_div(PC_REAL(1.0), pc_max(cosine_sum, PC_REAL(0.1))));
+  o.second_axis = pc_select3(is_cone, cone_axis, pitch_axis);
+  o.third_axis = pc_select3(is_cone, pc_zero3(), yaw_axis); return o;
+}
+
+// One angle row at its nearer limit; writes it and returns its impulse and the couple of the warm start.
+struct RowStart { Real impulse; Vec3 couple; };
+PC_FN RowStart pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lower, Real upper, Mask exists, Real remembered, Sym3 inertia) {
+  precise Real above = angle - lower; precise Real below = upper - angle;
+  Mask at_lower = above < below;
+  precise Real interval = upper - lower;
+  Mask locked = pc_and(exists, interval < PC_REAL(1e-6));
+  Real sign = pc_select(pc_or(at_lower, locked), PC_REAL(1.0), PC_REAL(-1.0));
+  Real slack = pc_select(locked, above, pc_select(at_lower, above, below));
+  Vec3 j = pc_scale(axis, sign);
+  Real mass = pc_select(exists, pc_inverse_or_zero(pc_dot(j, pc_sym_mul(inertia, j))), PC_REAL(0.0));
+  precise Real signed_impulse = remembered * sign * PC_INFO(impulse_ratio);
+  Real impulse = pc_select(mass > PC_REAL(0.0), pc_select(locked, signed_impulse, pc_max(signed_impulse, PC_REAL(0.0))), PC_REAL(0.0));
+  PC_ST(joint_rows, m, JOINT_AXIS + row * 3u, j.x); PC_ST(joint_rows, m, JOINT_AXIS + row * 3u + 1u, j.y); PC_ST(joint_rows, m, JOINT_AXIS + row * 3u + 2u, j.z);
+  PC_ST(joint_rows, m, JOINT_SLACK + row, slack); PC_ST(joint_rows, m, JOINT_MASS + row, mass);
+  PC_ST(joint_rows, m, JOINT_SIGN + row, sign); PC_ST(joint_rows, m, JOINT_LOCKED + row, pc_select(locked, PC_REAL(1.0), PC_REAL(0.0)));
+  precise Real result = impulse * sign;
+  RowStart start; start.impulse = result; start.couple = pc_scale(j, impulse); return start;
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Index ia = PC_ENDS(joint_ends, m, 0u); Index ib = PC_ENDS(joint_ends, m, 1u); Index joint = PC_ORDER(joint_order, m);
+  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Quad place_a = PC_GATHER(pose, ia, 0u); Quad turn_a = PC_GATHER(pose, ia, 1u); Quad low_a = PC_GATHER(pose, ia, 2u);
+  Quad place_b = PC_GATHER(pose, ib, 0u); Quad turn_b = PC_GATHER(pose, ib, 1u); Quad low_b = PC_GATHER(pose, ib, 2u);
+  Quad anchor_a = PC_GATHER(joint_frame, joint, 0u); Quad axes_a = PC_GATHER(joint_frame, joint, 1u);
+  Quad anchor_b = PC_GATHER(joint_frame, joint, 2u); Quad axes_b = PC_GATHER(joint_frame, joint, 3u);
+  Quad lower = PC_GATHER(joint_frame, joint, 4u); Quad upper = PC_GATHER(joint_frame, joint, 5u);
+  Quad pin = PC_GATHER(joint_impulse, joint, 0u); Quad angle = PC_GATHER(joint_impulse, joint, 1u);
+  Quaternion qa = pc_quaternion(turn_a.v, turn_a.s); Quaternion qb = pc_quaternion(turn_b.v, turn_b.s);
+
+  // pin
+  Vec3 ra = pc_rotate(qa, anchor_a.v); Vec3 rb = pc_rotate(qb, anchor_b.v);
+  Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
+  Vec3 gap = pc_add(apart, pc_sub(rb, ra));
+  Vec3 arm_a = pc_madd(ra, gap, PC_REAL(0.5)); Vec3 arm_b = pc_sub(arm_a, apart);
+  Sym3 k = pc_sym_inverse(pc_pin_block(a, b, arm_a, arm_b));
+  PC_ST(joint_rows, m, JOINT_ARM_A, arm_a.x); PC_ST(joint_rows, m, JOINT_ARM_A + 1u, arm_a.y); PC_ST(joint_rows, m, JOINT_ARM_A + 2u, arm_a.z);
+  PC_ST(joint_rows, m, JOINT_ARM_B, arm_b.x); PC_ST(joint_rows, m, JOINT_ARM_B + 1u, arm_b.y); PC_ST(joint_rows, m, JOINT_ARM_B + 2u, arm_b.z);
+  PC_ST(joint_rows, m, JOINT_GAP, gap.x); PC_ST(joint_rows, m, JOINT_GAP + 1u, gap.y); PC_ST(joint_rows, m, JOINT_GAP + 2u, gap.z);
+  PC_ST(joint_rows, m, JOINT_K, k.xx); PC_ST(joint_rows, m, JOINT_K + 1u, k.xy); PC_ST(joint_rows, m, JOINT_K + 2u, k.xz);
+  PC_ST(joint_rows, m, JOINT_K + 3u, k.yy); PC_ST(joint_rows, m, JOINT_K + 4u, k.yz); PC_ST(joint_rows, m, JOINT_K + 5u, k.zz);
+
+  // angles
+  Real kind = anchor_a.s;
+  Mask any = kind > PC_REAL(0.5); Mask is_cone = pc_and(any, kind < PC_REAL(1.5)); Mask is_angles = kind > PC_REAL(1.5);
+  Angles angles = pc_joint_angles(pc_quaternion_mul(qa, pc_quaternion(axes_a.v, axes_a.s)), pc_quaternion_mul(qb, pc_quaternion(axes_b.v, axes_b.s)), is_cone);
+  Sym3 both; Sym3 wa = a.inertia; Sym3 wb = b.inertia;
+  precise Real xx = wa.xx * a.response + wb.xx * b.response; precise Real xy = wa.xy * a.response + wb.xy * b.response; precise Real xz = wa.xz * a.response + wb.xz * b.response;
+  precise Real yy = wa.yy * a.response + wb.yy * b.response; precise Real yz = wa.yz * a.response + wb.yz * b.response; precise Real zz = wa.zz * a.response + wb.zz * b.response;
+  both.xx = xx; both.xy = xy; both.xz = xz; both.yy = yy; both.yz = yz; both.zz = zz;
+  RowStart c0 = pc_angle_row(PC_PASS m, 0u, angles.roll_axis, angles.value.x, lower.v.x, upper.v.x, any, angle.v.x, both);
+  RowStart c1 = pc_angle_row(PC_PASS m, 1u, angles.second_axis, angles.value.y, lower.v.y, upper.v.y, any, angle.v.y, both);
+  RowStart c2 = pc_angle_row(PC_PASS m, 2u, angles.third_axis, angles.value.z, lower.v.z, upper.v.z, is_angles, angle.v.z, both);
+
+  // warm start
+  precise Vec3 impulse = pin.v * PC_INFO(impulse_ratio);
+  precise Vec3 couple = c0.couple + c1.couple + c2.couple;
+  pin.v = impulse; angle.v = Vec3(c0.impulse, c1.impulse, c2.impulse);
+  PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
+  pc_joint_apply(PC_PASS ia, ib, a, b, arm_a, arm_b, impulse, couple);
+}

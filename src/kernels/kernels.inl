@@ -1,0 +1,33 @@
+// The one list of kernels. It generates the C++ loops, the GLSL programs, and what the plan knows of
+// hazards. A kernel's text is <name>.inl beside this file.
+//
+//   PC_KERNEL(name, domain, stage, accesses)
+//
+// domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once).
+// stage: whose backend runs it. accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in
+// GLSL; PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum).
+// Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
+// a slot), `<domain>_order` (a slot's table row), and the slots' scratch listed below.
+//
+//   PC_ROWS(domain, buffer, reals)            array of structures of arrays, the backend's width
+
+#ifdef PC_ROWS
+PC_ROWS(contact, contact_rows, 60)
+PC_ROWS(contact, contact_impulses, 12)
+PC_ROWS(joint, joint_rows, 36)
+#endif
+
+#ifdef PC_KERNEL
+PC_KERNEL(begin, body, integrate, PC_READ(bodies) PC_READ(pose) PC_READ(mass) PC_READ(half_change) PC_READ(force) PC_WRITE(motion) PC_WRITE(delta) PC_WRITE(inertia))
+PC_KERNEL(integrate, body, integrate, PC_READ(bodies) PC_READ(pose) PC_READ(mass) PC_READ(force) PC_WRITE(motion) PC_WRITE(inertia))
+PC_KERNEL(remember, body, integrate, PC_READ(bodies) PC_READ(motion) PC_WRITE(half_change))
+PC_KERNEL(advance, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_WRITE(pose) PC_WRITE(delta))
+PC_KERNEL(synchronise, body, integrate, PC_READ(bodies) PC_READ(motion) PC_WRITE(half_change))
+PC_KERNEL(joint_prepare, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_frame) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(joint_rows))
+PC_KERNEL(joint_solve, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
+PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
+PC_KERNEL(contact_warm, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(delta) PC_WRITE(motion))
+PC_KERNEL(contact_solve, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
+PC_KERNEL(contact_restitution, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
+PC_KERNEL(contact_store, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(contact))
+#endif

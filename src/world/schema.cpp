@@ -1,0 +1,84 @@
+#include "world/schema.h"
+
+#include <cassert>
+
+namespace pcphys {
+namespace {
+
+constexpr BufferSchema buffer_schemas[] = {
+#define PC_TABLE(table, doc)
+#define PC_BUFFER(table, buffer, quads, doc) {#buffer, Table::table, quads * 4, doc},
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
+#include "kernels/properties.inl"
+#undef PC_TABLE
+#undef PC_BUFFER
+#undef PC_PROPERTY
+    {"bodies", Table::body, 0, "body rows that move"},
+    {"contact_ends", Table::contact, 0, "the two body rows of a slot"},
+    {"contact_order", Table::contact, 0, "the contact of a slot"},
+    {"joint_ends", Table::joint, 0, "the two body rows of a slot"},
+    {"joint_order", Table::joint, 0, "the joint of a slot"},
+#define PC_ROWS(domain, buffer, reals) {#buffer, Table::domain, reals, "scratch of the solver"},
+#include "kernels/kernels.inl"
+#undef PC_ROWS
+};
+static_assert(std::size(buffer_schemas) == buffer_count);
+
+constexpr PropertySchema property_schemas[] = {
+#define PC_TABLE(table, doc)
+#define PC_BUFFER(table, buffer, quads, doc)
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc) \
+  {Table::table, Buffer::buffer, offset, PropertyType::type, #name, Role::role, initial, unit, doc},
+#include "kernels/properties.inl"
+#undef PC_TABLE
+#undef PC_BUFFER
+#undef PC_PROPERTY
+};
+
+#define PC_READ(buffer) {Buffer::buffer, false},
+#define PC_WRITE(buffer) {Buffer::buffer, true},
+#define PC_KERNEL(name, domain, stage, accesses) constexpr Access accesses_##name[] = {accesses};
+#include "kernels/kernels.inl"
+#undef PC_KERNEL
+#undef PC_READ
+#undef PC_WRITE
+
+constexpr KernelSchema kernel_schemas[] = {
+#define PC_KERNEL(name, domain, stage, accesses) {#name, Domain::domain, Stage::stage, accesses_##name},
+#include "kernels/kernels.inl"
+#undef PC_KERNEL
+};
+
+// GL 4.3 guarantees eight storage blocks to a program, no more.
+#define PC_KERNEL(name, domain, stage, accesses) static_assert(std::size(accesses_##name) <= 8, #name " binds more than eight buffers");
+#include "kernels/kernels.inl"
+#undef PC_KERNEL
+
+}  // namespace
+
+const BufferSchema& schema(Buffer buffer) { return buffer_schemas[std::size_t(buffer)]; }
+const KernelSchema& schema(Kernel kernel) { return kernel_schemas[std::size_t(kernel)]; }
+std::span<const PropertySchema> properties() { return property_schemas; }
+
+std::string_view name(Table table) {
+  constexpr std::string_view names[] = {"body", "joint", "contact"};
+  return names[std::size_t(table)];
+}
+std::string_view name(Stage stage) {
+  constexpr std::string_view names[] = {"integrate", "joints", "impulses"};
+  return names[std::size_t(stage)];
+}
+std::string_view name(Role role) {
+  constexpr std::string_view names[] = {"input", "state", "derived", "scratch"};
+  return names[std::size_t(role)];
+}
+std::string_view name(PropertyType type) {
+  constexpr std::string_view names[] = {"real", "vec3", "quat", "sym3"};
+  return names[std::size_t(type)];
+}
+std::uint32_t components(PropertyType type) {
+  constexpr std::uint32_t counts[] = {1, 3, 4, 6};
+  return counts[std::size_t(type)];
+}
+
+}  // namespace pcphys

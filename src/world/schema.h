@@ -1,0 +1,106 @@
+// The lists of src/kernels as C++: enumerations of tables, buffers, properties and kernels, and what each is.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace pcphys {
+
+enum class Table : std::uint8_t {
+#define PC_TABLE(table, doc) table,
+#define PC_BUFFER(table, buffer, quads, doc)
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
+#include "kernels/properties.inl"
+#undef PC_TABLE
+#undef PC_BUFFER
+#undef PC_PROPERTY
+  count
+};
+
+/// Everything a kernel can bind. First the tables' buffers (role of a world), then what a step makes.
+enum class Buffer : std::uint8_t {
+#define PC_TABLE(table, doc)
+#define PC_BUFFER(table, buffer, quads, doc) buffer,
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
+#include "kernels/properties.inl"
+#undef PC_TABLE
+#undef PC_BUFFER
+#undef PC_PROPERTY
+  table_buffers,  // how many stand above
+  bodies = table_buffers,
+  contact_ends,
+  contact_order,
+  joint_ends,
+  joint_order,
+#define PC_ROWS(domain, buffer, reals) buffer,
+#include "kernels/kernels.inl"
+#undef PC_ROWS
+  count
+};
+
+enum class Kernel : std::uint8_t {
+#define PC_KERNEL(name, domain, stage, accesses) name,
+#include "kernels/kernels.inl"
+#undef PC_KERNEL
+  count
+};
+
+enum class Domain : std::uint8_t { body, contact, joint };
+enum class Stage : std::uint8_t { integrate, joints, impulses };
+enum class PropertyType : std::uint8_t { real, vec3, quat, sym3 };
+enum class Role : std::uint8_t { input, state, derived, scratch };
+
+inline constexpr std::size_t table_count = std::size_t(Table::count);
+inline constexpr std::size_t table_buffer_count = std::size_t(Buffer::table_buffers);
+inline constexpr std::size_t buffer_count = std::size_t(Buffer::count);
+inline constexpr std::size_t kernel_count = std::size_t(Kernel::count);
+inline constexpr std::size_t stage_count = 3;
+
+struct BufferSchema {
+  std::string_view name;
+  Table table;           // of a table's buffer
+  std::uint32_t reals;   // per row, or per slot of an array of structures of arrays; 0: unsigned integers
+  std::string_view doc;
+};
+
+struct PropertySchema {
+  Table table;
+  Buffer buffer;
+  std::uint32_t offset;  // reals into the row
+  PropertyType type;
+  std::string_view name;
+  Role role;
+  double initial;        // of every component; of a quaternion's w
+  std::string_view unit, doc;
+};
+
+struct Access {
+  Buffer buffer;
+  bool write;
+};
+
+struct KernelSchema {
+  std::string_view name;
+  Domain domain;
+  Stage stage;
+  std::span<const Access> accesses;
+};
+
+const BufferSchema& schema(Buffer buffer);
+const KernelSchema& schema(Kernel kernel);
+std::span<const PropertySchema> properties();
+std::string_view name(Table table);
+std::string_view name(Stage stage);
+std::string_view name(Role role);
+std::string_view name(PropertyType type);
+std::uint32_t components(PropertyType type);
+
+/// What kernels are told besides buffers (src/kernels/info.inl), in the precision of the world.
+template <class Scalar> struct InfoOf {
+#define PC_INFO_FIELD(name, doc) Scalar name = 0;
+#include "kernels/info.inl"
+#undef PC_INFO_FIELD
+};
+
+}  // namespace pcphys
