@@ -1,0 +1,56 @@
+// Where kernels run. A backend moves memory and runs loops; it holds no physics arithmetic.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "pcphys/result.h"
+#include "pcphys/types.h"
+#include "world/schema.h"
+
+namespace pcphys {
+
+/// Positions in `bodies` for the body domain (multiples of `width()`, the list is padded with row 0),
+/// blocks of `width()` slots for joints and contacts.
+struct Range {
+  std::uint32_t begin, end;
+};
+
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  /// "cpu, 8 lanes" or the GL renderer's name.
+  virtual std::string device() const = 0;
+  /// Slots side by side in arrays of structures of arrays.
+  virtual std::uint32_t width() const = 0;
+
+  /// Where the host keeps a buffer (world tables, index lists) and how long it is. Called again when either
+  /// changed. The CPU works in place; the GPU sizes its copy (growing by half, keeping nothing).
+  virtual Status attach(Buffer buffer, void* host, std::size_t bytes) = 0;
+  /// Scratch of the solver: `slots` rows of a PC_ROWS buffer, a multiple of `width()`. Never transferred.
+  virtual Status reserve(Buffer buffer, std::size_t slots) = 0;
+
+  /// Host to device and back, the whole buffer; nothing to do on the CPU.
+  virtual Status upload(Buffer buffer) = 0;
+  virtual Status download(Buffer buffer) = 0;
+
+  /// All info blocks of a step, `count` times InfoOf<Scalar>, in the precision of the world.
+  virtual Status set_infos(const void* infos, std::size_t count) = 0;
+  /// Runs a kernel with info block `info` over the ranges, one after the other: each may read what the one
+  /// before wrote (the colours of a constraint graph). `barrier`: it also reads what an earlier run wrote.
+  virtual Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) = 0;
+  /// Waits until all that was asked for is done, so that a clock around it tells the time it took.
+  virtual Status finish() = 0;
+};
+
+/// lanes: 1, 4 or 8 (f32), 1 or 4 (f64); 0 picks the widest that the processor has.
+Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint32_t lanes);
+
+/// device: index into the EGL devices, -1 for the first that works. `host_context`: use the context that is
+/// current on the calling thread instead of a headless one of our own.
+Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context);
+
+}  // namespace pcphys
