@@ -164,7 +164,7 @@ def picture(runs, folder):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     scenes = list(dict.fromkeys(r["scene"] for r in runs))
-    figure = plt.figure(figsize=(16, 4.6 * len(scenes)), layout="constrained")
+    figure = plt.figure(figsize=(16, 3.9 * len(scenes)), layout="constrained")
     grid = figure.add_gridspec(len(scenes), 5, width_ratios=[1, 1, 1, 1, 1.15])
     for row, name in enumerate(scenes):
         group = [r for r in runs if r["scene"] == name]
