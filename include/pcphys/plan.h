@@ -1,0 +1,55 @@
+// The step plan: data that says what a step runs, in which order, where, and what was left out and why.
+// A pure function of what the world holds and of the settings; it can be printed and compared.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcphys {
+
+/// Where a stage runs.
+enum class Place : std::uint8_t { cpu, gl };
+const char* name(Place place);
+
+/// Which coefficients a kernel is given.
+enum class Phase : std::uint8_t { first, middle, biased, relax };
+
+enum class Kernel : std::uint8_t;
+enum class Buffer : std::uint8_t;
+
+struct PlanEntry {
+  enum class Kind : std::uint8_t { kernel, upload, download };
+  Kind kind = Kind::kernel;
+  Place place = Place::cpu;
+  Kernel kernel{};       // of a kernel
+  Buffer buffer{};       // of a transfer
+  Phase phase = Phase::biased;
+  bool barrier = false;  // reads what a kernel before it wrote on the same device
+  std::uint32_t substep = 0;
+  friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
+};
+
+struct LeftOut {
+  std::string what, why;
+  friend bool operator==(const LeftOut&, const LeftOut&) = default;
+};
+
+struct StepPlan {
+  std::uint32_t substeps = 0;
+  std::vector<PlanEntry> entries;
+  std::vector<LeftOut> left_out;
+  friend bool operator==(const StepPlan&, const StepPlan&) = default;
+};
+
+/// A line an entry: where, what, its phase, what it reads and writes, and the bytes a row of it costs.
+std::string to_text(const StepPlan& plan);
+std::string_view kernel_name(const PlanEntry& entry);
+std::string_view buffer_name(const PlanEntry& entry);
+std::string_view stage_name(const PlanEntry& entry);
+std::string_view phase_name(const PlanEntry& entry);
+/// Names of the buffers that a kernel entry reads, and of those it writes.
+std::vector<std::string_view> reads(const PlanEntry& entry);
+std::vector<std::string_view> writes(const PlanEntry& entry);
+
+}  // namespace pcphys

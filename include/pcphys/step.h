@@ -1,0 +1,78 @@
+// The stepper: decides what a world needs (the plan) and runs it on the backends that were chosen.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pcphys/plan.h"
+#include "pcphys/result.h"
+#include "pcphys/types.h"
+#include "pcphys/world.h"
+
+namespace pcphys {
+
+enum class NarrowPhase : std::uint8_t { native, fcl };
+
+/// How steps are made. All of it may change between two steps; results do not depend on where a stage runs.
+struct StepSettings {
+  Place integrate = Place::cpu, joints = Place::cpu, impulses = Place::cpu;
+  std::uint32_t substeps = 4;
+  std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is
+  std::uint32_t threads = 1;  // more is refused until threads exist
+  NarrowPhase narrow = NarrowPhase::native;
+  int device = -1;            // EGL device; -1: the first that works
+  bool host_context = false;  // use the GL context that is current on this thread
+  bool timings = true;        // clock each stage; on GL this waits for the device after each
+
+  double push_speed = 3;              // at which an overlap is undone, at most [m/s]
+  double restitution_threshold = 0.5; // approach speeds below it do not bounce [m/s]; 0 switches it off
+  double contact_margin = 0.02;       // contacts are kept up to this gap [m]
+  std::size_t max_pairs = 1u << 24;   // more is an error that says how many there are
+
+  void set_all(Place place) { integrate = joints = impulses = place; }
+};
+
+enum class Timer : std::uint8_t { forces, broad, narrow, plan, upload, integrate, joints, impulses, download, count };
+const char* name(Timer timer);
+
+struct StepReport {
+  Error error;               // code none: the step was made. Otherwise the world is as it was before
+  std::uint64_t step = 0;    // how many steps this stepper has made
+  std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
+  std::uint64_t transfer_bytes = 0;  // between host and device
+  double total_ms = 0;
+  std::array<double, std::size_t(Timer::count)> ms{};
+
+  explicit operator bool() const { return error.code == ErrorCode::none; }
+};
+
+class Stepper {
+ public:
+  explicit Stepper(const StepSettings& settings = {});
+  ~Stepper();
+  Stepper(Stepper&&) noexcept;
+  Stepper& operator=(Stepper&&) noexcept;
+
+  /// Takes effect at the next step. Errors (no such device, lanes, threads) are reported here and leave the
+  /// settings as they were. The constructor's settings are checked at the first step.
+  Status configure(const StepSettings& settings);
+  const StepSettings& settings() const;
+
+  /// Moves the world on by dt [s]. The report stands until the next call.
+  const StepReport& step(World& world, double dt);
+
+  /// What the last step ran, or (`plan_for`) what a step of this world would.
+  const StepPlan& plan() const;
+  Result<StepPlan> plan_for(const World& world, double dt);
+
+  /// "cpu, 8 lanes", or the GL renderer's name; empty when no stage runs there.
+  std::string device(Place place) const;
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
+};
+
+}  // namespace pcphys

@@ -1,0 +1,5 @@
+#pragma once
+#define PCPHYS_VERSION_MAJOR 0
+#define PCPHYS_VERSION_MINOR 1
+#define PCPHYS_VERSION_PATCH 0
+#define PCPHYS_VERSION "0.1.0"

@@ -1,0 +1,139 @@
+// The world: tables of properties, ids, and nothing else. It holds no algorithm; a Stepper moves it on.
+//
+// Every function that takes an id answers a stale one with ErrorCode::stale_id, every one that takes
+// numbers answers NaN and infinity with ErrorCode::not_finite, and a refused call leaves the world exactly
+// as it was. A world is used by one thread at a time.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "pcphys/ids.h"
+#include "pcphys/math.h"
+#include "pcphys/property.h"
+#include "pcphys/result.h"
+#include "pcphys/types.h"
+
+namespace pcphys {
+
+struct WorldState;
+class World;
+
+struct WorldDef {
+  Precision precision = Precision::f32;
+  Vec3 gravity{0, -9.81, 0};  // [m/s^2]; there is no preferred up axis
+};
+
+using ForceId = Id<struct ForceTag>;
+/// Evaluated once a step, before anything moves. It may read the world, not change it.
+using ForceCallback = std::function<Wrench(const World&, BodyId)>;
+
+class World {
+ public:
+  explicit World(const WorldDef& def = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  // ---- objects ---------------------------------------------------------------------------------------
+  /// The fixed body at the origin that every world has: what joints "to the world" hold on to.
+  BodyId ground() const;
+  Result<BodyId> create_body(const BodyDef& def);
+  Result<JointId> create_joint(const JointDef& def);
+  /// Bones and joints of a ragdoll whose frame stands at `pose`; all bones move with `velocity`.
+  Result<Ragdoll> create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity = {});
+  /// Takes the body's shapes, joints and forces with it.
+  Status destroy(BodyId body);
+  Status destroy(JointId joint);
+
+  bool valid(BodyId body) const;
+  bool valid(JointId joint) const;
+  /// All bodies in ascending id order, the ground excluded.
+  std::vector<BodyId> bodies() const;
+  std::vector<JointId> joints() const;
+  std::size_t body_count() const;  // the ground excluded
+  std::size_t joint_count() const;
+  std::size_t contact_count() const;  // manifolds with points, of the last step
+
+  // ---- state -----------------------------------------------------------------------------------------
+  Result<Pose> pose(BodyId body) const;
+  Status set_pose(BodyId body, const Pose& pose);
+  /// In phase with the position: second order accurate in free flight, zero at rest [m/s].
+  Result<Vec3> velocity(BodyId body) const;
+  Status set_velocity(BodyId body, Vec3 velocity);
+  /// World axes [rad/s].
+  Result<Vec3> angular_velocity(BodyId body) const;
+  Status set_angular_velocity(BodyId body, Vec3 angular_velocity);
+  Result<Vec3> angular_momentum(BodyId body) const;
+  /// The original's last position and last orientation, one sub-step `h` ago: derived from what is stored,
+  /// p - h u and exp(-h w) q. Writing them sets the velocity so that the next read gives them back.
+  Result<Vec3> position_last(BodyId body) const;
+  Status set_position_last(BodyId body, Vec3 position);
+  Result<Quat> orientation_last(BodyId body) const;
+  Status set_orientation_last(BodyId body, Quat orientation);
+
+  // ---- inputs ----------------------------------------------------------------------------------------
+  Vec3 gravity() const;
+  Status set_gravity(Vec3 gravity);
+  Result<BodyKind> kind(BodyId body) const;
+  Result<MassProperties> mass_properties(BodyId body) const;
+  Status set_mass_properties(BodyId body, const MassProperties& mass);
+  Result<Material> material(BodyId body) const;
+  Status set_material(BodyId body, const Material& material);
+  Status set_drag(BodyId body, double linear, double angular);
+  /// Adds to the body's list of forces and torques; a constant, or a callback.
+  Result<ForceId> add_force(BodyId body, const Wrench& wrench);
+  Result<ForceId> add_force(BodyId body, ForceCallback callback);
+  Status remove(ForceId force);
+  /// The shapes as they were given at creation.
+  Result<std::vector<ShapeDef>> shapes(BodyId body) const;
+  Status set_filter(BodyId body, const Filter& filter);
+  /// Whether two bodies may never collide, besides what joints and filters say.
+  Status set_collide(BodyId a, BodyId b, bool collide);
+  Result<JointDef> joint(JointId joint) const;
+
+  // ---- measures --------------------------------------------------------------------------------------
+  /// Kinetic energy, velocities in phase with positions [J].
+  double kinetic_energy() const;
+  /// In the uniform gravity field, zero at the origin [J].
+  double potential_energy() const;
+  Vec3 momentum() const;                  // [kg m/s]
+  Vec3 angular_momentum() const;          // about the origin [kg m^2/s]
+  /// Distance between the two pins of a joint [m].
+  Result<double> joint_separation(JointId joint) const;
+
+  // ---- tables ----------------------------------------------------------------------------------------
+  Precision precision() const;
+  /// A view of a property by name: "position", "angular_momentum", ... (docs/properties.md lists all).
+  /// Valid until an object is created or destroyed. Row 0 is the padding row; `row_of` finds a body's.
+  Result<PropertyView> view(std::string_view property) const;
+  Result<std::uint32_t> row_of(BodyId body) const;
+  std::size_t memory_bytes() const;
+
+  /// FNV-1a, 64 bit, over state and solver memory in ascending id order; -0 counts as +0.
+  std::uint64_t hash() const;
+  /// All properties of role `state`, as bytes; restored bit for bit into a world with the same objects.
+  std::vector<std::byte> snapshot() const;
+  Status restore(std::span<const std::byte> snapshot);
+
+  /// The inside, for the library's own stages.
+  WorldState& state() { return *state_; }
+  const WorldState& state() const { return *state_; }
+
+ private:
+  std::unique_ptr<WorldState> state_;
+};
+
+/// Mass and moments of one shape about its own centre (the original's getInertiaMat), for a density [kg/m^3].
+Result<MassProperties> mass_properties(const ShapeDef& shape, double density);
+
+/// Several shapes as one body: finds the common centre of mass and principal axes, moves the shapes into
+/// that frame and `def.pose` with them, and fills in mass and moments. `def.shapes` are in the frame of
+/// `def.pose` before, in the principal frame after.
+Status make_compound(BodyDef& def);
+
+}  // namespace pcphys
