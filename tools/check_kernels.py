@@ -379,7 +379,7 @@ def split(tokens, separator):
 
 
 # ---- backends --------------------------------------------------------------------------------------
-REALS = {"Real", "float", "double", "Vec3", "Quad", "Quaternion", "Sym3", "Lanes", "vec3", "vec4", "dvec3", "dvec4"}
+REALS = {"Real", "Scalar", "float", "double", "Vec3", "Quad", "Quaternion", "Sym3", "Lanes", "vec3", "vec4", "dvec3", "dvec4"}
 FUNCTIONS = set("sqrt sin cos tan asin acos atan atan2 exp log pow fma floor ceil fabs hypot inversesqrt dot cross normalize length".split())
 
 
@@ -443,14 +443,17 @@ def check_backend(source):
 
 
 # ---- the tree --------------------------------------------------------------------------------------
+BACKENDS = ("cpu", "glcompute", "step")
+
+
 def is_kernel(path):
-    return path.suffix == ".inl"
+    return path.suffix == ".inl" and path.parent.name not in BACKENDS
 
 
 def tree(root):
     files = list(root.glob("src/kernels/*.inl"))
-    for folder in ("cpu", "glcompute", "step"):
-        for suffix in ("cpp", "h", "glsl"):
+    for folder in BACKENDS:
+        for suffix in ("cpp", "h", "inl", "glsl"):
             files += [f for f in root.glob(f"src/{folder}/*.{suffix}") if not re.match(r"(lanes|prelude).*\.h$", f.name)]
     return sorted(files)
 

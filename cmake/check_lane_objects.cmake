@@ -1,0 +1,23 @@
+# cmake -DOBJECTS=<a|b> -DOBJDUMP=... -DNM=... -P check_lane_objects.cmake
+# What flags alone cannot promise of the kernel objects: no fused multiply-add (it would end the equality of
+# bits), and no weak function (the linker could then run the copy for a processor that is not there).
+string(REPLACE "|" ";" objects "${OBJECTS}")
+foreach(object IN LISTS objects)
+  get_filename_component(name ${object} NAME)
+  if(NOT name MATCHES "^kernels_[fd][148]\\.")
+    continue()
+  endif()
+  execute_process(COMMAND ${OBJDUMP} -d --no-show-raw-insn ${object} OUTPUT_VARIABLE code COMMAND_ERROR_IS_FATAL ANY)
+  if(code MATCHES "[^\n]*vfn?m(add|sub)[^\n]*")
+    message(SEND_ERROR "${name} holds a fused multiply-add: ${CMAKE_MATCH_0}")
+  endif()
+  execute_process(COMMAND ${NM} -C ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+  if(symbols MATCHES "[^\n]* [WVu] [^\n]*")
+    message(SEND_ERROR "${name} holds a function that other files may share: ${CMAKE_MATCH_0}. Make it static or force it inline.")
+  endif()
+  message(STATUS "${name}: no fused multiply-add, no shared function")
+  math(EXPR checked "${checked} + 1")
+endforeach()
+if(NOT checked)
+  message(FATAL_ERROR "no kernel object was found among: ${OBJECTS}")
+endif()
