@@ -12,8 +12,9 @@ namespace pcphys {
 enum class Place : std::uint8_t { cpu, gl };
 const char* name(Place place);
 
-/// Which coefficients a kernel is given.
-enum class Phase : std::uint8_t { first, middle, biased, relax };
+/// Which coefficients a kernel is given: those of the step's start, of the solve, or of the relax pass.
+enum class Phase : std::uint8_t { first, biased, relax };
+inline constexpr unsigned phase_count = 3;
 
 enum class Kernel : std::uint8_t;
 enum class Buffer : std::uint8_t;

@@ -138,11 +138,11 @@ PC_FN SinCos pc_sincos(Real x) {
   precise Real quarter = k * PC_REAL(0.25); Real whole = pc_round(quarter); precise Real quadrant = k - whole * PC_REAL(4.0);
   precise Real off_odd = pc_abs(quadrant) - PC_REAL(1.0);
   Mask odd = pc_abs(off_odd) < PC_REAL(0.5);
-  Mask half = pc_abs(quadrant) > PC_REAL(1.5);
+  Mask opposite = pc_abs(quadrant) > PC_REAL(1.5);
   Real p = pc_select(odd, c, s); Real q = pc_select(odd, s, c);
   // quadrant 1: (c, -s); -1: (-c, s); 2: (-s, -c)
-  Mask negate_sine = pc_or(half, quadrant < PC_REAL(-0.5));
-  Mask negate_cosine = pc_or(half, quadrant > PC_REAL(0.5));
+  Mask negate_sine = pc_or(opposite, quadrant < PC_REAL(-0.5));
+  Mask negate_cosine = pc_or(opposite, quadrant > PC_REAL(0.5));
   SinCos o; o.sine = pc_select(negate_sine, -p, p); o.cosine = pc_select(negate_cosine, -q, q); return o;
 }
 

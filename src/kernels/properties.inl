@@ -75,3 +75,10 @@ PC_PROPERTY(contact, contact, 27, real, twist_impulse, state, 0, "N m s", "on b 
 PC_PROPERTY(contact, contact, 28, real, contact_static_friction, derived, 0, "1", "geometric mean of the two materials")
 PC_PROPERTY(contact, contact, 29, real, contact_kinetic_friction, derived, 0, "1", "geometric mean")
 PC_PROPERTY(contact, contact, 30, real, contact_restitution, derived, 0, "1", "arithmetic mean, as the original has it")
+
+PC_TABLE(shape, "what bodies collide with; read by the broad and narrow phase")
+PC_BUFFER(shape, shape, 3, "")
+PC_PROPERTY(shape, shape, 0, vec3, size, input, 0, "m", "sphere (radius), capsule and cylinder (radius, half length), box half extents")
+PC_PROPERTY(shape, shape, 3, real, shape_kind, input, 0, "1", "sphere, capsule, box, cylinder, plane: 0 to 4")
+PC_PROPERTY(shape, shape, 4, vec3, local_position, input, 0, "m", "in its body")
+PC_PROPERTY(shape, shape, 8, quat, local_orientation, input, 1, "1", "in its body")

@@ -61,7 +61,7 @@ const KernelSchema& schema(Kernel kernel) { return kernel_schemas[std::size_t(ke
 std::span<const PropertySchema> properties() { return property_schemas; }
 
 std::string_view name(Table table) {
-  constexpr std::string_view names[] = {"body", "joint", "contact"};
+  constexpr std::string_view names[] = {"body", "joint", "contact", "shape"};
   return names[std::size_t(table)];
 }
 std::string_view name(Stage stage) {

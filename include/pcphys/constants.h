@@ -1,0 +1,30 @@
+// Every tolerance and limit of the library, with its meaning.
+#pragma once
+
+namespace pcphys::constants {
+
+/// Lengths of shapes outside this interval are refused: float32 cannot resolve contacts between them [m].
+inline constexpr double smallest_extent = 1e-5, largest_extent = 1e6;
+/// Coordinates, velocities and other inputs beyond this are refused: their squares leave float32's range.
+inline constexpr double largest_input = 1e15;
+/// How far an orientation may be from unit length; closer ones are normalised.
+inline constexpr double unit_tolerance = 1e-3;
+/// An angle limit further out than this does not exist [rad].
+inline constexpr double free_angle = 1e9;
+/// Moments may violate the triangle inequality by this share, for rounding.
+inline constexpr double moment_tolerance = 1e-6;
+
+/// Soft contacts: angular frequency times sub-step, and damping ratio. Stiffness is tied to the sub-step, so
+/// overlap falls with its square. Fast enough to hold a pile, slow enough not to ring.
+inline constexpr double contact_frequency_times_h = 0.785398163397448;  // 2 pi / 8
+inline constexpr double contact_damping_ratio = 10;
+/// The same for joint rows, which carry more and may be stiffer.
+inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
+inline constexpr double joint_damping_ratio = 2;
+/// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
+inline constexpr double joint_push_speed = 8;
+
+/// Proxies of the broad phase are fattened by this, so that most steps change no pair [m].
+inline constexpr double broad_margin = 0.05;
+
+}  // namespace pcphys::constants

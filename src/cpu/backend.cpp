@@ -1,0 +1,80 @@
+// The CPU backend: kernels run in place on the world's tables, in the lane count that was chosen.
+#include <string>
+#include <vector>
+
+#include "cpu/kernels.h"
+#include "step/backend.h"
+#include "world/memory.h"
+
+namespace pcphys {
+namespace {
+
+class CpuBackend final : public Backend {
+ public:
+  explicit CpuBackend(const CpuKernels& kernels) : kernels_(kernels) {}
+
+  std::string device() const override { return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes"; }
+  std::uint32_t width() const override { return kernels_.lanes; }
+
+  Status attach(Buffer buffer, void* host, std::size_t) override {
+    buffers_[std::size_t(buffer)] = host;
+    return {};
+  }
+  Status reserve(Buffer buffer, std::size_t slots) override {
+    AlignedBytes& rows = scratch_[std::size_t(buffer)];
+    rows.resize(slots * schema(buffer).reals * (kernels_.f64 ? 8 : 4));
+    buffers_[std::size_t(buffer)] = rows.data();
+    return {};
+  }
+  Status upload(Buffer) override { return {}; }
+  Status download(Buffer) override { return {}; }
+  Status set_infos(const void* infos, std::size_t) override {
+    infos_ = static_cast<const std::byte*>(infos);
+    return {};
+  }
+  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool) override {
+    const std::size_t stride = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
+    KernelCall call{buffers_.data(), infos_ + info * stride, 0, 0};
+    for (const Range& range : ranges) {
+      call.begin = range.begin;
+      call.end = range.end;
+      kernels_.run[std::size_t(kernel)](call);
+    }
+    return {};
+  }
+  Status finish() override { return {}; }
+
+ private:
+  const CpuKernels& kernels_;
+  std::array<void*, buffer_count> buffers_{};
+  std::array<AlignedBytes, buffer_count> scratch_;
+  const std::byte* infos_ = nullptr;
+};
+
+/// The compiled kernels of that many lanes, or null where the build or the processor has none.
+const CpuKernels* find_kernels(Precision precision, std::uint32_t lanes) {
+  const bool f64 = precision == Precision::f64;
+  if (lanes == 1) return f64 ? &cpu_kernels_d1 : &cpu_kernels_f1;
+#ifdef PCPHYS_HAVE_X86_LANES
+  if (lanes == 4 && f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_d4;
+  if (lanes == 4 && !f64 && __builtin_cpu_supports("sse4.2")) return &cpu_kernels_f4;
+  if (lanes == 8 && !f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_f8;
+#endif
+  return nullptr;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint32_t lanes) {
+  const CpuKernels* kernels = nullptr;
+  if (lanes == 0)
+    for (std::uint32_t l : {8u, 4u, 1u}) kernels = kernels ? kernels : find_kernels(precision, l);
+  else
+    kernels = find_kernels(precision, lanes);
+  if (!kernels)
+    return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(lanes) + (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)" : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
+                                             " for this processor; use lanes 0 for the widest it has."};
+  return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels));
+}
+
+}  // namespace pcphys

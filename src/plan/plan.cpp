@@ -1,0 +1,104 @@
+#include "plan/plan.h"
+
+#include <algorithm>
+
+namespace pcphys {
+namespace {
+
+/// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
+class Builder {
+ public:
+  Builder(const PlanSignature& signature, StepPlan& plan) : signature_(signature), plan_(plan) {
+    for (std::size_t b = 0; b < buffer_count; b++) current_[b][std::size_t(Place::cpu)] = true;
+  }
+
+  void kernel(Kernel kernel, Phase phase, std::uint32_t substep) {
+    const KernelSchema& k = schema(kernel);
+    const Place place = signature_.places[std::size_t(k.stage)];
+    bool barrier = false;
+    for (const Access& a : k.accesses) {
+      if (is_rows(a.buffer)) {
+        barrier |= pending_[std::size_t(a.buffer)];
+      } else {
+        bring(a.buffer, place, substep);
+        barrier |= place == Place::gl && pending_[std::size_t(a.buffer)];
+      }
+    }
+    if (place == Place::gl && barrier) pending_.fill(false);
+    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, place == Place::gl && barrier, substep});
+    for (const Access& a : k.accesses) {
+      if (!a.write) continue;
+      if (place == Place::gl) pending_[std::size_t(a.buffer)] = true;
+      current_[std::size_t(a.buffer)][0] = place == Place::cpu;
+      current_[std::size_t(a.buffer)][1] = place == Place::gl;
+    }
+  }
+
+  /// What the host reads after a step: every buffer that holds state.
+  void results(std::uint32_t substep) {
+    for (std::size_t b = 0; b < table_buffer_count; b++)
+      if (holds_state(Buffer(b))) bring(Buffer(b), Place::cpu, substep);
+  }
+
+ private:
+  static bool is_rows(Buffer b) { return b >= Buffer::table_buffers && schema(b).reals > 0; }
+  static bool holds_state(Buffer b) {
+    return std::ranges::any_of(properties(), [&](const PropertySchema& p) { return p.buffer == b && p.role == Role::state; });
+  }
+
+  void bring(Buffer buffer, Place place, std::uint32_t substep) {
+    bool& here = current_[std::size_t(buffer)][std::size_t(place)];
+    if (here) return;
+    here = true;
+    const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
+    plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep});
+    if (kind == PlanEntry::Kind::download) pending_.fill(false);
+  }
+
+  const PlanSignature& signature_;
+  StepPlan& plan_;
+  std::array<std::array<bool, 2>, buffer_count> current_{};  // by Place
+  std::array<bool, buffer_count> pending_{};                 // written on GL since the last barrier
+};
+
+void leave_out(const PlanSignature& s, StepPlan& plan) {
+  const auto out = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
+  if (!s.bodies) out("integrate", "no body moves");
+  if (!s.joints) out("joints", "the world has no joints");
+  if (!s.shapes) out("collision", "no two shapes could ever touch");
+  if (!s.contacts) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
+  if (s.contacts && !s.restitution) out("restitution", "no contact has a restitution above zero");
+}
+
+}  // namespace
+
+StepPlan make_plan(const PlanSignature& s) {
+  StepPlan plan;
+  plan.substeps = s.substeps;
+  leave_out(s, plan);
+  if (!s.bodies) return plan;
+
+  Builder b(s, plan);
+  b.kernel(Kernel::begin, Phase::first, 0);
+  if (s.contacts) b.kernel(Kernel::contact_prepare, Phase::first, 0);
+  for (std::uint32_t k = 0; k < s.substeps; k++) {
+    if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);
+    b.kernel(Kernel::integrate, Phase::biased, k);
+    if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
+    if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+    if (s.contacts) b.kernel(Kernel::contact_solve, Phase::biased, k);
+    if (s.joints && s.contacts) b.kernel(Kernel::joint_solve, Phase::biased, k);
+    b.kernel(Kernel::advance, Phase::biased, k);
+    if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
+    if (s.contacts) b.kernel(Kernel::contact_solve, Phase::relax, k);
+  }
+  const std::uint32_t last = s.substeps - 1;
+  if (s.contacts && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
+  if (s.contacts) b.kernel(Kernel::contact_store, Phase::relax, last);
+  b.kernel(Kernel::synchronise, Phase::relax, last);
+  b.results(last);
+  return plan;
+}
+
+}  // namespace pcphys

@@ -1,0 +1,25 @@
+// Builds the step plan from what a world needs.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "pcphys/plan.h"
+#include "world/schema.h"
+
+namespace pcphys {
+
+/// Everything a plan depends on.
+struct PlanSignature {
+  std::uint32_t substeps = 4;
+  std::array<Place, stage_count> places{};  // by Stage
+  bool bodies = false;       // some move
+  bool joints = false;
+  bool shapes = false;       // some pair could ever touch
+  bool contacts = false;     // some do in this step
+  bool restitution = false;  // some contact bounces
+  friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
+};
+
+StepPlan make_plan(const PlanSignature& signature);
+
+}  // namespace pcphys

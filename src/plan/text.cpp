@@ -1,0 +1,63 @@
+// The plan as text, and the names in it.
+#include <string>
+
+#include "plan/plan.h"
+
+namespace pcphys {
+
+const char* name(Place place) { return place == Place::cpu ? "cpu" : "gl"; }
+std::string_view kernel_name(const PlanEntry& entry) { return entry.kind == PlanEntry::Kind::kernel ? schema(entry.kernel).name : std::string_view(); }
+std::string_view buffer_name(const PlanEntry& entry) { return entry.kind == PlanEntry::Kind::kernel ? std::string_view() : schema(entry.buffer).name; }
+std::string_view stage_name(const PlanEntry& entry) { return entry.kind == PlanEntry::Kind::kernel ? name(schema(entry.kernel).stage) : std::string_view("transfer"); }
+std::string_view phase_name(const PlanEntry& entry) {
+  constexpr std::string_view names[phase_count] = {"first", "biased", "relax"};
+  return names[std::size_t(entry.phase)];
+}
+
+namespace {
+std::vector<std::string_view> accessed(const PlanEntry& entry, bool write) {
+  std::vector<std::string_view> names;
+  if (entry.kind != PlanEntry::Kind::kernel) return names;
+  for (const Access& a : schema(entry.kernel).accesses)
+    if (a.write == write) names.push_back(schema(a.buffer).name);
+  return names;
+}
+void pad(std::string& line, std::size_t column) {
+  line.resize(line.size() < column ? column : line.size() + 1, ' ');
+}
+std::string join(const std::vector<std::string_view>& names) {
+  std::string s;
+  for (std::string_view n : names) s += (s.empty() ? "" : " ") + std::string(n);
+  return s;
+}
+}  // namespace
+
+std::vector<std::string_view> reads(const PlanEntry& entry) { return accessed(entry, false); }
+std::vector<std::string_view> writes(const PlanEntry& entry) { return accessed(entry, true); }
+
+std::string to_text(const StepPlan& plan) {
+  std::string text = "sub-steps " + std::to_string(plan.substeps) + "\n";
+  text += "sub  place stage      what                 phase   reads -> writes (B: waits for earlier writes)\n";
+  for (const PlanEntry& e : plan.entries) {
+    std::string line = std::to_string(e.substep);
+    pad(line, 5);
+    line += name(e.place);
+    pad(line, 11);
+    line += stage_name(e);
+    pad(line, 22);
+    if (e.kind == PlanEntry::Kind::kernel) {
+      line += kernel_name(e);
+      pad(line, 43);
+      line += phase_name(e);
+      pad(line, 51);
+      line += join(reads(e)) + " -> " + join(writes(e));
+    } else {
+      line += (e.kind == PlanEntry::Kind::upload ? "upload " : "download ") + std::string(buffer_name(e));
+    }
+    text += line + (e.barrier ? "  B\n" : "\n");
+  }
+  for (const LeftOut& l : plan.left_out) text += "left out: " + l.what + ", since " + l.why + "\n";
+  return text;
+}
+
+}  // namespace pcphys

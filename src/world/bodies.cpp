@@ -1,0 +1,355 @@
+// Bodies of a world: creating and destroying them, and what a host reads and writes of them.
+#include <cmath>
+
+#include "pcphys/constants.h"
+#include "world/state.h"
+#include "world/validate.h"
+
+namespace pcphys {
+namespace {
+
+Error stale(const char* what) {
+  return {ErrorCode::stale_id, std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
+}
+
+/// Mass and moments of a dynamic body: as given, or from its one shape.
+Result<MassProperties> mass_of(const BodyDef& def) {
+  if (def.moments) {
+    if (!def.mass) return Error{ErrorCode::bad_mass, "Moments of inertia are given without a mass; give both, or neither."};
+    return MassProperties{*def.mass, *def.moments};
+  }
+  if (def.shapes.empty()) return Error{ErrorCode::bad_mass, "A dynamic body without shapes needs a mass and moments of inertia."};
+  if (def.shapes.size() > 1 || def.shapes[0].local != Pose{})
+    return Error{ErrorCode::bad_mass, "A body's frame is its principal frame; pass a body of several or displaced shapes through make_compound first, or give mass and moments."};
+  Result<MassProperties> m = mass_properties(def.shapes[0], def.density);
+  if (!m || !def.mass) return m;
+  const double scale = *def.mass / m->mass;
+  return MassProperties{*def.mass, scale * m->moments};
+}
+
+Status check_body(const BodyDef& def, Quat& orientation) {
+  Status ok = check_finite(def.pose.position, "position of a body");
+  if (ok) ok = check_unit(orientation, "orientation of a body");
+  if (ok) ok = check_finite(def.velocity, "velocity of a body");
+  if (ok) ok = check_finite(def.angular_velocity, "angular velocity of a body");
+  if (ok) ok = check(def.material);
+  if (ok) ok = check_finite(def.linear_drag, "linear drag of a body");
+  if (ok) ok = check_finite(def.angular_drag, "angular drag of a body");
+  if (ok && (def.linear_drag < 0 || def.angular_drag < 0)) ok = Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
+  for (const ShapeDef& shape : def.shapes) {
+    if (ok) ok = check(shape);
+    if (ok && shape.kind == ShapeKind::plane && def.kind != BodyKind::fixed) ok = Error{ErrorCode::degenerate_shape, "A plane is infinite; use it on fixed bodies only."};
+  }
+  return ok;
+}
+
+void write_material(Tables& t, std::uint32_t row, const Material& m) {
+  t.set(Buffer::material, row, 0, m.static_friction);
+  t.set(Buffer::material, row, 1, m.kinetic_friction);
+  t.set(Buffer::material, row, 2, m.restitution);
+}
+
+std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) {
+  std::uint32_t index;
+  if (s.free_shapes.empty()) {
+    index = std::uint32_t(s.shapes.size());
+    s.shapes.emplace_back();
+    s.tables.resize(Table::shape, index + 2);
+  } else {
+    index = s.free_shapes.back();
+    s.free_shapes.pop_back();
+  }
+  s.shapes[index] = {body, def.filter, def, true};
+  const std::uint32_t row = index + 1;
+  s.tables.set3(Buffer::shape, row, 0, def.size);
+  s.tables.set(Buffer::shape, row, 3, double(def.kind));
+  s.tables.set3(Buffer::shape, row, 4, def.local.position);
+  s.tables.set4(Buffer::shape, row, 8, def.local.orientation);
+  return index;
+}
+
+}  // namespace
+
+World::World(const WorldDef& def) : state_(std::make_unique<WorldState>(def)) {}
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+BodyId World::ground() const { return state_->body_ids.id<BodyId>(0); }
+bool World::valid(BodyId body) const { return state_->body_ids.valid(body); }
+std::size_t World::body_count() const { return state_->body_ids.count() - 1; }
+Precision World::precision() const { return state_->tables.precision(); }
+Vec3 World::gravity() const { return state_->gravity; }
+
+Status World::set_gravity(Vec3 gravity) {
+  if (Status ok = check_finite(gravity, "gravity"); !ok) return ok;
+  state_->gravity = gravity;
+  return {};
+}
+
+Result<BodyId> World::create_body(const BodyDef& def) {
+  Quat orientation = def.pose.orientation;
+  if (Status ok = check_body(def, orientation); !ok) return ok.error();
+  MassProperties mass;
+  if (def.kind == BodyKind::dynamic) {
+    Result<MassProperties> m = mass_of(def);
+    if (!m) return m.error();
+    if (Status ok = check(*m); !ok) return ok.error();
+    mass = *m;
+  }
+
+  WorldState& s = *state_;
+  const std::uint32_t row = std::uint32_t(s.bodies.size());
+  const std::uint32_t index = s.body_ids.allocate(row);
+  s.bodies.push_back({index, def.kind, {}});
+  s.tables.resize(Table::body, row + 1);
+  s.set_position(row, def.pose.position);
+  s.tables.set4(Buffer::pose, row, 4, orientation);
+  if (def.kind == BodyKind::dynamic) s.set_mass(row, mass);
+  if (def.kind == BodyKind::kinematic) s.tables.set3(Buffer::mass, row, 4, {1, 1, 1});
+  if (def.kind != BodyKind::fixed) {
+    s.tables.set3(Buffer::motion, row, 0, def.velocity);
+    s.set_angular_velocity(row, def.angular_velocity);
+    s.bring_in_phase(row);
+  }
+  write_material(s.tables, row, def.material);
+  s.tables.set(Buffer::force, row, 3, def.linear_drag);
+  s.tables.set(Buffer::force, row, 7, def.angular_drag);
+  for (const ShapeDef& shape : def.shapes) s.bodies[row].shapes.push_back(new_shape(s, index, shape));
+  s.structure_version++;
+  return s.body_ids.id<BodyId>(index);
+}
+
+Status World::destroy(BodyId body) {
+  WorldState& s = *state_;
+  if (!s.body_ids.valid(body)) return stale("body");
+  if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
+  for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
+    if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index)
+      (void)destroy(s.joint_ids.id<JointId>(s.joints[row].index));
+  for (std::uint32_t f = 0; f < s.forces.size(); f++)
+    if (s.force_ids.alive(f) && s.forces[f].body == body.index) (void)remove(s.force_ids.id<ForceId>(f));
+  const std::uint32_t row = s.body_ids.row(body.index), last = std::uint32_t(s.bodies.size()) - 1;
+  for (std::uint32_t shape : s.bodies[row].shapes) {
+    s.shapes[shape].alive = false;
+    s.free_shapes.push_back(shape);
+  }
+  std::erase_if(s.no_collide, [&](const auto& pair) { return pair.first >> 32 == body.index || (pair.first & 0xffffffffu) == body.index; });
+  if (row != last) {
+    s.tables.copy_row(Table::body, last, row);
+    s.bodies[row] = std::move(s.bodies[last]);
+    s.body_ids.set_row(s.bodies[row].index, row);
+  }
+  s.bodies.pop_back();
+  s.tables.resize(Table::body, last);
+  s.body_ids.release(body.index);
+  s.structure_version++;
+  return {};
+}
+
+std::vector<BodyId> World::bodies() const {
+  std::vector<BodyId> ids;
+  for (std::uint32_t i = 1; i < state_->body_ids.size(); i++)
+    if (state_->body_ids.alive(i)) ids.push_back(state_->body_ids.id<BodyId>(i));
+  return ids;
+}
+
+Result<std::uint32_t> World::row_of(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  return state_->body_ids.row(body.index);
+}
+Result<BodyKind> World::kind(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  return state_->bodies[state_->body_ids.row(body.index)].kind;
+}
+
+// ---- state ---------------------------------------------------------------------------------------------
+
+Result<Pose> World::pose(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  return state_->pose(state_->body_ids.row(body.index));
+}
+
+Status World::set_pose(BodyId body, const Pose& pose) {
+  if (!valid(body)) return stale("body");
+  if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground stays at the origin; create a fixed body for anything else."};
+  Quat q = pose.orientation;
+  if (Status ok = check_finite(pose.position, "position of a body"); !ok) return ok;
+  if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
+  WorldState& s = *state_;
+  const std::uint32_t row = s.body_ids.row(body.index);
+  const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.tables.get4(Buffer::pose, row, 4));
+  const Vec3 w = s.angular_velocity(row);
+  s.set_position(row, pose.position);
+  s.tables.set4(Buffer::pose, row, 4, q);
+  if (spins) {  // the angular velocity stays, so the momentum changes
+    s.bring_in_phase(row);
+    s.set_angular_velocity(row, w);
+  }
+  s.pose_version++;
+  return {};
+}
+
+Result<Vec3> World::velocity(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  return state_->velocity(state_->body_ids.row(body.index));
+}
+
+Status World::set_velocity(BodyId body, Vec3 velocity) {
+  if (!valid(body)) return stale("body");
+  if (Status ok = check_finite(velocity, "velocity of a body"); !ok) return ok;
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  if (state_->bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
+  state_->bring_in_phase(row);
+  state_->tables.set3(Buffer::motion, row, 0, velocity);
+  return {};
+}
+
+Result<Vec3> World::angular_velocity(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  return state_->angular_velocity(state_->body_ids.row(body.index));
+}
+
+Status World::set_angular_velocity(BodyId body, Vec3 w) {
+  if (!valid(body)) return stale("body");
+  if (Status ok = check_finite(w, "angular velocity of a body"); !ok) return ok;
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  if (state_->bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
+  state_->bring_in_phase(row);
+  state_->set_angular_velocity(row, w);
+  return {};
+}
+
+Result<Vec3> World::angular_momentum(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  return state_->bodies[row].kind == BodyKind::dynamic ? state_->momentum_of_rotation(row) : Vec3{};
+}
+
+namespace {
+Status need_substep(const WorldState& s) {
+  if (s.last_substep > 0) return {};
+  return Error{ErrorCode::bad_time_step, "Last positions are one sub-step ago, and no step has been made yet; set a velocity instead."};
+}
+}  // namespace
+
+Result<Vec3> World::position_last(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  if (Status ok = need_substep(*state_); !ok) return ok.error();
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  return state_->pose(row).position - state_->last_substep * state_->tables.get3(Buffer::motion, row, 0);
+}
+
+Status World::set_position_last(BodyId body, Vec3 position) {
+  if (!valid(body)) return stale("body");
+  if (Status ok = need_substep(*state_); !ok) return ok;
+  if (Status ok = check_finite(position, "last position of a body"); !ok) return ok;
+  WorldState& s = *state_;
+  const std::uint32_t row = s.body_ids.row(body.index);
+  if (s.bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
+  s.tables.set3(Buffer::motion, row, 0, (1 / s.last_substep) * (s.pose(row).position - position));
+  s.tables.set3(Buffer::half_change, row, 0, {});
+  if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
+  return {};
+}
+
+Result<Quat> World::orientation_last(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  if (Status ok = need_substep(*state_); !ok) return ok.error();
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  const Quat q = state_->tables.get4(Buffer::pose, row, 4);
+  const Vec3 pi = rotate(conjugate(q), state_->tables.get3(Buffer::motion, row, 4)), i = state_->tables.get3(Buffer::mass, row, 4);
+  const Vec3 w = rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
+  const double speed = length(w);
+  if (speed == 0) return q;
+  return axis_angle((1 / speed) * w, -speed * state_->last_substep) * q;
+}
+
+Status World::set_orientation_last(BodyId body, Quat last) {
+  if (!valid(body)) return stale("body");
+  if (Status ok = need_substep(*state_); !ok) return ok;
+  if (Status ok = check_unit(last, "last orientation of a body"); !ok) return ok;
+  WorldState& s = *state_;
+  const std::uint32_t row = s.body_ids.row(body.index);
+  if (s.bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
+  // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
+  Quat d = s.tables.get4(Buffer::pose, row, 4) * conjugate(last);
+  if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
+  const double sine = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), angle = 2 * std::atan2(sine, d.w);
+  const double rate = sine > 0 ? angle / (sine * s.last_substep) : 0;
+  s.set_angular_velocity(row, {rate * d.x, rate * d.y, rate * d.z});
+  s.tables.set3(Buffer::half_change, row, 4, {});
+  if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
+  return {};
+}
+
+// ---- inputs --------------------------------------------------------------------------------------------
+
+Result<MassProperties> World::mass_properties(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  return MassProperties{state_->tables.get(Buffer::mass, row, 3), state_->tables.get3(Buffer::mass, row, 0)};
+}
+
+Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
+  if (!valid(body)) return stale("body");
+  if (Status ok = check(mass); !ok) return ok;
+  WorldState& s = *state_;
+  const std::uint32_t row = s.body_ids.row(body.index);
+  if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
+  const Vec3 w = s.angular_velocity(row);
+  s.set_mass(row, mass);
+  s.bring_in_phase(row);
+  s.set_angular_velocity(row, w);
+  return {};
+}
+
+Result<Material> World::material(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  const Tables& t = state_->tables;
+  return Material{t.get(Buffer::material, row, 0), t.get(Buffer::material, row, 1), t.get(Buffer::material, row, 2)};
+}
+
+Status World::set_material(BodyId body, const Material& material) {
+  if (!valid(body)) return stale("body");
+  if (Status ok = check(material); !ok) return ok;
+  write_material(state_->tables, state_->body_ids.row(body.index), material);
+  return {};
+}
+
+Status World::set_drag(BodyId body, double linear, double angular) {
+  if (!valid(body)) return stale("body");
+  if (Status ok = check_finite(linear, "linear drag of a body"); !ok) return ok;
+  if (Status ok = check_finite(angular, "angular drag of a body"); !ok) return ok;
+  if (linear < 0 || angular < 0) return Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  state_->tables.set(Buffer::force, row, 3, linear);
+  state_->tables.set(Buffer::force, row, 7, angular);
+  return {};
+}
+
+Result<std::vector<ShapeDef>> World::shapes(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  std::vector<ShapeDef> defs;
+  for (std::uint32_t shape : state_->bodies[state_->body_ids.row(body.index)].shapes) defs.push_back(state_->shapes[shape].def);
+  return defs;
+}
+
+Status World::set_filter(BodyId body, const Filter& filter) {
+  if (!valid(body)) return stale("body");
+  for (std::uint32_t shape : state_->bodies[state_->body_ids.row(body.index)].shapes)
+    state_->shapes[shape].filter = state_->shapes[shape].def.filter = filter;
+  state_->structure_version++;
+  return {};
+}
+
+Status World::set_collide(BodyId a, BodyId b, bool collide) {
+  if (!valid(a) || !valid(b)) return stale("body");
+  if (collide) state_->no_collide.erase(WorldState::pair_key(a.index, b.index));
+  else state_->no_collide[WorldState::pair_key(a.index, b.index)]++;
+  state_->structure_version++;
+  return {};
+}
+
+}  // namespace pcphys

@@ -1,0 +1,57 @@
+// Hands out indices, smallest free first, and generations: which id an object gets depends only on the
+// sequence of calls. Also keeps each index's row in its table.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace pcphys {
+
+class IdPool {
+ public:
+  struct Slot {
+    std::uint32_t generation = 0, row = 0;
+    bool alive = false;
+  };
+
+  std::uint32_t allocate(std::uint32_t row) {
+    std::uint32_t index;
+    if (free_.empty()) {
+      index = std::uint32_t(slots_.size());
+      slots_.emplace_back();
+    } else {
+      std::pop_heap(free_.begin(), free_.end(), std::greater<>());
+      index = free_.back();
+      free_.pop_back();
+    }
+    slots_[index].generation++;
+    slots_[index].row = row;
+    slots_[index].alive = true;
+    alive_++;
+    return index;
+  }
+  void release(std::uint32_t index) {
+    slots_[index].alive = false;
+    alive_--;
+    free_.push_back(index);
+    std::push_heap(free_.begin(), free_.end(), std::greater<>());
+  }
+  template <class Id> bool valid(Id id) const {
+    return id.index < slots_.size() && slots_[id.index].alive && slots_[id.index].generation == id.generation;
+  }
+  template <class Id> Id id(std::uint32_t index) const { return {index, slots_[index].generation}; }
+  std::uint32_t row(std::uint32_t index) const { return slots_[index].row; }
+  void set_row(std::uint32_t index, std::uint32_t row) { slots_[index].row = row; }
+  bool alive(std::uint32_t index) const { return slots_[index].alive; }
+  std::uint32_t generation(std::uint32_t index) const { return slots_[index].generation; }
+  std::uint32_t size() const { return std::uint32_t(slots_.size()); }  // indices ever used
+  std::uint32_t count() const { return alive_; }
+
+ private:
+  std::vector<Slot> slots_;
+  std::vector<std::uint32_t> free_;  // min-heap
+  std::uint32_t alive_ = 0;
+};
+
+}  // namespace pcphys

@@ -1,0 +1,86 @@
+#include "world/state.h"
+
+#include <algorithm>
+
+namespace pcphys {
+
+WorldState::WorldState(const WorldDef& def) : tables(def.precision), gravity(def.gravity) {
+  // the ground: id index 0, row 0
+  body_ids.allocate(0);
+  bodies.push_back({0, BodyKind::fixed, {}});
+  joints.emplace_back();
+  contacts.keys.resize(1);
+  contacts.ends.resize(1);
+  contacts.features.resize(1);
+}
+
+Pose WorldState::pose(std::uint32_t row) const {
+  return {tables.get3(Buffer::pose, row, 0) + tables.get3(Buffer::pose, row, 8), tables.get4(Buffer::pose, row, 4)};
+}
+
+void WorldState::set_position(std::uint32_t row, Vec3 position) {
+  tables.set3(Buffer::pose, row, 0, position);
+  tables.set3(Buffer::pose, row, 8, position - tables.get3(Buffer::pose, row, 0));
+}
+
+Vec3 WorldState::velocity(std::uint32_t row) const {
+  return tables.get3(Buffer::motion, row, 0) + tables.get3(Buffer::half_change, row, 0);
+}
+
+Vec3 WorldState::momentum_of_rotation(std::uint32_t row) const {
+  return tables.get3(Buffer::motion, row, 4) + tables.get3(Buffer::half_change, row, 4);
+}
+
+Vec3 WorldState::angular_velocity(std::uint32_t row) const {
+  const Quat q = tables.get4(Buffer::pose, row, 4);
+  const Vec3 pi = rotate(conjugate(q), momentum_of_rotation(row)), i = tables.get3(Buffer::mass, row, 4);
+  return rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
+}
+
+void WorldState::bring_in_phase(std::uint32_t row) {
+  if (bodies[row].kind != BodyKind::dynamic) return;
+  const Vec3 v = velocity(row), l = momentum_of_rotation(row);
+  tables.set3(Buffer::motion, row, 0, v);
+  tables.set3(Buffer::motion, row, 4, l);
+  tables.set(Buffer::motion, row, 7, -1);
+  tables.set3(Buffer::half_change, row, 0, {});
+  tables.set3(Buffer::half_change, row, 4, {});
+}
+
+void WorldState::set_angular_velocity(std::uint32_t row, Vec3 w) {
+  if (bodies[row].kind == BodyKind::kinematic) {
+    tables.set3(Buffer::motion, row, 4, w);
+    return;
+  }
+  const Quat q = tables.get4(Buffer::pose, row, 4);
+  const Vec3 local = rotate(conjugate(q), w), i = tables.get3(Buffer::mass, row, 0);
+  tables.set3(Buffer::motion, row, 4, rotate(q, {i.x * local.x, i.y * local.y, i.z * local.z}));
+}
+
+void WorldState::set_mass(std::uint32_t row, const MassProperties& m) {
+  const Vec3 i = m.moments;
+  tables.set3(Buffer::mass, row, 0, i);
+  tables.set(Buffer::mass, row, 3, m.mass);
+  tables.set3(Buffer::mass, row, 4, {1 / i.x, 1 / i.y, 1 / i.z});
+  tables.set(Buffer::motion, row, 3, 1 / m.mass);
+  // the middle of three: not the smallest and not the largest, ties to any of the equal ones
+  const double low = std::min({i.x, i.y, i.z}), high = std::max({i.x, i.y, i.z});
+  const double values[3] = {i.x, i.y, i.z};
+  int smallest = 0, largest = 2;
+  for (int k = 2; k >= 0; k--) if (values[k] == low) smallest = k;
+  for (int k = 0; k < 3; k++) if (values[k] == high && k != smallest) largest = k;
+  tables.set(Buffer::mass, row, 7, 3 - smallest - largest);
+}
+
+void WorldState::sum_forces(std::uint32_t row) {
+  Vec3 force, torque;
+  for (std::uint32_t f = 0; f < forces.size(); f++) {
+    if (!force_ids.alive(f) || forces[f].body != bodies[row].index || forces[f].callback) continue;
+    force = force + forces[f].wrench.force;
+    torque = torque + forces[f].wrench.torque;
+  }
+  tables.set3(Buffer::force, row, 0, force);
+  tables.set3(Buffer::force, row, 4, torque);
+}
+
+}  // namespace pcphys

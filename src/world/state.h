@@ -1,0 +1,88 @@
+// The inside of a world: tables, ids, and the host-side columns that no kernel reads.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "pcphys/world.h"
+#include "world/id_pool.h"
+#include "world/tables.h"
+
+namespace pcphys {
+
+/// Host columns of a body row.
+struct BodyRecord {
+  std::uint32_t index = 0;  // of its id
+  BodyKind kind = BodyKind::fixed;
+  std::vector<std::uint32_t> shapes;  // shape indices
+};
+struct JointRecord {
+  std::uint32_t index = 0;
+  std::uint32_t body_a = 0, body_b = 0;  // id indices
+  JointDef def;
+};
+/// Host columns of a shape; the shape table's row is index + 1 (row 0 pads).
+struct ShapeRecord {
+  std::uint32_t body = 0;  // id index
+  Filter filter;
+  ShapeDef def;
+  bool alive = false;
+};
+struct ForceRecord {
+  std::uint32_t body = 0;  // id index
+  Wrench wrench;
+  ForceCallback callback;
+};
+
+/// Which shapes a contact row is between (shape_a < shape_b), the body rows, and its points' features.
+/// In ascending order of the key; `ends` follows the contact's normal, which points from a to b.
+struct ContactKey {
+  std::uint32_t shape_a = 0, shape_b = 0;
+  friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
+};
+struct ContactColumns {
+  std::vector<ContactKey> keys;                       // by row; row 0 pads
+  std::vector<std::array<std::uint32_t, 2>> ends;     // body rows
+  std::vector<std::array<std::uint32_t, 4>> features;
+};
+
+struct WorldState {
+  explicit WorldState(const WorldDef& def);
+
+  Tables tables;
+  Vec3 gravity;
+  double last_substep = 0;  // h of the last step [s]; 0 before the first
+
+  IdPool body_ids, joint_ids, force_ids;
+  std::vector<BodyRecord> bodies;    // by row
+  std::vector<JointRecord> joints;   // by row; row 0 pads
+  std::vector<ShapeRecord> shapes;   // by shape index
+  std::vector<std::uint32_t> free_shapes;
+  std::vector<ForceRecord> forces;   // by force index
+  std::uint32_t callbacks = 0;       // how many of them are callbacks
+  ContactColumns contacts;
+  std::unordered_map<std::uint64_t, int> no_collide;  // pairs of body id indices, with how many reasons
+
+  /// Counters that a stepper compares with what it saw last.
+  std::uint64_t structure_version = 1;  // objects, kinds, filters
+  std::uint64_t pose_version = 1;       // poses written by the host, snapshots restored
+
+  std::uint32_t contact_rows() const { return tables.rows(Table::contact); }
+  static std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a); }
+
+  // borders of a row, in double
+  Pose pose(std::uint32_t row) const;
+  void set_position(std::uint32_t row, Vec3 position);
+  Vec3 velocity(std::uint32_t row) const;
+  Vec3 momentum_of_rotation(std::uint32_t row) const;
+  Vec3 angular_velocity(std::uint32_t row) const;
+  /// Makes the stored velocities those in phase with the position, so that one of them may be set.
+  void bring_in_phase(std::uint32_t row);
+  void set_angular_velocity(std::uint32_t row, Vec3 w);
+  void set_mass(std::uint32_t row, const MassProperties& mass);
+  /// Writes the sum of a body's forces into the table; `world` is what callbacks are given.
+  void sum_forces(std::uint32_t row);
+};
+
+}  // namespace pcphys

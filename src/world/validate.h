@@ -1,0 +1,17 @@
+// Checks of everything a host hands in. Each error says what was wrong and what to do.
+#pragma once
+#include "pcphys/result.h"
+#include "pcphys/types.h"
+
+namespace pcphys {
+
+Status check_finite(double value, const char* what);
+Status check_finite(Vec3 value, const char* what);
+/// Finite and of unit length within the tolerance; then normalised in place.
+Status check_unit(Quat& value, const char* what);
+Status check(const ShapeDef& shape);
+Status check(const Material& material);
+Status check(const MassProperties& mass);
+Status check(AngleFreedom& freedom);
+
+}  // namespace pcphys
