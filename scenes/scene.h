@@ -1,0 +1,65 @@
+// Named scenes, shared by the command, the examples, the tests and the benchmarks. Y is up, SI units.
+// balls, ragdolls, pyramid, stack, chain, chainswing and heavy have the numbers of the programs that
+// measured the peer engines (tests/data/scenes.csv), so that figures can be put side by side.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcphys/result.h"
+#include "pcphys/types.h"
+#include "pcphys/world.h"
+
+namespace pcphys::scenes {
+
+struct SceneOptions {
+  std::optional<int> count;           // what it counts is in the scene's description
+  double ratio = 100;                 // mass ratio of chain, chainswing and heavy
+  std::optional<std::uint64_t> seed;  // of the random draws; the scene's own when absent
+};
+
+/// What metrics need to know of a body.
+struct SceneBody {
+  BodyId id;
+  BodyKind kind = BodyKind::dynamic;
+  ShapeDef shape;
+  Pose start;
+  int group = 0;  // ragdoll or chain, from 1; 0: none
+  int bone = 0;   // index within the group
+};
+
+/// A box that was put on another one, or on the floor y = 0.
+struct Support {
+  int upper = 0;
+  int lower = -1;  // -1: the floor
+};
+
+/// A built scene: the objects in the order of their creation, and what it was meant to look like.
+struct Scene {
+  std::string name;
+  int count = 0;
+  double ratio = 1;
+  std::vector<SceneBody> bodies;  // fixed ones too
+  std::vector<JointId> joints;
+  std::vector<Support> supports;
+  double inner_width = 0;       // of the open-lidded box; 0: there is none [m]
+  double wall_height = 0;       // [m]
+  std::optional<double> floor;  // height of the ground, where there is one [m]
+};
+
+struct SceneInfo {
+  std::string_view name;
+  std::string_view description;
+  int default_count, max_count;
+};
+
+std::span<const SceneInfo> list();
+
+/// Builds a scene into an empty world, and sets the world's gravity to (0, -9.81, 0).
+/// Errors: unknown_name; bad_argument for a count or ratio outside its range.
+Result<Scene> make(std::string_view name, const SceneOptions& options, World& world);
+
+}  // namespace pcphys::scenes
