@@ -1,0 +1,158 @@
+#include "glcompute/program_source.h"
+
+#include <charconv>
+#include <string_view>
+
+#include "embedded.h"
+
+namespace pcphys {
+namespace {
+
+std::string number(std::uint64_t value) { return std::to_string(value); }
+
+/// Copies embedded texts: resolves #include, replaces PC_REAL(literal), drops comments, keeps line numbers.
+class Text {
+ public:
+  explicit Text(Precision precision) : precision_(precision) { files_.push_back("generated"); }
+
+  void add(std::string_view text) { text_ += text; }
+  Status include(std::string_view file);
+  ProgramSource take() { return {std::move(text_), std::move(files_)}; }
+
+ private:
+  Status line(std::string_view text, std::size_t file, std::uint32_t at);
+  Status constants(std::string_view text, std::string_view file, std::uint32_t at);
+  void locate(std::size_t file, std::uint32_t at) { text_ += "#line " + number(at) + " " + number(file) + "\n"; }
+  std::string literal(double value) const;
+
+  Precision precision_;
+  std::string text_;
+  std::vector<std::string> files_;
+};
+
+Status Text::include(std::string_view file) {
+  const char* text = embedded_source(file);
+  if (text == nullptr) return Error{ErrorCode::unknown_name, "There is no embedded kernel text called " + std::string(file) + "."};
+  const std::size_t index = files_.size();
+  files_.emplace_back(file);
+  locate(index, 1);
+  std::string_view rest = text;
+  for (std::uint32_t at = 1; !rest.empty(); at++) {
+    const std::size_t end = rest.find('\n');
+    if (Status status = line(rest.substr(0, end), index, at); !status) return status;
+    rest = end == rest.npos ? std::string_view() : rest.substr(end + 1);
+  }
+  return {};
+}
+
+Status Text::line(std::string_view text, std::size_t file, std::uint32_t at) {
+  text = text.substr(0, text.find("//"));
+  constexpr std::string_view directive = "#include \"";
+  if (text.starts_with(directive)) {
+    const std::string_view name = text.substr(directive.size(), text.find('"', directive.size()) - directive.size());
+    if (Status status = include(name); !status) return status;
+    locate(file, at + 1);
+    return {};
+  }
+  if (Status status = constants(text, files_[file], at); !status) return status;
+  text_ += '\n';
+  return {};
+}
+
+/// A constant means the same number here as in C++: read as double, rounded to the precision, written
+/// with as many digits as give it back. (GLSL's own reading of decimals may round differently.)
+Status Text::constants(std::string_view text, std::string_view file, std::uint32_t at) {
+  constexpr std::string_view marker = "PC_REAL(";
+  for (std::size_t i = text.find(marker); i != text.npos; i = text.find(marker)) {
+    text_ += text.substr(0, i);
+    text.remove_prefix(i + marker.size());
+    double value = 0;
+    const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (code != std::errc() || end == text.data() + text.size() || *end != ')')
+      return Error{ErrorCode::bad_argument, "PC_REAL at " + std::string(file) + ":" + number(at) + " holds no decimal number; write one, such as PC_REAL(0.5)."};
+    text_ += literal(value);
+    text.remove_prefix(std::size_t(end - text.data()) + 1);
+  }
+  text_ += text;
+  return {};
+}
+
+std::string Text::literal(double value) const {
+  char digits[64];
+  const bool single = precision_ == Precision::f32;
+  const auto end = single ? std::to_chars(digits, digits + sizeof digits, static_cast<float>(value)).ptr
+                          : std::to_chars(digits, digits + sizeof digits, value).ptr;
+  std::string text(digits, end);
+  if (text.find_first_of(".e") == text.npos) text += ".0";
+  text += single ? "f" : "lf";
+  return text.front() == '-' ? "(" + text + ")" : text;
+}
+
+const char* form_suffix(RoundingForm form) { return form == RoundingForm::none ? "builtin" : name(form); }
+
+std::string head(const SourceOptions& options) {
+  std::string text = "#version 430\n";
+  if (options.precision == Precision::f64) text += "#define PC_DOUBLE\n";
+  text += "#define PC_W " + number(gl_width) + "u\n";
+  text += std::string("#define pc_div pc_div_") + form_suffix(options.division) + "\n";
+  text += std::string("#define pc_sqrt pc_sqrt_") + form_suffix(options.square_root) + "\n";
+  return text;
+}
+
+std::string buffer_declarations(const KernelSchema& kernel) {
+  std::string text;
+  std::uint32_t binding = 0;
+  for (const Access& access : kernel.accesses) {
+    const BufferSchema& buffer = schema(access.buffer);
+    const std::string label(buffer.name);
+    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (access.write ? "" : "readonly ") + "buffer Block_" + label +
+            " { " + (buffer.reals == 0 ? "uint" : "Real4") + " io_" + label + "[]; };\n";
+    if (buffer.reals != 0) text += "#define quads_" + label + " " + number(quads(access.buffer)) + "u\n";
+  }
+  return text;
+}
+
+std::string info_declaration() {
+  std::string text = "layout(std140, binding = 0) uniform PcInfo {\n";
+#define PC_INFO_FIELD(name, doc) text += "  Real " #name ";\n";
+#include "kernels/info.inl"
+#undef PC_INFO_FIELD
+  return text + "} pc_info;\n";
+}
+
+std::string main_text(Domain domain, std::uint32_t local_size) {
+  std::string text = "layout(local_size_x = " + number(local_size) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
+  text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n" : "  pc_kernel(Slot(k / PC_W, k % PC_W));\n";
+  return text + "}\n";
+}
+
+}  // namespace
+
+std::uint32_t quads(Buffer buffer) { return schema(buffer).reals == 0 ? 1 : schema(buffer).reals / 4; }
+
+Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options) {
+  const KernelSchema& what = schema(kernel);
+  Text text(options.precision);
+  text.add(head(options));
+  if (Status status = text.include("prelude.glsl"); !status) return status.error();
+  text.add("#line 1 0\n" + buffer_declarations(what) + info_declaration());
+  if (Status status = text.include(std::string(what.name) + ".inl"); !status) return status.error();
+  text.add("#line 1 0\n" + main_text(what.domain, options.local_size));
+  return text.take();
+}
+
+Result<ProgramSource> probe_source(Precision precision) {
+  Text text(precision);
+  text.add(head({precision}));
+  if (Status status = text.include("prelude.glsl"); !status) return status.error();
+  if (Status status = text.include("probe.glsl"); !status) return status.error();
+  return text.take();
+}
+
+const char* name(RoundingForm form) {
+  constexpr const char* names[] = {"builtin", "fma", "nearest", "none"};
+  return names[std::size_t(form)];
+}
+
+}  // namespace pcphys

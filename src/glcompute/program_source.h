@@ -1,0 +1,36 @@
+// Puts GLSL programs together from the embedded texts: the prelude, the declarations that follow from a
+// kernel's accesses, the kernel, and main().
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pcphys/device.h"
+#include "pcphys/result.h"
+#include "pcphys/types.h"
+#include "world/schema.h"
+
+namespace pcphys {
+
+/// Lanes side by side in the arrays of structures of arrays on the GPU.
+inline constexpr std::uint32_t gl_width = 32;
+
+struct SourceOptions {
+  Precision precision = Precision::f32;
+  RoundingForm division = RoundingForm::builtin;
+  RoundingForm square_root = RoundingForm::builtin;
+  std::uint32_t local_size = 64;
+};
+
+struct ProgramSource {
+  std::string text;
+  std::vector<std::string> files;  // by the number that #line gives them, for the driver's messages
+};
+
+Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options);
+Result<ProgramSource> probe_source(Precision precision);
+
+/// Length of a buffer's row in the elements that GLSL sees: Real4, or unsigned integers (1).
+std::uint32_t quads(Buffer buffer);
+
+}  // namespace pcphys
