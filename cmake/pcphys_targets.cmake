@@ -43,6 +43,10 @@ function(pcphys_set_lane_flags)
     endif()
     set_source_files_properties(${PROJECT_SOURCE_DIR}/src/cpu/kernels_${name}.cpp PROPERTIES COMPILE_OPTIONS "${flags}")
   endforeach()
+  set(flags ${PCPHYS_KERNEL_FLAGS} $<$<NOT:$<CONFIG:Debug>>:-O3>)
+  foreach(name narrow_f narrow_d)
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/src/collision/${name}.cpp PROPERTIES COMPILE_OPTIONS "${flags}")
+  endforeach()
 endfunction()
 
 # Puts the text of the files into the library as `pcphys::embedded_source(name)`, so that a host ships no shader files.

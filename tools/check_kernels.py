@@ -5,7 +5,7 @@
     tools/check_kernels.py FILE...             some files
     tools/check_kernels.py --self-test FOLDER  samples whose `// expect: RULE` comments must match
 
-In src/kernels/*.inl (the common subset of C++20 and GLSL):
+In src/kernels/**/*.inl (the common subset of C++20 and GLSL):
     call      only pc_ and PC_ names, functions of the kernels, and constructors may be called
     division  no operator / on reals: devices round it differently
     precise   a sum, difference or product of reals is the initialiser of a `precise` local
@@ -451,7 +451,7 @@ def is_kernel(path):
 
 
 def tree(root):
-    files = list(root.glob("src/kernels/*.inl"))
+    files = list(root.glob("src/kernels/**/*.inl"))
     for folder in BACKENDS:
         for suffix in ("cpp", "h", "inl", "glsl"):
             files += [f for f in root.glob(f"src/{folder}/*.{suffix}") if not re.match(r"(lanes|prelude).*\.h$", f.name)]
@@ -492,7 +492,7 @@ def main(arguments):
         return 0 if arguments[0] in ("-h", "--help") else 2
     files = [Path(a).resolve() for a in arguments] or tree(root)
     if arguments:  # kernels know each other's functions and constants, so read them all and report the chosen ones
-        files += [f for f in root.glob("src/kernels/*.inl") if f not in files]
+        files += [f for f in root.glob("src/kernels/**/*.inl") if f not in files]
     chosen = {Path(a).resolve() for a in arguments}
     count = 0
     for source in check(files):

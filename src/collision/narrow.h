@@ -1,0 +1,39 @@
+// Narrow phase on the CPU: where two shapes touch. The geometry stands in kernels/narrow; docs/narrow-phase.md
+// says how each pair is done.
+#pragma once
+#include <cstdint>
+
+#include "pcphys/types.h"
+
+namespace pcphys {
+
+/// A shape relative to an origin nearby: best the centre of mass of the smaller body, since the digits of
+/// the result are those of these numbers.
+template <class Scalar>
+struct ShapeView {
+  ShapeKind kind;
+  Scalar size[3];  // as in ShapeDef, metres
+  Scalar p[3];     // centre of the shape
+  Scalar q[4];     // x y z w, shape to world axes, unit
+};
+
+template <class Scalar>
+struct ManifoldPoint {
+  Scalar p[3];            // midway between the surfaces
+  Scalar separation;      // along the normal, negative when the shapes overlap
+  std::uint32_t feature;  // which corner, edge or side: the same from step to step while the shapes move a little
+};
+
+template <class Scalar>
+struct Manifold {
+  Scalar normal[3];  // unit, from a to b
+  std::uint32_t count = 0;
+  ManifoldPoint<Scalar> points[4];
+};
+
+/// Points whose separation is at most `margin` [m]; none when the shapes are farther apart (then the normal means nothing).
+/// `hint` is 0 at first and then what the last call for this pair left there; it saves time and changes nothing else.
+void narrow(const ShapeView<float>& a, const ShapeView<float>& b, float margin, std::uint32_t& hint, Manifold<float>& out);
+void narrow(const ShapeView<double>& a, const ShapeView<double>& b, double margin, std::uint32_t& hint, Manifold<double>& out);
+
+}  // namespace pcphys

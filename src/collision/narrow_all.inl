@@ -1,0 +1,31 @@
+// Instantiates the narrow phase for PC_SCALAR: copies in and out, no arithmetic.
+#include "collision/narrow.h"
+#include "cpu/prelude.h"
+#define PC_FN_LARGE [[gnu::noinline]] static
+
+namespace pcphys {
+namespace PC_NAMESPACE {
+#include "kernels/narrow/narrow.inl"
+
+static NarrowShape from_view(const ShapeView<Scalar>& s) {
+  return {uint(s.kind), {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, pc_quaternion({s.q[0], s.q[1], s.q[2]}, s.q[3])};
+}
+}  // namespace PC_NAMESPACE
+
+void narrow(const ShapeView<PC_SCALAR>& a, const ShapeView<PC_SCALAR>& b, PC_SCALAR margin, std::uint32_t& hint, Manifold<PC_SCALAR>& out) {
+  using namespace PC_NAMESPACE;
+  static_assert(PC_SPHERE == uint(ShapeKind::sphere) && PC_CAPSULE == uint(ShapeKind::capsule) && PC_BOX == uint(ShapeKind::box) &&
+                PC_CYLINDER == uint(ShapeKind::cylinder) && PC_PLANE == uint(ShapeKind::plane));
+  NarrowManifold m;
+  pc_narrow(from_view(a), from_view(b), margin, hint, m);
+  out.normal[0] = m.normal.x;
+  out.normal[1] = m.normal.y;
+  out.normal[2] = m.normal.z;
+  out.count = m.count;
+  for (uint i = 0; i < m.count; i++) {
+    const NarrowPoint& p = m.points[i];
+    out.points[i] = {{p.p.x, p.p.y, p.p.z}, p.separation, p.feature};
+  }
+}
+
+}  // namespace pcphys

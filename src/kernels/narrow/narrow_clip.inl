@@ -1,0 +1,87 @@
+// Clipping a convex polygon in the plane, and choosing four of its points.
+//
+// A vertex carries the numbers of the edge that enters and the edge that leaves it, in * 32 + out: edges 0 to
+// 15 belong to the incident polygon, 16 on to the clipping one. That pair is its feature: it stays while the
+// shapes move a little.
+
+struct NarrowPolygon { uint count; Real x[16]; Real y[16]; Real s[16]; uint id[16]; };
+
+// What is left of the polygon on the side a x + b y <= c; outside by less than `slop` counts as inside.
+PC_FN_LARGE void pc_clip(PC_INOUT(NarrowPolygon) polygon, Real a, Real b, Real c, Real slop, uint edge) {
+  Real off[16]; bool any = false;
+  for (uint i = 0u; i < polygon.count; i++) {
+    precise Real beyond = a * polygon.x[i] + b * polygon.y[i] - c;
+    off[i] = beyond; any = any || beyond > slop;
+  }
+  if (!any) return;
+  NarrowPolygon rest; rest.count = 0u;
+  for (uint i = 0u; i < polygon.count; i++) {
+    uint j = i + 1u == polygon.count ? 0u : i + 1u;
+    bool inside_i = off[i] <= slop; bool inside_j = off[j] <= slop;
+    if (inside_i != inside_j && rest.count < 16u) {
+      precise Real span = off[i] - off[j];
+      Real t = pc_clamp(pc_div(off[i], span), PC_REAL(0.0), PC_REAL(1.0));
+      precise Real x = polygon.x[i] + (polygon.x[j] - polygon.x[i]) * t;
+      precise Real y = polygon.y[i] + (polygon.y[j] - polygon.y[i]) * t;
+      uint cut = polygon.id[i] & 31u;
+      rest.x[rest.count] = x; rest.y[rest.count] = y;
+      rest.id[rest.count] = inside_i ? (cut << 5u) | edge : (edge << 5u) | cut;
+      rest.count = rest.count + 1u;
+    }
+    if (inside_j && rest.count < 16u) {
+      rest.x[rest.count] = polygon.x[j]; rest.y[rest.count] = polygon.y[j]; rest.id[rest.count] = polygon.id[j];
+      rest.count = rest.count + 1u;
+    }
+  }
+  polygon = rest;
+}
+
+PC_FN void pc_keep(PC_INOUT(NarrowPolygon) polygon, uint to, uint from) {
+  polygon.x[to] = polygon.x[from]; polygon.y[to] = polygon.y[from]; polygon.s[to] = polygon.s[from]; polygon.id[to] = polygon.id[from];
+}
+
+// Twice the area of the triangle (i, j, k), signed.
+PC_FN Real pc_corner_area(NarrowPolygon polygon, uint i, uint j, uint k) {
+  precise Real r = (polygon.x[j] - polygon.x[i]) * (polygon.y[k] - polygon.y[i]) - (polygon.y[j] - polygon.y[i]) * (polygon.x[k] - polygon.x[i]);
+  return r;
+}
+
+// Drops points beyond the margin and keeps four: the deepest, the farthest from it, the one that spans the
+// largest triangle with them, and the one that adds most on the other side. Gains within noise go to the
+// first in order, so that a flat contact keeps its choice.
+PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real size) {
+  uint count = 0u;
+  for (uint i = 0u; i < polygon.count; i++) {
+    if (polygon.s[i] <= margin) { pc_keep(polygon, count, i); count = count + 1u; }
+  }
+  polygon.count = count;
+  if (count <= 4u) return;
+  precise Real slop = size * PC_DEEPER_SLOP;
+  uint a = 0u;
+  for (uint i = 1u; i < count; i++) { precise Real s = polygon.s[i] + slop; if (s < polygon.s[a]) a = i; }
+  uint b = a; Real best = PC_REAL(0.0);
+  for (uint i = 0u; i < count; i++) {
+    precise Real dx = polygon.x[i] - polygon.x[a]; precise Real dy = polygon.y[i] - polygon.y[a];
+    precise Real far = dx * dx + dy * dy; precise Real least = best * PC_WIDER_SLOP;
+    if (far > least) { best = far; b = i; }
+  }
+  uint c = a; best = PC_REAL(0.0); bool turn = false;
+  for (uint i = 0u; i < count; i++) {
+    Real area = pc_corner_area(polygon, a, b, i); precise Real least = best * PC_WIDER_SLOP;
+    if (pc_abs(area) > least) { best = pc_abs(area); c = i; turn = area > PC_REAL(0.0); }
+  }
+  // the fourth: largest triangle beyond any side of a, b, c
+  uint d = a; best = PC_REAL(0.0);
+  for (uint i = 0u; i < count; i++) {
+    Real ab = pc_corner_area(polygon, a, b, i); Real bc = pc_corner_area(polygon, b, c, i); Real ca = pc_corner_area(polygon, c, a, i);
+    Real out_ab = turn ? -ab : ab; Real out_bc = turn ? -bc : bc; Real out_ca = turn ? -ca : ca;
+    Real area = pc_max(out_ab, pc_max(out_bc, out_ca)); precise Real least = best * PC_WIDER_SLOP;
+    if (area > least) { best = area; d = i; }
+  }
+  // the chosen ones to the front, in their order along the polygon
+  uint kept = 0u;
+  for (uint i = 0u; i < count; i++) {
+    if (i == a || i == b || i == c || i == d) { pc_keep(polygon, kept, i); kept = kept + 1u; }
+  }
+  polygon.count = kept;
+}

@@ -1,0 +1,107 @@
+// Narrow phase: shapes, manifolds, tolerances and small helpers shared by all pairs.
+//
+// Every pair function takes shapes relative to one nearby origin and gives the unit normal from a to b and up
+// to four points midway between the surfaces. All tolerances are relative to the shapes, none is a length.
+#ifndef PC_FN_LARGE
+#define PC_FN_LARGE PC_FN  // functions too large to be inlined at every call
+#endif
+
+// values of ShapeKind
+const uint PC_SPHERE = 0u;
+const uint PC_CAPSULE = 1u;
+const uint PC_BOX = 2u;
+const uint PC_CYLINDER = 3u;
+const uint PC_PLANE = 4u;
+
+// squared sine of 1.5 and 3 degrees: between them two lines pass from parallel (two points) to crossing (one)
+#define PC_PARALLEL_FULL PC_REAL(0.000685237)
+#define PC_PARALLEL_NONE PC_REAL(0.00273905)
+// below this squared sine two directions have no usable cross product
+#define PC_PARALLEL_EXACT PC_REAL(1e-8)
+// cores closer than this times their size have no usable difference vector
+#define PC_CORE_TOUCH PC_REAL(1e-4)
+// an edge pair must beat the best face by this times the smallest half extent: faces carry four points
+#define PC_EDGE_SLOP PC_REAL(4e-3)
+// the second face must beat the larger face by this times the smallest half extent
+#define PC_FACE_SLOP PC_REAL(1e-3)
+// a vertex this far (times the extent) outside a clipping edge still counts as inside: aligned stacks keep
+// their corners and feature ids
+#define PC_CLIP_SLOP PC_REAL(2e-3)
+// gains below these are noise when four points are chosen (length and area, relative)
+#define PC_DEEPER_SLOP PC_REAL(1e-4)
+#define PC_WIDER_SLOP PC_REAL(1.01)
+
+struct Axes { Vec3 x; Vec3 y; Vec3 z; };
+struct NarrowShape { uint kind; Vec3 size; Vec3 p; Quaternion q; };
+struct NarrowPoint { Vec3 p; Real separation; uint feature; };
+struct NarrowManifold { Vec3 normal; uint count; NarrowPoint points[4]; };
+
+PC_FN Vec3 pc_axis_x(Quaternion q) {
+  precise Real x = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.y * q.v.y + q.v.z * q.v.z);
+  precise Real y = PC_REAL(2.0) * (q.v.x * q.v.y + q.w * q.v.z);
+  precise Real z = PC_REAL(2.0) * (q.v.x * q.v.z - q.w * q.v.y);
+  return Vec3(x, y, z);
+}
+PC_FN Vec3 pc_axis_y(Quaternion q) {
+  precise Real x = PC_REAL(2.0) * (q.v.x * q.v.y - q.w * q.v.z);
+  precise Real y = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.z * q.v.z);
+  precise Real z = PC_REAL(2.0) * (q.v.y * q.v.z + q.w * q.v.x);
+  return Vec3(x, y, z);
+}
+PC_FN Vec3 pc_axis_z(Quaternion q) {
+  precise Real x = PC_REAL(2.0) * (q.v.x * q.v.z + q.w * q.v.y);
+  precise Real y = PC_REAL(2.0) * (q.v.y * q.v.z - q.w * q.v.x);
+  precise Real z = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.y * q.v.y);
+  return Vec3(x, y, z);
+}
+PC_FN Axes pc_axes(Quaternion q) { Axes m; m.x = pc_axis_x(q); m.y = pc_axis_y(q); m.z = pc_axis_z(q); return m; }
+PC_FN Vec3 pc_to_local(Axes m, Vec3 v) { return Vec3(pc_dot(m.x, v), pc_dot(m.y, v), pc_dot(m.z, v)); }
+PC_FN Vec3 pc_to_world(Axes m, Vec3 v) { return pc_combine(m.x, v.x, m.y, v.y, m.z, v.z); }
+
+PC_FN Real pc_component(Vec3 v, uint i) { return i == 0u ? v.x : (i == 1u ? v.y : v.z); }
+PC_FN Vec3 pc_axis(Axes m, uint i) {
+  if (i == 0u) return m.x;
+  if (i == 1u) return m.y;
+  return m.z;
+}
+PC_FN Vec3 pc_unit_axis(uint i, Real s) {
+  return Vec3(i == 0u ? s : PC_REAL(0.0), i == 1u ? s : PC_REAL(0.0), i == 2u ? s : PC_REAL(0.0));
+}
+PC_FN uint pc_next(uint i) { return i == 2u ? 0u : i + 1u; }
+PC_FN Real pc_sign(Real x) { return x < PC_REAL(0.0) ? PC_REAL(-1.0) : PC_REAL(1.0); }
+PC_FN Vec3 pc_abs3(Vec3 v) { return Vec3(pc_abs(v.x), pc_abs(v.y), pc_abs(v.z)); }
+PC_FN Real pc_smallest(Vec3 v) { return pc_min(v.x, pc_min(v.y, v.z)); }
+PC_FN Real pc_largest(Vec3 v) { return pc_max(v.x, pc_max(v.y, v.z)); }
+PC_FN uint pc_greatest_component(Vec3 v) {
+  uint i = v.y > v.x ? 1u : 0u;
+  return v.z > pc_component(v, i) ? 2u : i;
+}
+PC_FN uint pc_least_component(Vec3 v) {
+  Vec3 s = pc_abs3(v); uint i = s.y < s.x ? 1u : 0u;
+  return s.z < pc_component(s, i) ? 2u : i;
+}
+// Middle of that edge of the box |x_i| <= h_i along axis i which lies farthest along n.
+PC_FN Vec3 pc_edge_middle(Vec3 h, uint i, Vec3 n) {
+  Vec3 c = Vec3(n.x < PC_REAL(0.0) ? -h.x : h.x, n.y < PC_REAL(0.0) ? -h.y : h.y, n.z < PC_REAL(0.0) ? -h.z : h.z);
+  return Vec3(i == 0u ? PC_REAL(0.0) : c.x, i == 1u ? PC_REAL(0.0) : c.y, i == 2u ? PC_REAL(0.0) : c.z);
+}
+// A length whose square is safely a number above zero.
+PC_FN bool pc_has_length(Real squared) { precise Real least = PC_TINY * PC_TINY; return squared > least; }
+// Any unit vector perpendicular to the unit vector u, always the same one.
+PC_FN Vec3 pc_perpendicular(Vec3 u) {
+  bool steep = pc_abs(u.x) < PC_REAL(0.57);
+  Vec3 e = steep ? Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)) : Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
+  return pc_unit_or_zero(pc_madd(e, u, -pc_dot(e, u)));
+}
+
+PC_FN void pc_push(PC_INOUT(NarrowManifold) m, Vec3 p, Real separation, uint feature) {
+  uint i = m.count;
+  m.points[i].p = p; m.points[i].separation = separation; m.points[i].feature = feature;
+  m.count = i + 1u;
+}
+// The point x of shape a's core, whose surface lies `radius` along n and b's surface `separation` beyond.
+PC_FN void pc_push_from(PC_INOUT(NarrowManifold) m, Vec3 x, Vec3 n, Real radius, Real separation, Real margin, uint feature) {
+  if (separation > margin) return;
+  precise Real reach = radius + separation * PC_REAL(0.5);
+  pc_push(m, pc_madd(x, n, reach), separation, feature);
+}
