@@ -1,0 +1,23 @@
+// The sub-commands. Each prints its result, and returns the exit code of the program.
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "options.h"
+
+namespace pcphys::command {
+
+using Json = nlohmann::ordered_json;
+
+struct OutputOptions {
+  std::string json, csv;
+};
+
+int run(const RunOptions& options);
+int plan(const RunOptions& options);
+int tables(const RunOptions& options);
+int scenes_list(const OutputOptions& options);
+int doctor(const OutputOptions& options);
+/// For what the contract names and a later version brings.
+int comes_later(const char* command);
+
+}  // namespace pcphys::command

@@ -1,0 +1,78 @@
+// The command pcphys: one program over the library. docs/command.md is its contract.
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "commands.h"
+#include "output.h"
+#include "pcphys/version.h"
+
+using namespace pcphys::command;
+
+namespace pcphys::command {
+
+int comes_later(const char* command) {
+  std::cerr << "pcphys: '" << command << "' comes with a later version; this one has run, scenes, plan, tables and doctor.\n";
+  return exit_failed;
+}
+
+}  // namespace pcphys::command
+
+namespace {
+
+/// One line, whatever CLI11 has to say.
+int usage_error(const std::string& message) {
+  std::string line = message;
+  for (char& c : line)
+    if (c == '\n') c = ' ';
+  std::cerr << "pcphys: " << line << (line.ends_with(".") ? "" : ".") << " `pcphys --help` tells what there is.\n";
+  return exit_usage;
+}
+
+void add_report_options(CLI::App& app, OutputOptions& options) {
+  app.add_option("--json", options.json, "write the result to this file; - is standard output");
+  app.add_option("--csv", options.csv, "write a table to this file");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"pcphys: physics with one source for CPU and GPU", "pcphys"};
+  app.set_version_flag("--version", "pcphys " PCPHYS_VERSION);
+  app.require_subcommand(1);
+  app.set_help_all_flag("--help-all", "Help of every sub-command");
+
+  RunOptions run_options;
+  OutputOptions output_options;
+  CLI::App* run_command = app.add_subcommand("run", "run a scene and measure it");
+  CLI::App* plan_command =
+      app.add_subcommand("plan", "print what a step of a scene runs and leaves out; --steps K makes K steps before");
+  CLI::App* tables_command = app.add_subcommand("tables", "Tables 1 and 2 of the original, with what is measured here");
+  CLI::App* scenes_command = app.add_subcommand("scenes", "list the scenes");
+  CLI::App* doctor_command = app.add_subcommand("doctor", "tell what this machine offers and what is missing");
+  for (CLI::App* command : {run_command, plan_command}) add_scene_argument(*command, run_options);
+  for (CLI::App* command : {run_command, plan_command, tables_command}) {
+    add_run_options(*command, run_options);
+    add_output_options(*command, run_options);
+  }
+  run_command->add_option("--gltf", run_options.gltf, "write the motion as glTF 2.0 to this file (.gltf or .glb)");
+  run_command->add_flag("--hash", run_options.hash, "print nothing but the hash of the final state");
+  run_command->add_flag("--poses", run_options.poses, "add the final pose and velocity of every body to the JSON");
+  for (CLI::App* command : {scenes_command, doctor_command}) add_report_options(*command, output_options);
+  const char* const later[] = {"accuracy", "stability", "compare"};
+  for (const char* name : later) app.add_subcommand(name, "comes with a later version")->allow_extras();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return usage_error(error.what());
+  }
+  if (*run_command) return run(run_options);
+  if (*plan_command) return plan(run_options);
+  if (*tables_command) return tables(run_options);
+  if (*scenes_command) return scenes_list(output_options);
+  if (*doctor_command) return doctor(output_options);
+  for (const char* name : later)
+    if (app.got_subcommand(name)) return comes_later(name);
+  return usage_error("A sub-command is missing.");
+}

@@ -1,0 +1,169 @@
+#include "options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+namespace pcphys::command {
+namespace {
+
+Error bad(const std::string& sentence) { return {ErrorCode::bad_argument, sentence}; }
+
+Result<Place> place_of(const char* option, const std::string& text) {
+  if (text == "cpu") return Place::cpu;
+  if (text == "gl") return Place::gl;
+  return bad(std::string("--") + option + " is '" + text + "'; give cpu or gl.");
+}
+
+std::optional<double> number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// "0.01" or "1/60".
+Result<double> time_step(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto above = number(std::string_view(text).substr(0, slash));
+  const auto below = slash == std::string::npos ? std::optional<double>(1.0) : number(std::string_view(text).substr(slash + 1));
+  const double dt = above && below ? *above / *below : std::numeric_limits<double>::quiet_NaN();
+  if (std::isfinite(dt) && dt > 0) return dt;
+  return bad("--dt is '" + text + "'; give a time step above 0 in seconds, such as 0.01 or 1/60.");
+}
+
+Status check_range(const char* option, long long value, long long low, long long high) {
+  if (value >= low && value <= high) return {};
+  return bad(std::string("--") + option + " is " + std::to_string(value) + "; give a whole number from " + std::to_string(low) +
+             " to " + std::to_string(high) + ".");
+}
+
+Status check_choice(const char* option, const std::string& value, std::initializer_list<const char*> choices) {
+  std::string list;
+  for (const char* choice : choices) {
+    if (value == choice) return {};
+    list += (list.empty() ? "" : ", ") + std::string(choice);
+  }
+  return bad(std::string("--") + option + " is '" + value + "'; give one of " + list + ".");
+}
+
+/// What the contract of the command already names and this version does not do.
+Status check_later(const RunOptions& options) {
+  if (auto status = check_choice("sleep", options.sleep, {"on", "off"}); !status) return status;
+  if (options.sleep == "on") return bad("--sleep on comes with a later version; until then nothing sleeps, so leave it off.");
+  if (options.threads != 1)
+    return bad("--threads is " + std::to_string(options.threads) + "; threads come with a later version, so give 1.");
+  if (options.integrator != "verlet")
+    return bad("--integrator is '" + options.integrator + "'; this version has verlet, others come with a later one.");
+  return {};
+}
+
+Status check_numbers(const RunOptions& options) {
+  constexpr long long many = 1'000'000'000;
+  if (options.count)
+    if (auto status = check_range("count", *options.count, 0, many); !status) return status;
+  if (options.seed)
+    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max()); !status) return status;
+  if (options.steps)
+    if (auto status = check_range("steps", *options.steps, 1, many); !status) return status;
+  if (auto status = check_range("substeps", options.substeps, 1, 1000); !status) return status;
+  if (auto status = check_range("device", options.device, -1, 1000); !status) return status;
+  if (!(options.ratio > 0 && std::isfinite(options.ratio)))
+    return bad("--ratio is " + std::to_string(options.ratio) + "; give a finite mass ratio above 0.");
+  return {};
+}
+
+Status set_places(const RunOptions& options, StepSettings& settings) {
+  const auto backend = place_of("backend", options.backend);
+  if (!backend) return backend.error();
+  settings.set_all(*backend);
+  struct Choice {
+    const char* option;
+    const std::string& text;
+    Place& place;
+  };
+  for (const Choice& choice :
+       {Choice{"integrate", options.integrate, settings.integrate}, Choice{"joints", options.joints, settings.joints},
+        Choice{"impulses", options.impulses, settings.impulses}}) {
+    if (choice.text.empty()) continue;
+    const auto place = place_of(choice.option, choice.text);
+    if (!place) return place.error();
+    choice.place = *place;
+  }
+  return {};
+}
+
+Status set_precision(const RunOptions& options, Setup& setup) {
+  if (auto status = check_choice("precision", options.precision, {"float", "double"}); !status) return status;
+  if (auto status = check_choice("lanes", options.lanes, {"auto", "1", "4", "8"}); !status) return status;
+  setup.precision = options.precision == "double" ? Precision::f64 : Precision::f32;
+  setup.settings.lanes = options.lanes == "auto" ? 0 : std::uint32_t(options.lanes[0] - '0');
+  if (setup.precision == Precision::f64 && setup.settings.lanes == 8)
+    return bad("--lanes 8 is for --precision float; double has 1 and 4 lanes.");
+  return {};
+}
+
+}  // namespace
+
+void add_scene_argument(CLI::App& app, RunOptions& options) {
+  app.add_option("SCENE", options.scene, "name of the scene; `pcphys scenes` lists them")->required();
+  app.add_option("--count", options.count, "how many of the scene's objects");
+  app.add_option("--seed", options.seed, "of the scene's random draws (default: the scene's own)");
+  app.add_option("--ratio", options.ratio, "mass ratio of chain, chainswing and heavy")->capture_default_str();
+}
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  app.add_option("--backend", options.backend, "cpu or gl, for all three stages")->capture_default_str();
+  app.add_option("--integrate", options.integrate, "cpu or gl, for this stage");
+  app.add_option("--joints", options.joints, "cpu or gl, for this stage");
+  app.add_option("--impulses", options.impulses, "cpu or gl, for this stage");
+  app.add_option("--narrow", options.narrow, "narrow phase: native or fcl")->capture_default_str();
+  app.add_option("--steps", options.steps, "how many steps (default: 600)");
+  app.add_option("--dt", options.dt, "time step [s], also as a fraction")->capture_default_str();
+  app.add_option("--substeps", options.substeps, "sub-steps a step")->capture_default_str();
+  app.add_option("--precision", options.precision, "float or double")->capture_default_str();
+  app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
+  app.add_option("--threads", options.threads, "1; more come with a later version")->capture_default_str();
+  app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
+  app.add_option("--sleep", options.sleep, "off; on comes with a later version")->capture_default_str();
+  app.add_option("--integrator", options.integrator, "verlet; others come with a later version")->capture_default_str();
+  app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
+      ->capture_default_str();
+  app.add_option("--timings", options.timings, "on: clock every stage, which makes a GPU wait after each; off: whole steps only")
+      ->capture_default_str();
+}
+
+void add_output_options(CLI::App& app, RunOptions& options) {
+  app.add_option("--json", options.json, "write the result to this file; - is standard output");
+  app.add_option("--csv", options.csv, "write a table of rows to this file");
+}
+
+Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
+  Setup setup;
+  for (const Status& status :
+       {check_later(options), check_numbers(options), check_choice("narrow", options.narrow, {"native", "fcl"}),
+        check_choice("timings", options.timings, {"on", "off"})})
+    if (!status) return status.error();
+  if (auto status = set_places(options, setup.settings); !status) return status.error();
+  if (auto status = set_precision(options, setup); !status) return status.error();
+  const auto dt = time_step(options.dt);
+  if (!dt) return dt.error();
+
+  setup.scene = options.scene;
+  if (options.count) setup.scene_options.count = int(*options.count);
+  if (options.seed) setup.scene_options.seed = std::uint64_t(*options.seed);
+  setup.scene_options.ratio = options.ratio;
+  setup.settings.narrow = options.narrow == "fcl" ? NarrowPhase::fcl : NarrowPhase::native;
+  setup.settings.substeps = std::uint32_t(options.substeps);
+  setup.settings.device = int(options.device);
+  setup.settings.timings = options.timings == "on";
+  setup.dt = *dt;
+  setup.steps = options.steps ? std::uint64_t(*options.steps) : default_steps;
+  if (auto status = check_range("warmup", options.warmup, 0, std::max(0ll, (long long)setup.steps - 1)); !status)
+    return status.error();
+  setup.warmup = std::uint64_t(options.warmup);
+  return setup;
+}
+
+}  // namespace pcphys::command

@@ -1,0 +1,112 @@
+// pcphys run SCENE
+#include <iostream>
+#include <memory>
+
+#include "commands.h"
+#include "gltf.h"
+#include "output.h"
+#include "report.h"
+#include "simulation.h"
+
+namespace pcphys::command {
+namespace {
+
+struct Files {
+  OutputFile json, csv, gltf;
+
+  static Result<Files> open(const RunOptions& options) {
+    const bool gltf = options.gltf.ends_with(".gltf") || options.gltf.ends_with(".glb");
+    if (!options.gltf.empty() && !gltf)
+      return Error{ErrorCode::bad_argument, "--gltf is '" + options.gltf + "'; give a file name that ends in .gltf or .glb."};
+    Files files;
+    struct Choice {
+      const std::string& path;
+      OutputFile& file;
+    };
+    for (const Choice& choice :
+         {Choice{options.json, files.json}, Choice{options.csv, files.csv}, Choice{options.gltf, files.gltf}}) {
+      auto file = OutputFile::open(choice.path);
+      if (!file) return file.error();
+      choice.file = std::move(*file);
+    }
+    if (files.json.standard_output() && (files.csv.standard_output() || options.hash))
+      return Error{ErrorCode::bad_argument,
+                   "--json - prints nothing but JSON, which holds the hash too; leave out --hash and give --csv a file."};
+    return files;
+  }
+};
+
+/// Steps the simulation, and shows every step to those who want to see it.
+Status make_steps(Simulation& simulation, Outcome& outcome, StepRows* rows, GltfRecorder* gltf) {
+  const Setup& setup = simulation.setup;
+  Watch watch(simulation, outcome);
+  Progress progress(setup.scene, setup.steps);
+  if (gltf) gltf->record(simulation.world, 0, 0);
+  for (std::uint64_t step = 1; step <= setup.steps; ++step) {
+    const double begin = now();
+    const StepReport& report = simulation.stepper.step(simulation.world, setup.dt);
+    const double ms = 1000 * (now() - begin);
+    if (!report) {
+      outcome.last = report;
+      return Error{report.error.code, "Step " + std::to_string(step) + " of " + setup.scene + " failed. " + report.error.message};
+    }
+    if (step > setup.warmup) outcome.times.add(ms, report);
+    if (step == setup.steps) outcome.last = report;
+    if (rows) rows->add(step, ms, report);
+    if (gltf) gltf->record(simulation.world, step, double(step) * setup.dt);
+    watch.after(step);
+    progress.show(step);
+  }
+  outcome.end = scenes::measure(simulation.scene, simulation.world);
+  outcome.hash = simulation.world.hash();
+  return {};
+}
+
+Status write_results(const RunOptions& options, Files& files, const Simulation& simulation, const Outcome& outcome,
+                     const StepRows& rows, const GltfRecorder* gltf) {
+  if (auto status = files.csv.write(rows.text()); !status) return status;
+  if (gltf)
+    if (auto status = files.gltf.write(gltf->file(options.gltf.ends_with(".glb"))); !status) return status;
+  if (files.json)
+    if (auto status = files.json.write(to_json(simulation, outcome, options.poses).dump(2) + "\n"); !status) return status;
+  if (options.hash)
+    std::cout << hash_text(outcome.hash) << "\n";
+  else if (!files.json && !files.csv.standard_output())
+    std::cout << to_text(simulation, outcome);
+  return {};
+}
+
+/// A full buffer is reported in the JSON too, so that a script sees it where it looks for it.
+void write_overflow(Files& files, const Simulation& simulation, const Outcome& outcome, const RunOptions& options) {
+  if (!files.json) return;
+  Json json = to_json(simulation, outcome, options.poses);
+  json["overflow"].push_back(outcome.last.error.message);
+  if (auto status = files.json.write(json.dump(2) + "\n"); !status) fail(status.error());
+}
+
+}  // namespace
+
+int run(const RunOptions& options) {
+  const auto setup = resolve(options, 600);
+  if (!setup) return fail(setup.error());
+  auto files = Files::open(options);
+  if (!files) return fail(files.error());
+  auto simulation = Simulation::make(*setup);
+  if (!simulation) return fail(simulation.error());
+
+  Outcome outcome;
+  StepRows rows(*simulation);
+  std::unique_ptr<GltfRecorder> gltf;
+  if (files->gltf) gltf = std::make_unique<GltfRecorder>(simulation->scene, setup->steps);
+  if (auto status = make_steps(*simulation, outcome, files->csv ? &rows : nullptr, gltf.get()); !status) {
+    if (status.error().code == ErrorCode::buffer_full) write_overflow(*files, *simulation, outcome, options);
+    return fail(status.error());
+  }
+  if (auto status = write_results(options, *files, *simulation, outcome, rows, gltf.get()); !status) return fail(status.error());
+  const std::string trouble = unsound(outcome);
+  if (trouble.empty()) return exit_ok;
+  std::cerr << "pcphys: the run of " << setup->scene << " is not sound: " << trouble << ".\n";
+  return exit_unsound;
+}
+
+}  // namespace pcphys::command
