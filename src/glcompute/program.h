@@ -1,0 +1,24 @@
+// Compiled programs, and the proof that they see buffers as C++ lays them out.
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "glcompute/program_cache.h"
+#include "glcompute/program_source.h"
+
+namespace pcphys {
+
+/// A linked program from the cache or the compiler; `label` names it in errors. The caller deletes it.
+Result<std::uint32_t> link_program(const ProgramSource& source, const std::string& label, const ProgramCache& cache);
+
+/// Compares bindings, offsets, types and strides as GL reports them with the schema.
+/// device_error, naming buffer, what was expected and what was found.
+Status check_layout(std::uint32_t program, Kernel kernel, Precision precision);
+
+struct KernelProgram {
+  std::uint32_t id = 0;
+  std::int32_t range = -1;  // location of the uniform pc_range
+};
+Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, const ProgramCache& cache);
+
+}  // namespace pcphys
