@@ -4,6 +4,9 @@
 #include "narrow_clip.inl"
 #include "narrow_box.inl"
 #include "narrow_capsule_box.inl"
+#include "narrow_core.inl"
+#include "narrow_gjk.inl"
+#include "narrow_epa.inl"
 #include "narrow_convex.inl"
 
 // Shapes in the order of their kinds; the normal points from a to b.
@@ -27,6 +30,7 @@ PC_FN void pc_narrow_ordered(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
   if (b.kind == PC_BOX) {
     if (a.kind == PC_CAPSULE) { pc_capsule_box(a, b, margin, m); return; }
     if (pc_box_box(a, b, margin, hint, m)) return;
+    hint = 0u;
   }
   pc_convex(a, b, margin, hint, m);
 }

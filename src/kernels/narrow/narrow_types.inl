@@ -105,3 +105,18 @@ PC_FN void pc_push_from(PC_INOUT(NarrowManifold) m, Vec3 x, Vec3 n, Real radius,
   precise Real reach = radius + separation * PC_REAL(0.5);
   pc_push(m, pc_madd(x, n, reach), separation, feature);
 }
+
+// Relative to the squared distance: GJK stops. Relative to both shapes' size: EPA stops; its rounding error.
+#ifdef PC_DOUBLE
+#define PC_GJK_GAP PC_REAL(1e-12)
+#define PC_EPA_GAP PC_REAL(1e-7)
+#define PC_EPA_SLOP PC_REAL(1e-14)
+#define PC_SHARPEN_SLOP PC_REAL(1e-9)
+#else
+#define PC_GJK_GAP PC_REAL(1e-6)
+#define PC_EPA_GAP PC_REAL(3e-6)
+#define PC_EPA_SLOP PC_REAL(2e-7)
+#define PC_SHARPEN_SLOP PC_REAL(1e-6)
+#endif
+// A face whose normal is this near the contact normal carries the contact (0.8 degrees).
+#define PC_FACE_FLAT PC_REAL(0.9999)
