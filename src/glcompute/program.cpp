@@ -14,11 +14,11 @@ Error refused(const std::string& label, const std::string& log, const ProgramSou
   return {ErrorCode::device_error, message + ")"};
 }
 
-template <class Length, class Log> std::string log_of(GLuint object, Length length, Log log) {
+template <class GetLength, class GetLog> std::string log_of(GLuint object, GetLength get_length, GetLog get_log) {
   GLint bytes = 0;
-  length(object, GL_INFO_LOG_LENGTH, &bytes);
+  get_length(object, GL_INFO_LOG_LENGTH, &bytes);
   std::string text(std::size_t(bytes < 1 ? 1 : bytes), '\0');
-  log(object, GLsizei(text.size()), nullptr, text.data());
+  get_log(object, GLsizei(text.size()), nullptr, text.data());
   while (!text.empty() && (text.back() == '\0' || text.back() == '\n')) text.pop_back();
   return text;
 }

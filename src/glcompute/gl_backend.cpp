@@ -1,0 +1,230 @@
+// The GPU side of a step: buffers, bindings, barriers and dispatches. No arithmetic of physics.
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "glcompute/context.h"
+#include "glcompute/device_probe.h"
+#include "glcompute/gl_buffer.h"
+#include "glcompute/program.h"
+#include "step/backend.h"
+
+namespace pcphys {
+namespace {
+
+constexpr std::uint32_t local_size = 64;
+
+class GlBackend final : public Backend {
+ public:
+  GlBackend(std::unique_ptr<GlContext> context, Precision precision) : context_(std::move(context)), cache_(context_->identity()) {
+    options_.precision = precision;
+    options_.local_size = local_size;
+  }
+  ~GlBackend() override;
+  Status start();
+
+  std::string device() const override { return context_->report().renderer; }
+  std::uint32_t width() const override { return gl_width; }
+  Status attach(Buffer buffer, void* host, std::size_t bytes) override;
+  Status reserve(Buffer buffer, std::size_t slots) override;
+  Status upload(Buffer buffer) override;
+  Status download(Buffer buffer) override;
+  Status set_infos(const void* infos, std::size_t count) override;
+  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) override;
+  Status finish() override;
+
+ private:
+  GlBuffer& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
+  std::size_t real_bytes() const { return options_.precision == Precision::f64 ? sizeof(std::uint64_t) : sizeof(std::uint32_t); }
+  Status transferable(Buffer buffer);
+  void settle();
+  Status hold();
+  void release();
+  Status bind(Kernel kernel, std::size_t info);
+  void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end);
+
+  std::unique_ptr<GlContext> context_;
+  ProgramCache cache_;
+  SourceOptions options_;
+  std::array<GlBuffer, buffer_count> buffers_{};
+  std::array<KernelProgram, kernel_count> programs_{};
+  std::uint32_t info_buffer_ = 0;
+  std::size_t info_bytes_ = 0, info_stride_ = 0, info_count_ = 0, info_capacity_ = 0;
+  std::vector<char> info_staging_;
+  bool writes_pending_ = false;  // of dispatches, not yet visible to transfers
+  bool held_ = false;            // the context stays current from the first run to finish
+};
+
+/// The probe decides how this device divides and takes roots; sizes of info blocks follow the device's alignment.
+Status GlBackend::start() {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  Result<GlArithmetic> arithmetic = probe_arithmetic(options_.precision, cache_);
+  if (!arithmetic) return arithmetic.error();
+  options_.division = arithmetic->division;
+  options_.square_root = arithmetic->square_root;
+  GLint alignment = 1;
+  glGetIntegerv(GL_UNIFORM_BUFFER_OFFSET_ALIGNMENT, &alignment);
+  info_bytes_ = options_.precision == Precision::f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
+  const std::size_t step = std::size_t(std::max(alignment, 1));
+  info_stride_ = (info_bytes_ + step - 1) / step * step;
+  glGenBuffers(1, &info_buffer_);
+  return context_->check("starting the backend");
+}
+
+GlBackend::~GlBackend() {
+  {
+    GlScope scope(*context_);
+    if (scope.status()) {  // else a host's context went first, and took everything along
+      for (GlBuffer& buffer : buffers_) buffer.release();
+      for (const KernelProgram& program : programs_)
+        if (program.id != 0) glDeleteProgram(program.id);
+      glDeleteBuffers(1, &info_buffer_);
+    }
+  }
+  release();
+}
+
+// ---- memory -----------------------------------------------------------------------------------------
+Status GlBackend::attach(Buffer buffer, void* host, std::size_t bytes) {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  if (Status status = at(buffer).resize(schema(buffer).name, bytes, context_->report().limits.storage_block_bytes); !status) return status;
+  at(buffer).attach(host, bytes);
+  return {};
+}
+
+Status GlBackend::reserve(Buffer buffer, std::size_t slots) {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  return at(buffer).resize(schema(buffer).name, slots * schema(buffer).reals * real_bytes(), context_->report().limits.storage_block_bytes);
+}
+
+Status GlBackend::transferable(Buffer buffer) {
+  if (at(buffer).attached() && at(buffer).transferable()) return {};
+  return Error{ErrorCode::bad_argument, "The buffer `" + std::string(schema(buffer).name) + "` has no memory on the host; attach it before a transfer."};
+}
+
+/// What dispatches wrote becomes visible to transfers.
+void GlBackend::settle() {
+  if (writes_pending_) glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  writes_pending_ = false;
+}
+
+Status GlBackend::upload(Buffer buffer) {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  if (Status status = transferable(buffer); !status) return status;
+  settle();
+  at(buffer).upload();
+  return {};
+}
+
+Status GlBackend::download(Buffer buffer) {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  if (Status status = transferable(buffer); !status) return status;
+  settle();
+  at(buffer).download();
+  return {};
+}
+
+Status GlBackend::set_infos(const void* infos, std::size_t count) {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  info_staging_.resize(count * info_stride_);
+  for (std::size_t i = 0; i < count; i++)
+    std::memcpy(info_staging_.data() + i * info_stride_, static_cast<const char*>(infos) + i * info_bytes_, info_bytes_);
+  glBindBuffer(GL_UNIFORM_BUFFER, info_buffer_);
+  if (count > info_capacity_) {
+    glBufferData(GL_UNIFORM_BUFFER, GLsizeiptr(info_staging_.size()), info_staging_.data(), GL_DYNAMIC_DRAW);
+    info_capacity_ = count;
+  } else {
+    glBufferSubData(GL_UNIFORM_BUFFER, 0, GLsizeiptr(info_staging_.size()), info_staging_.data());
+  }
+  info_count_ = count;
+  return {};
+}
+
+// ---- running ----------------------------------------------------------------------------------------
+/// Making a context current costs more than a dispatch: from the first run to `finish` it stays.
+Status GlBackend::hold() {
+  if (held_) return {};
+  Status status = context_->enter();
+  held_ = bool(status);
+  return status;
+}
+
+void GlBackend::release() {
+  if (held_) context_->leave();
+  held_ = false;
+}
+
+Status GlBackend::bind(Kernel kernel, std::size_t info) {
+  if (info >= info_count_) return Error{ErrorCode::bad_argument, "There is no info block " + std::to_string(info) + "; set_infos gave " + std::to_string(info_count_) + "."};
+  KernelProgram& program = programs_[std::size_t(kernel)];
+  if (program.id == 0) {
+    const Result<KernelProgram> loaded = load_kernel(kernel, options_, cache_);
+    if (!loaded) return loaded.error();
+    program = *loaded;
+  }
+  std::uint32_t binding = 0;
+  for (const Access& access : schema(kernel).accesses) {
+    if (!at(access.buffer).attached())
+      return Error{ErrorCode::bad_argument, "The kernel `" + std::string(schema(kernel).name) + "` uses the buffer `" + std::string(schema(access.buffer).name) +
+                                                "`, which was neither attached nor reserved."};
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding++, at(access.buffer).id());
+  }
+  glBindBufferRange(GL_UNIFORM_BUFFER, 0, info_buffer_, GLintptr(info * info_stride_), GLsizeiptr(info_bytes_));
+  glUseProgram(program.id);
+  return {};
+}
+
+/// Long ranges go in pieces of as many work groups as the device takes; pieces need no barrier.
+void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end) {
+  const std::uint64_t piece = std::uint64_t(context_->report().limits.work_group_count) * local_size;
+  for (std::uint64_t k = begin; k < end; k += piece) {
+    const std::uint32_t stop = std::uint32_t(std::min<std::uint64_t>(end, k + piece));
+    glUniform2ui(range_location, std::uint32_t(k), stop);
+    glDispatchCompute((stop - std::uint32_t(k) + local_size - 1) / local_size, 1, 1);
+  }
+}
+
+Status GlBackend::run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) {
+  if (Status status = hold(); !status) return status;
+  if (Status status = bind(kernel, info); !status) {
+    release();
+    return status;
+  }
+  const std::uint32_t lanes = schema(kernel).domain == Domain::body ? 1 : gl_width;
+  for (const Range& range : ranges) {
+    if (range.begin >= range.end) continue;
+    if (barrier) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    dispatch(programs_[std::size_t(kernel)].range, range.begin * lanes, range.end * lanes);
+    barrier = true;  // each range may read what the one before wrote
+    writes_pending_ = true;
+  }
+  return {};
+}
+
+Status GlBackend::finish() {
+  if (Status status = hold(); !status) return status;
+  glFinish();
+  const Status status = context_->check("running a step");
+  release();
+  return status;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context) {
+  Result<std::unique_ptr<GlContext>> context = host_context ? GlContext::adopt_current() : GlContext::open(device);
+  if (!context) return context.error();
+  auto backend = std::make_unique<GlBackend>(std::move(*context), precision);
+  if (Status status = backend->start(); !status) return status.error();
+  return std::unique_ptr<Backend>(std::move(backend));
+}
+
+}  // namespace pcphys
