@@ -1,0 +1,107 @@
+// Pins: whatever is asked wrongly gets one line on standard error that says what to do, nothing on standard
+// output, and the exit code of its kind: 2 for the command line, 1 for what this machine or a file refuses.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "command_support.h"
+
+using namespace pcphys::test;
+
+namespace {
+
+struct Case {
+  const char* arguments;
+  int code;
+  const char* says;  // in the message
+};
+
+const Case cases[] = {
+    {"", 2, "subcommand"},
+    {"fly", 2, "fly"},
+    {"run", 2, "SCENE"},
+    {"run marbles", 2, "choose one of balls, ragdolls"},
+    {"plan marbles", 2, "choose one of balls"},
+    {"run balls --colour red", 2, "--colour"},
+    {"run balls 60", 2, "60"},
+    {"run balls --count", 2, "--count"},
+    {"run balls --count -1", 2, "--count is -1"},
+    {"run balls --count many", 2, "many"},
+    {"run balls --count 1.5", 2, "1.5"},
+    {"run balls --count 900000000", 2, "from 0 to"},
+    {"run balls --steps 0", 2, "--steps is 0"},
+    {"run balls --steps -3", 2, "--steps is -3"},
+    {"run balls --dt 0", 2, "--dt is '0'"},
+    {"run balls --dt -0.01", 2, "--dt"},
+    {"run balls --dt nan", 2, "time step above 0"},
+    {"run balls --dt 1/0", 2, "--dt"},
+    {"run balls --dt inf", 2, "--dt"},
+    {"run balls --dt soon", 2, "--dt"},
+    {"run balls --substeps 0", 2, "--substeps is 0"},
+    {"run balls --warmup 600", 2, "--warmup is 600"},
+    {"run balls --precision half", 2, "float, double"},
+    {"run balls --lanes 3", 2, "auto, 1, 4, 8"},
+    {"run balls --lanes 8 --precision double", 2, "1 and 4 lanes"},
+    {"run balls --threads 2", 2, "later version"},
+    {"run balls --threads 0", 2, "--threads is 0"},
+    {"run balls --sleep on", 2, "later version"},
+    {"run balls --sleep maybe", 2, "on, off"},
+    {"run balls --integrator rk4", 2, "verlet"},
+    {"run balls --backend cuda", 2, "cpu or gl"},
+    {"run balls --joints gpu", 2, "--joints is 'gpu'"},
+    {"run balls --narrow wide", 2, "native, fcl"},
+    {"run balls --device -2", 2, "--device is -2"},
+    {"run balls --seed -1", 2, "--seed is -1"},
+    {"run chain --ratio 0", 2, "above 0"},
+    {"run chain --ratio nan", 2, "above 0"},
+    {"run balls --gltf motion.obj", 2, ".gltf or .glb"},
+    {"run balls --json - --hash", 2, "--json -"},
+    {"run balls --json - --csv -", 2, "--json -"},
+    {"run balls --json /no/such/folder/a.json", 1, "/no/such/folder/a.json"},
+    {"run balls --csv /no/such/folder/a.csv", 1, "folder that exists"},
+    {"run balls --gltf /no/such/folder/a.glb", 1, "folder that exists"},
+    {"tables --json /no/such/folder/a.json", 1, "folder that exists"},
+    {"scenes --json /no/such/folder/a.json", 1, "folder that exists"},
+    {"doctor --csv /no/such/folder/a.csv", 1, "folder that exists"},
+    {"plan balls --json /no/such/folder/a.json", 1, "folder that exists"},
+    {"run balls --backend gl --device 99", 1, "99"},
+    {"plan balls --backend gl --device 99", 1, "99"},
+    {"accuracy", 1, "later version"},
+    {"accuracy A1 A2 --json -", 1, "later version"},
+    {"stability", 1, "later version"},
+    {"compare balls --csv x.csv", 1, "later version"},
+};
+
+}  // namespace
+
+TEST_CASE("errors: one line, the right code, nothing on standard output") {
+  for (const Case& c : cases) {
+    CAPTURE(c.arguments);
+    const Ran ran = command(c.arguments);
+    CAPTURE(ran.error);
+    CHECK(ran.code == c.code);
+    CHECK(ran.out.empty());
+    CHECK(ran.error.starts_with("pcphys: "));
+    CHECK(ran.error.find(c.says) != std::string::npos);
+    CHECK(std::count(ran.error.begin(), ran.error.end(), '\n') == 1);
+    CHECK(ran.error.ends_with("\n"));
+  }
+}
+
+TEST_CASE("errors: an unwritable file is noticed before the run, and a failed run leaves no file behind") {
+  Folder folder;
+  const Ran ran = command("run balls --steps 1000000000 --json /no/such/folder/a.json");  // would take days
+  CHECK(ran.code == 1);
+  const std::string json = folder.file("a.json");
+  CHECK(command("run marbles --json " + json).code == 2);
+  CHECK_FALSE(std::filesystem::exists(json));
+  std::ofstream(json) << "kept";
+  CHECK(command("run marbles --json " + json).code == 2);
+  CHECK(read_file(json) == "kept");
+}
+
+TEST_CASE("errors: gl never falls back to the CPU in silence") {
+  const Ran ran = command("run balls --count 1 --steps 1 --impulses gl --device 99 --json -");
+  CHECK(ran.code == 1);
+  CHECK(ran.out.empty());
+}

@@ -1,0 +1,64 @@
+// Runs the built program as a user would, and keeps what it said.
+#pragma once
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace pcphys::test {
+
+using Json = nlohmann::json;
+
+inline std::string read_file(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A folder of its own for every test case, gone at its end.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "pcphys-test-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct Ran {
+  int code = -1;
+  std::string out, error;
+
+  Json json() const { return Json::parse(out, nullptr, false); }
+};
+
+/// `pcphys ARGUMENTS`, through the shell.
+inline Ran command(const std::string& arguments) {
+  Folder folder;
+  const std::string line =
+      std::string(PCPHYS_COMMAND) + " " + arguments + " >" + folder.file("out") + " 2>" + folder.file("error") + " </dev/null";
+  const int status = std::system(line.c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder.file("out")), read_file(folder.file("error"))};
+}
+
+/// Whether `--backend gl` can work here.
+inline bool has_gl() {
+  static const bool usable = [] {
+    const Json report = command("doctor --json -").json();
+    for (const Json& device : report["gl"])
+      if (device["usable"].get<bool>()) return true;
+    return false;
+  }();
+  return usable;
+}
+
+}  // namespace pcphys::test
