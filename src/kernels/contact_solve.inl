@@ -79,7 +79,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_impulses, m, 3u, k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), k3));
 
   precise Real touch = k0 + k1 + k2 + k3;
-  a.phase = pc_max(a.phase, touch); b.phase = pc_max(b.phase, touch);
+  // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
+  a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, touch), b.phase);
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
   pc_apply(PC_PASS ia, ib, a, b, arms, pc_combine(t1, c1, t2, c2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, ct));
 }

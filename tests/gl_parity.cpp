@@ -1,0 +1,87 @@
+// Pins the contract of the whole library, kernel by kernel: the same text gives the same bits as scalar C++,
+// as SIMD lanes and as GLSL, in float and double. Covered: static and kinematic bodies, padding slots,
+// zero vectors, colours, locked and infinite limits, many turns, small and large values.
+// On a device that cannot round exactly (see `pcphys doctor`) parity is not promised, and this test says so.
+#include "gl_parity.h"
+
+#include "pcphys/device.h"
+
+namespace {
+using namespace parity;
+
+/// A sub-step and what stands around it, in the order of a step; the same kernel runs in both phases.
+struct Call { Kernel kernel; std::size_t info; };
+constexpr Call step_calls[] = {
+    {Kernel::begin, 0}, {Kernel::contact_prepare, 0}, {Kernel::integrate, 0}, {Kernel::joint_prepare, 0}, {Kernel::joint_solve, 0}, {Kernel::contact_warm, 0},
+    {Kernel::contact_solve, 0}, {Kernel::remember, 0}, {Kernel::advance, 0}, {Kernel::joint_solve, 1}, {Kernel::contact_solve, 1},
+};
+constexpr Call last_calls[] = {{Kernel::contact_restitution, 1}, {Kernel::contact_store, 1}, {Kernel::synchronise, 1}};
+
+std::vector<Call> calls(int sub_steps) {
+  std::vector<Call> all;
+  for (int i = 0; i < sub_steps; i++) all.insert(all.end(), std::begin(step_calls), std::end(step_calls));
+  all.insert(all.end(), std::begin(last_calls), std::end(last_calls));
+  return all;
+}
+
+/// Each kernel starts from the scalar reference's state, so a difference names the kernel that made it.
+template <class Scalar, class Other> void compare(const CpuKernels& reference, const char* what, Other other) {
+  for (const Mood& mood : moods) {
+    State<Scalar> state = Maker<Scalar>(7, mood).make();
+    for (const Call& call : calls(3)) {
+      State<Scalar> theirs = state;
+      run_cpu(reference, call.kernel, call.info, state);
+      other(call.kernel, call.info, theirs);
+      std::string first;
+      const std::size_t count = differences(call.kernel, state, theirs, first);
+      const std::string where = std::string(what) + ", " + std::string(schema(call.kernel).name) + ", " + mood.name + ": " + first;
+      INFO(where);
+      CHECK(count == 0);
+    }
+  }
+}
+
+template <class Scalar> void compare_gl(Precision precision, const CpuKernels& reference) {
+  const GlReport report = probe_gl(-1);
+  MESSAGE("device: " << report.renderer << ", " << report.version);
+  REQUIRE_MESSAGE((precision == Precision::f64 ? report.f64 : report.f32).parity(), "this device promises no parity");
+  const std::unique_ptr<Backend> gl = require_gl(precision);
+  compare<Scalar>(reference, "GL", [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, kernel, info, state); });
+}
+
+template <class Scalar> void compare_lanes(const CpuKernels& reference, const CpuKernels& lanes) {
+  const std::string what = std::to_string(lanes.lanes) + " lanes";
+  compare<Scalar>(reference, what.c_str(), [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_cpu(lanes, kernel, info, state); });
+}
+
+}  // namespace
+
+TEST_CASE("GL equals scalar float, kernel by kernel") { compare_gl<float>(Precision::f32, cpu_kernels_f1); }
+TEST_CASE("GL equals scalar double, kernel by kernel") { compare_gl<double>(Precision::f64, cpu_kernels_d1); }
+
+#ifdef PCPHYS_HAVE_X86_LANES
+TEST_CASE("four lanes of float equal scalar") { compare_lanes<float>(cpu_kernels_f1, cpu_kernels_f4); }
+TEST_CASE("eight lanes of float equal scalar") {
+  if (__builtin_cpu_supports("avx2")) compare_lanes<float>(cpu_kernels_f1, cpu_kernels_f8);
+}
+TEST_CASE("four lanes of double equal scalar") {
+  if (__builtin_cpu_supports("avx2")) compare_lanes<double>(cpu_kernels_d1, cpu_kernels_d4);
+}
+#endif
+
+/// The comparison itself must be able to fail: the contents are neither empty nor constant, and no value
+/// has left the numbers (not-a-number spreads, and compares as equal).
+TEST_CASE("the contents that parity is checked on move, and stay numbers") {
+  for (const Mood& mood : moods) {
+    State<float> state = Maker<float>(7, mood).make();
+    std::string first;
+    for (const Call& call : calls(3)) {
+      const State<float> before = state;
+      run_cpu(cpu_kernels_f1, call.kernel, call.info, state);
+      const std::string where = std::string(schema(call.kernel).name) + ", " + mood.name;
+      INFO(where);
+      CHECK(differences(call.kernel, before, state, first) > 100);
+      for (const std::vector<float>& reals : state.reals) CHECK(std::none_of(reals.begin(), reals.end(), [](float x) { return x != x; }));
+    }
+  }
+}
