@@ -30,7 +30,7 @@ PC_FN void pc_narrow_ordered(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
   if (b.kind == PC_BOX) {
     if (a.kind == PC_CAPSULE) { pc_capsule_box(a, b, margin, m); return; }
     if (pc_box_box(a, b, margin, hint, m)) return;
-    hint = 0u;
+    m.count = 0u; hint = 0u;
   }
   pc_convex(a, b, margin, hint, m);
 }

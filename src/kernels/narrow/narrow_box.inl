@@ -143,7 +143,8 @@ PC_FN_LARGE bool pc_box_edges(BoxPair k, Vec3 xa, Vec3 xb, uint edges, Real gap,
   return true;
 }
 
-// Returns false where only a general distance query gives the closest points (corners and edges apart).
+// Returns false, and no points that count, where only a general distance query gives the closest points: corners
+// and edges apart.
 PC_FN_LARGE bool pc_box_box(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(uint) hint, PC_INOUT(NarrowManifold) m) {
   BoxPair k = pc_box_pair(a, b);
   Real smallest = pc_min(pc_smallest(a.size), pc_smallest(b.size));
@@ -180,5 +181,9 @@ PC_FN_LARGE bool pc_box_box(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(
     m.normal = n;
     pc_box_faces(b.p, k.b, b.size, best.axis - 3u, pc_negate(n), a.p, k.a, a.size, best.gap, margin, best.axis * 8192u, m);
   }
-  return m.count > 0u || best.gap <= PC_REAL(0.0);
+  if (best.gap <= PC_REAL(0.0)) return true;
+  // apart: does the corner nearest to the face lie over it?
+  precise Real nearest = best.gap + edge_slop; bool held = false;
+  for (uint i = 0u; i < m.count; i++) held = held || m.points[i].separation <= nearest;
+  return held;
 }

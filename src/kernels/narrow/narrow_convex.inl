@@ -216,8 +216,7 @@ PC_FN Vec3 pc_unpack_direction(uint k) { return pc_unit_or_zero(Vec3(pc_unpack_p
 PC_FN_LARGE void pc_convex(NarrowShape sa, NarrowShape sb, Real margin, PC_INOUT(uint) hint, PC_INOUT(NarrowManifold) m) {
   Core a = pc_core(sa); Core b = pc_core(sb);
   precise Real around_a = a.reach + a.radius; precise Real around_b = b.reach + b.radius;
-  if (sa.kind == PC_BOX) a = pc_core(pc_window(sa, sb.p, around_b, margin));
-  if (sb.kind == PC_BOX) b = pc_core(pc_window(sb, sa.p, around_a, margin));
+  a = pc_core(pc_window(sa, sb.p, around_b, margin)); b = pc_core(pc_window(sb, sa.p, around_a, margin));
   precise Real farthest = margin + a.radius + b.radius; precise Real size = a.reach + b.reach; precise Real touch = size * PC_CORE_TOUCH;
   if ((hint & 0x80000000u) != 0u) {  // may only end the search where it would end without: by more than its error
     precise Real surely = farthest + touch;

@@ -13,20 +13,27 @@ PC_FN Core pc_core(NarrowShape s) {
   return c;
 }
 
-// The part of a large box that a shape within `reach` of `centre` can meet: faces farther away than any way
-// out are cut off, so that a floor of 200 m has numbers of the size of what lies on it.
-PC_FN NarrowShape pc_window(NarrowShape box, Vec3 centre, Real reach, Real margin) {
-  Axes axes = pc_axes(box.q); Vec3 h = box.size;
-  precise Real window = pc_smallest(h) * PC_REAL(2.0) + reach * PC_REAL(4.0) + margin;
-  if (pc_largest(h) <= window) return box;
-  Vec3 c = pc_to_local(axes, pc_sub(centre, box.p));
+// The part of a long shape that another within `reach` of `centre` can meet: what lies farther away than any
+// way out is cut off, so that a floor of 200 m has numbers of the size of what lies on it.
+PC_FN_LARGE NarrowShape pc_window(NarrowShape s, Vec3 centre, Real reach, Real margin) {
+  bool box = s.kind == PC_BOX; Vec3 h = box ? s.size : Vec3(PC_REAL(0.0), s.size.y, PC_REAL(0.0));
+  Real least = box ? pc_smallest(h) : s.size.x;
+  precise Real window = least * PC_REAL(2.0) + reach * PC_REAL(4.0) + margin;
+  if (pc_largest(h) <= window) return s;
+  Axes axes = pc_axes(s.q); Vec3 c = pc_to_local(axes, pc_sub(centre, s.p));
   Vec3 all = Vec3(window, window, window);
   precise Vec3 low = c - all; precise Vec3 high = c + all;
   Vec3 from = Vec3(pc_max(low.x, -h.x), pc_max(low.y, -h.y), pc_max(low.z, -h.z));
   Vec3 to = Vec3(pc_min(high.x, h.x), pc_min(high.y, h.y), pc_min(high.z, h.z));
   precise Vec3 size = (to - from) * PC_REAL(0.5); precise Vec3 shift = (to + from) * PC_REAL(0.5);
-  if (!(pc_smallest(size) > PC_REAL(0.0))) return box;
-  NarrowShape part = box; part.size = size; part.p = pc_add(box.p, pc_to_world(axes, shift));
+  NarrowShape part = s;
+  if (box) {
+    if (!(pc_smallest(size) > PC_REAL(0.0))) return s;
+    part.size = size; part.p = pc_add(s.p, pc_to_world(axes, shift));
+  } else {
+    if (!(size.y > PC_REAL(0.0))) return s;
+    part.size = Vec3(s.size.x, size.y, PC_REAL(0.0)); part.p = pc_madd(s.p, axes.y, shift.y);
+  }
   return part;
 }
 

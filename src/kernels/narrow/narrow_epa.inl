@@ -6,25 +6,34 @@
 #define PC_HULL_FACES 128u
 struct Hull {
   uint vertices; uint faces; Vec3 w[64]; Vec3 a[64];
-  uint i[128]; uint j[128]; uint k[128]; Vec3 n[128]; Real h[128];
+  uint i[128]; uint j[128]; uint k[128]; Vec3 n[128]; Real h[128]; Real noise[128];
+  Vec3 inner; Real rounding; Real size;  // a point inside; rounding error of a vertex; of D
 };
 struct Penetration { Vec3 n; Real h; Vec3 a; };  // h(n) is least along n; a: the point of A there
 
 PC_FN void pc_hull_vertex(PC_INOUT(Hull) hull, Support s) { hull.w[hull.vertices] = s.w; hull.a[hull.vertices] = s.a; hull.vertices = hull.vertices + 1u; }
 
-// Face i j k, counter-clockwise from outside. A sliver has no normal and is never chosen.
-PC_FN void pc_hull_face(PC_INOUT(Hull) hull, uint i, uint j, uint k, Real sliver) {
+// Face i j k, counter-clockwise from outside. A vertex less than `noise` beyond its plane does not see it: the
+// rounding of the normal of a narrow triangle, carried over the whole polytope. A face without a normal,
+// or turned inside out by rounding (the caps of cylinders are full of points in one plane), is never chosen.
+PC_FN_LARGE void pc_hull_face(PC_INOUT(Hull) hull, uint i, uint j, uint k) {
   uint f = hull.faces; hull.faces = f + 1u;
   hull.i[f] = i; hull.j[f] = j; hull.k[f] = k;
-  Vec3 n = pc_cross(pc_sub(hull.w[j], hull.w[i]), pc_sub(hull.w[k], hull.w[i]));
-  Real length = pc_length(n);
-  if (length > sliver) { hull.n[f] = pc_scale(n, pc_div(PC_REAL(1.0), length)); hull.h[f] = pc_dot(hull.n[f], hull.w[i]); }
-  else { hull.n[f] = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); hull.h[f] = PC_REAL(1e30); }
+  hull.n[f] = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); hull.h[f] = PC_REAL(1e30); hull.noise[f] = PC_REAL(0.0);
+  Vec3 ij = pc_sub(hull.w[j], hull.w[i]); Vec3 ik = pc_sub(hull.w[k], hull.w[i]);
+  Vec3 n = pc_cross(ij, ik); Real length = pc_length(n); Real longest = pc_sqrt(pc_max(pc_dot(ij, ij), pc_dot(ik, ik)));
+  precise Real sliver = longest * hull.rounding;
+  if (!(length > sliver)) return;
+  Vec3 u = pc_scale(n, pc_div(PC_REAL(1.0), length)); Real h = pc_dot(u, hull.w[i]); Real inside = pc_dot(u, hull.inner);
+  if (!(inside < h)) return;
+  precise Real spread = hull.size * longest;
+  precise Real noise = hull.rounding * (PC_REAL(1.0) + pc_div(spread, length));
+  hull.n[f] = u; hull.h[f] = h; hull.noise[f] = noise;
 }
-PC_FN void pc_hull_seed_face(PC_INOUT(Hull) hull, uint i, uint j, uint k, uint inner, Real sliver) {
+PC_FN void pc_hull_seed_face(PC_INOUT(Hull) hull, uint i, uint j, uint k) {
   Vec3 n = pc_cross(pc_sub(hull.w[j], hull.w[i]), pc_sub(hull.w[k], hull.w[i]));
-  if (pc_dot(n, pc_sub(hull.w[inner], hull.w[i])) > PC_REAL(0.0)) pc_hull_face(hull, i, k, j, sliver);
-  else pc_hull_face(hull, i, j, k, sliver);
+  if (pc_dot(n, pc_sub(hull.inner, hull.w[i])) > PC_REAL(0.0)) pc_hull_face(hull, i, k, j);
+  else pc_hull_face(hull, i, j, k);
 }
 
 // Of the supports along d and against it, the one farther from the plane through `at`.
@@ -35,7 +44,7 @@ PC_FN_LARGE Support pc_far_support(Core a, Core b, Vec3 d, Vec3 at) {
   return t;
 }
 
-PC_FN_LARGE void pc_hull_seed(PC_INOUT(Hull) hull, Core a, Core b, Vec3 d, Real sliver) {
+PC_FN_LARGE void pc_hull_seed(PC_INOUT(Hull) hull, Core a, Core b, Vec3 d) {
   hull.vertices = 0u; hull.faces = 0u;
   pc_hull_vertex(hull, pc_support(a, b, d));
   pc_hull_vertex(hull, pc_far_support(a, b, d, hull.w[0]));
@@ -43,17 +52,20 @@ PC_FN_LARGE void pc_hull_seed(PC_INOUT(Hull) hull, Core a, Core b, Vec3 d, Real 
   pc_hull_vertex(hull, pc_far_support(a, b, pc_perpendicular(e), hull.w[0]));
   Vec3 n = pc_unit_or_zero(pc_cross(pc_sub(hull.w[1], hull.w[0]), pc_sub(hull.w[2], hull.w[0])));
   pc_hull_vertex(hull, pc_far_support(a, b, n, hull.w[0]));
-  pc_hull_seed_face(hull, 0u, 1u, 2u, 3u, sliver); pc_hull_seed_face(hull, 0u, 1u, 3u, 2u, sliver);
-  pc_hull_seed_face(hull, 0u, 2u, 3u, 1u, sliver); pc_hull_seed_face(hull, 1u, 2u, 3u, 0u, sliver);
+  precise Vec3 inner = (hull.w[0] + hull.w[1] + hull.w[2] + hull.w[3]) * PC_REAL(0.25);
+  precise Real size = a.reach + b.reach; precise Real rounding = size * PC_EPA_ROUNDING;
+  hull.inner = inner; hull.size = size; hull.rounding = rounding;
+  pc_hull_seed_face(hull, 0u, 1u, 2u); pc_hull_seed_face(hull, 0u, 1u, 3u); pc_hull_seed_face(hull, 0u, 2u, 3u); pc_hull_seed_face(hull, 1u, 2u, 3u);
 }
 
-// Replaces the faces that the last vertex sees by a cone from it over their rim. False when there is no room.
-PC_FN_LARGE bool pc_hull_grow(PC_INOUT(Hull) hull, Real slop, Real sliver) {
+// Replaces the faces that the last vertex sees, `seen` among them, by a cone from it over their rim. False when
+// there is no room.
+PC_FN_LARGE bool pc_hull_grow(PC_INOUT(Hull) hull, uint seen) {
   uint apex = hull.vertices - 1u; Vec3 w = hull.w[apex];
   uint from[96]; uint to[96]; uint edges = 0u; uint kept = 0u;
   for (uint f = 0u; f < hull.faces; f++) {
     precise Real beyond = pc_dot(hull.n[f], w) - hull.h[f];
-    if (beyond > slop) {
+    if (f == seen || beyond > hull.noise[f]) {
       for (uint c = 0u; c < 3u; c++) {
         uint p = c == 0u ? hull.i[f] : (c == 1u ? hull.j[f] : hull.k[f]); uint q = c == 0u ? hull.j[f] : (c == 1u ? hull.k[f] : hull.i[f]);
         uint found = edges;
@@ -62,13 +74,13 @@ PC_FN_LARGE bool pc_hull_grow(PC_INOUT(Hull) hull, Real slop, Real sliver) {
         else { if (edges == 96u) return false; from[edges] = p; to[edges] = q; edges = edges + 1u; }
       }
     } else {
-      hull.i[kept] = hull.i[f]; hull.j[kept] = hull.j[f]; hull.k[kept] = hull.k[f]; hull.n[kept] = hull.n[f]; hull.h[kept] = hull.h[f];
+      hull.i[kept] = hull.i[f]; hull.j[kept] = hull.j[f]; hull.k[kept] = hull.k[f]; hull.n[kept] = hull.n[f]; hull.h[kept] = hull.h[f]; hull.noise[kept] = hull.noise[f];
       kept = kept + 1u;
     }
   }
   hull.faces = kept;
   if (edges < 3u || kept + edges > PC_HULL_FACES) return false;
-  for (uint e = 0u; e < edges; e++) pc_hull_face(hull, from[e], to[e], apex, sliver);
+  for (uint e = 0u; e < edges; e++) pc_hull_face(hull, from[e], to[e], apex);
   return true;
 }
 
@@ -82,8 +94,7 @@ PC_FN Vec3 pc_hull_witness(Hull hull, uint f) {
 
 PC_FN_LARGE Penetration pc_penetration(Core a, Core b, Vec3 start) {
   precise Real size = a.reach + b.reach; precise Real tolerance = size * PC_EPA_GAP;
-  precise Real slop = size * PC_EPA_SLOP; precise Real sliver = size * size * PC_EPA_SLOP;
-  Hull hull; pc_hull_seed(hull, a, b, start, sliver);
+  Hull hull; pc_hull_seed(hull, a, b, start);
   Penetration o; o.n = start; o.h = PC_REAL(1e30); o.a = hull.a[0];
   for (uint round = 0u; round < PC_HULL_VERTICES; round++) {
     uint f = 0u;
@@ -93,7 +104,7 @@ PC_FN_LARGE Penetration pc_penetration(Core a, Core b, Vec3 start) {
     if (h < o.h && hull.h[f] < PC_REAL(1e29)) { o.n = n; o.h = h; o.a = pc_hull_witness(hull, f); }
     if (!(gap > tolerance) || hull.vertices == PC_HULL_VERTICES) break;
     pc_hull_vertex(hull, s);
-    if (!pc_hull_grow(hull, slop, sliver)) break;
+    if (!pc_hull_grow(hull, f)) break;
   }
   return o;
 }

@@ -110,12 +110,12 @@ PC_FN void pc_push_from(PC_INOUT(NarrowManifold) m, Vec3 x, Vec3 n, Real radius,
 #ifdef PC_DOUBLE
 #define PC_GJK_GAP PC_REAL(1e-12)
 #define PC_EPA_GAP PC_REAL(1e-7)
-#define PC_EPA_SLOP PC_REAL(1e-14)
+#define PC_EPA_ROUNDING PC_REAL(1e-15)
 #define PC_SHARPEN_SLOP PC_REAL(1e-9)
 #else
 #define PC_GJK_GAP PC_REAL(1e-6)
 #define PC_EPA_GAP PC_REAL(3e-6)
-#define PC_EPA_SLOP PC_REAL(2e-7)
+#define PC_EPA_ROUNDING PC_REAL(3e-7)
 #define PC_SHARPEN_SLOP PC_REAL(1e-6)
 #endif
 // A face whose normal is this near the contact normal carries the contact (0.8 degrees).
