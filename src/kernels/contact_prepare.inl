@@ -102,6 +102,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_E, material.v.z);
   PC_ST(contact_rows, m, ROW_APPROACH, approach0); PC_ST(contact_rows, m, ROW_APPROACH + 1u, approach1); PC_ST(contact_rows, m, ROW_APPROACH + 2u, approach2); PC_ST(contact_rows, m, ROW_APPROACH + 3u, approach3);
 
+  precise Real share_a = b.inverse_mass * pc_inverse_or_zero(k);
+  PC_ST(contact_rows, m, ROW_SHARE, share_a); PC_ST(contact_rows, m, ROW_K, pc_min(nn, pc_min(k11, k22)));
+
   // remembered impulses; they scale with the sub-step
   Real ratio = PC_INFO(impulse_ratio);
   precise Real l0 = pushes.v.x * w0 * ratio; precise Real l1 = pushes.v.y * w1 * ratio; precise Real l2 = pushes.v.z * w2 * ratio; precise Real l3 = pushes.s * w3 * ratio;
@@ -109,4 +112,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_impulses, m, 0u, l0); PC_ST(contact_impulses, m, 1u, l1); PC_ST(contact_impulses, m, 2u, l2); PC_ST(contact_impulses, m, 3u, l3);
   PC_ST(contact_impulses, m, IMPULSE_T, f1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, ft);
   PC_ST(contact_impulses, m, IMPULSE_LARGEST, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, zero);
+  precise Real load = l0 + l1 + l2 + l3; PC_ST(contact_impulses, m, IMPULSE_BEFORE, load);
 }

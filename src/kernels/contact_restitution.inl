@@ -1,7 +1,11 @@
 // After the last sub-step: rows that were pressed in this step and approached faster than the threshold
 // leave with e times their approach speed (restitution e: the mean of the two bodies', as the original).
+// The load that this adds allows more friction, so a bouncing manifold's friction is solved once more:
+// in all mu (1 + e) times the impulse that stopped it, Newton's and Coulomb's laws together.
+// These impulses are not remembered: they are of an instant, warm starting is for what lasts.
 #include "contact_rows.inl"
 #include "contact_response.inl"
+#include "contact_friction.inl"
 
 PC_FN Real pc_restitution_row(PC_IO Real vn, Real approach, Real largest, Real e, Real mass, Real impulse) {
   precise Real threshold = -PC_INFO(restitution_threshold);
@@ -15,27 +19,42 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
-  Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
+  Arms arms = pc_arms(PC_PASS m, a, b, moved_a.v, moved_b.v);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
   Real e = PC_LD(contact_rows, m, ROW_E);
   Real vn = v.vn; Real w1 = v.w1; Real w2 = v.w2;
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   Real l0 = PC_LD(contact_impulses, m, 0u);
-  Real k0 = pc_restitution_row(PC_PASS v0, PC_LD(contact_rows, m, ROW_APPROACH), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), e, PC_LD(contact_rows, m, ROW_MASS), l0); precise Real e0 = k0 - l0; PC_ST(contact_impulses, m, 0u, k0);
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * arms.scale;
+  Real k0 = pc_restitution_row(PC_PASS v0, PC_LD(contact_rows, m, ROW_APPROACH), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), e, m0, l0); precise Real e0 = k0 - l0;
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
   Real l1 = PC_LD(contact_impulses, m, 1u);
-  Real k1 = pc_restitution_row(PC_PASS v1, PC_LD(contact_rows, m, ROW_APPROACH + 1u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), e, PC_LD(contact_rows, m, ROW_MASS + 1u), l1); precise Real e1 = k1 - l1; PC_ST(contact_impulses, m, 1u, k1);
+  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * arms.scale;
+  Real k1 = pc_restitution_row(PC_PASS v1, PC_LD(contact_rows, m, ROW_APPROACH + 1u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), e, m1, l1); precise Real e1 = k1 - l1;
   Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
   precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
   Real l2 = PC_LD(contact_impulses, m, 2u);
-  Real k2 = pc_restitution_row(PC_PASS v2, PC_LD(contact_rows, m, ROW_APPROACH + 2u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), e, PC_LD(contact_rows, m, ROW_MASS + 2u), l2); precise Real e2 = k2 - l2; PC_ST(contact_impulses, m, 2u, k2);
+  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * arms.scale;
+  Real k2 = pc_restitution_row(PC_PASS v2, PC_LD(contact_rows, m, ROW_APPROACH + 2u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), e, m2, l2); precise Real e2 = k2 - l2;
   Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
   Real l3 = PC_LD(contact_impulses, m, 3u);
-  Real k3 = pc_restitution_row(PC_PASS v3, PC_LD(contact_rows, m, ROW_APPROACH + 3u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), e, PC_LD(contact_rows, m, ROW_MASS + 3u), l3); precise Real e3 = k3 - l3; PC_ST(contact_impulses, m, 3u, k3);
+  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * arms.scale;
+  Real k3 = pc_restitution_row(PC_PASS v3, PC_LD(contact_rows, m, ROW_APPROACH + 3u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), e, m3, l3); precise Real e3 = k3 - l3;
 
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
-  pc_apply(PC_PASS ia, ib, a, b, arms, pc_scale(n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, PC_REAL(0.0)));
+  Mask bounced = push.n > PC_REAL(0.0);
+  // by symmetry the responses of sliding and twist to the normal rows are those of the rows to them
+  Twist after = v;
+  precise Real v1_after = v.v1 + (PC_LD(contact_rows, m, ROW_C) * push.n + PC_LD(contact_rows, m, ROW_C + 3u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 6u) * push.m2);
+  precise Real v2_after = v.v2 + (PC_LD(contact_rows, m, ROW_C + 1u) * push.n + PC_LD(contact_rows, m, ROW_C + 4u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 7u) * push.m2);
+  precise Real wn_after = v.wn + (PC_LD(contact_rows, m, ROW_C + 2u) * push.n + PC_LD(contact_rows, m, ROW_C + 5u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 8u) * push.m2);
+  after.v1 = v1_after; after.v2 = v2_after; after.wn = wn_after;
+  precise Real load = k0 + k1 + k2 + k3;
+  Friction f = pc_friction(PC_PASS m, after, load, arms.scale);
+  Real zero = PC_REAL(0.0);
+  Real c1 = pc_select(bounced, f.change1, zero); Real c2 = pc_select(bounced, f.change2, zero); Real ct = pc_select(bounced, f.change_twist, zero);
+  pc_apply(PC_PASS ia, ib, a, b, arms, pc_combine(t1, c1, t2, c2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, ct));
 }

@@ -22,8 +22,12 @@ const uint ROW_MU_KINETIC = 50u;
 const uint ROW_RADIUS = 51u;   // lever of the twist friction: root mean square distance of the points
 const uint ROW_E = 52u;        // restitution
 const uint ROW_APPROACH = 53u; // relative normal velocity of each point at the start of the step
-// impulses: normal 0..3, friction 4 5, twist 6, largest normal impulse of the step 8..11
+const uint ROW_SHARE = 57u;   // of body a in what the arms must shift by, see pc_arms
+const uint ROW_K = 58u;       // smallest response of the three directions at the centre
+// impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
+// the step 8..11
 const uint IMPULSE_T = 4u;
+const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;
 
 PC_FN Vec3 pc_ld3_rows(PC_IO Slot m, uint f) { return Vec3(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u)); }

@@ -2,10 +2,9 @@
 // accumulated impulses). The biased solve and the relax pass are this same text with other coefficients:
 // relax has contact_rate 0, mass scale 1, impulse scale 0, so it removes the velocity that undoing an
 // overlap put in (soft step: E. Catto, Solver2D, 2024).
-// Friction: while the impulse that stops all sliding is within mu_static times the load it acts whole;
-// beyond, mu_kinetic times the load acts against the sliding (a circle, not a pyramid).
 #include "contact_rows.inl"
 #include "contact_response.inl"
+#include "contact_friction.inl"
 
 // New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint.
@@ -24,7 +23,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u); Quad turned_a = PC_GATHER(delta, ia, 1u); Quad turned_b = PC_GATHER(delta, ib, 1u);
-  Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
 
   // how the separations changed since the start of the step
   Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, pc_ld3_rows(PC_PASS m, ROW_ARM_A)));
@@ -33,54 +31,40 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real shift_n = pc_dot(n, pc_sub(shift_b, shift_a)); Real turn1 = pc_dot(t1, turn); Real turn2 = pc_dot(t2, turn);
 
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Arms arms = pc_arms(PC_PASS m, a, b, moved_a.v, moved_b.v);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
-  Real f1 = PC_LD(contact_impulses, m, IMPULSE_T); Real f2 = PC_LD(contact_impulses, m, IMPULSE_T + 1u); Real ft = PC_LD(contact_impulses, m, IMPULSE_T + 2u);
 
-  // friction: 2 x 2 block with a circular clamp, then the twist
   precise Real load = l0 + l1 + l2 + l3;
-  precise Real static_limit = load * PC_LD(contact_rows, m, ROW_MU_STATIC); precise Real kinetic_limit = load * PC_LD(contact_rows, m, ROW_MU_KINETIC);
-  precise Real twist_limit = kinetic_limit * PC_LD(contact_rows, m, ROW_RADIUS);
-  Real t12 = PC_LD(contact_rows, m, ROW_TT + 1u);
-  precise Real g1 = f1 - (PC_LD(contact_rows, m, ROW_TT) * v.v1 + t12 * v.v2); precise Real g2 = f2 - (t12 * v.v1 + PC_LD(contact_rows, m, ROW_TT + 2u) * v.v2);
-  precise Real gg = g1 * g1 + g2 * g2; precise Real limit_squared = static_limit * static_limit;
-  Mask slides = gg > limit_squared;
-  Real scale = pc_select(slides, pc_div(kinetic_limit, pc_sqrt(pc_select(slides, gg, PC_REAL(1.0)))), PC_REAL(1.0));
-  precise Real kept1 = g1 * scale; precise Real kept2 = g2 * scale; Real h1 = pc_snap(kept1); Real h2 = pc_snap(kept2);
-  precise Real c1 = h1 - f1; precise Real c2 = h2 - f2;
-  precise Real wt = v.wn + (PC_LD(contact_rows, m, ROW_KW) * c1 + PC_LD(contact_rows, m, ROW_KW + 1u) * c2);
-  precise Real gt = ft - PC_LD(contact_rows, m, ROW_TWIST) * wt;
-  Real ht = pc_snap(pc_max(pc_min(gt, twist_limit), -twist_limit)); precise Real ct = ht - ft;
-  PC_ST(contact_impulses, m, IMPULSE_T, h1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, h2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, ht);
-  precise Real vn = v.vn + (PC_LD(contact_rows, m, ROW_C) * c1 + PC_LD(contact_rows, m, ROW_C + 1u) * c2 + PC_LD(contact_rows, m, ROW_C + 2u) * ct);
-  precise Real w1 = v.w1 + (PC_LD(contact_rows, m, ROW_C + 3u) * c1 + PC_LD(contact_rows, m, ROW_C + 4u) * c2 + PC_LD(contact_rows, m, ROW_C + 5u) * ct);
-  precise Real w2 = v.w2 + (PC_LD(contact_rows, m, ROW_C + 6u) * c1 + PC_LD(contact_rows, m, ROW_C + 7u) * c2 + PC_LD(contact_rows, m, ROW_C + 8u) * ct);
+  Friction f = pc_friction(PC_PASS m, v, load, arms.scale);
+  PC_ST(contact_impulses, m, IMPULSE_T, f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, f.next_twist);
+  Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
   // normal rows
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift_n + b0 * turn1 - a0 * turn2);
-  Real k0 = pc_normal_row(PC_PASS v0, s0, PC_LD(contact_rows, m, ROW_MASS), l0); precise Real e0 = k0 - l0;
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * arms.scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0); precise Real e0 = k0 - l0;
   PC_ST(contact_impulses, m, 0u, k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 0u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), k0));
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
   precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift_n + b1 * turn1 - a1 * turn2);
-  Real k1 = pc_normal_row(PC_PASS v1, s1, PC_LD(contact_rows, m, ROW_MASS + 1u), l1); precise Real e1 = k1 - l1;
+  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * arms.scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1); precise Real e1 = k1 - l1;
   PC_ST(contact_impulses, m, 1u, k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), k1));
   Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
   precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
   precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift_n + b2 * turn1 - a2 * turn2);
-  Real k2 = pc_normal_row(PC_PASS v2, s2, PC_LD(contact_rows, m, ROW_MASS + 2u), l2); precise Real e2 = k2 - l2;
+  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * arms.scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2); precise Real e2 = k2 - l2;
   PC_ST(contact_impulses, m, 2u, k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), k2));
   Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
   precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift_n + b3 * turn1 - a3 * turn2);
-  Real k3 = pc_normal_row(PC_PASS v3, s3, PC_LD(contact_rows, m, ROW_MASS + 3u), l3); precise Real e3 = k3 - l3;
+  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * arms.scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3); precise Real e3 = k3 - l3;
   PC_ST(contact_impulses, m, 3u, k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), k3));
 
   precise Real touch = k0 + k1 + k2 + k3;
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, touch), b.phase);
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
-  pc_apply(PC_PASS ia, ib, a, b, arms, pc_combine(t1, c1, t2, c2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, ct));
+  pc_apply(PC_PASS ia, ib, a, b, arms, pc_combine(t1, f.change1, t2, f.change2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist));
 }

@@ -1,5 +1,5 @@
 // Stage 1 of a sub-step: forces and drag. With F the drag, a the acceleration:
-//   u' = e^(-F h) u + a h phi(F h),   L' = e^(-G h) L + T h phi(G h)
+//   u' = u + a h phi(F h) - (1 - e^(-F h)) u,   L' = L + T h phi(G h) - (1 - e^(-G h)) L
 // which is exact for constant a, T (errata vi of the method); then the inertia of the new sub-step.
 #include "world_inertia.inl"
 
@@ -19,8 +19,8 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Decay calm = pc_decay(y);
   precise Real kick = slow.phi * h;
   precise Real twist = calm.phi * h;
-  precise Vec3 u = linear.v * slow.e + acceleration * kick;
-  precise Vec3 l = angular.v * calm.e + turn.v * twist;
+  precise Vec3 u = linear.v + (acceleration * kick - linear.v * slow.loss);
+  precise Vec3 l = angular.v + (turn.v * twist - angular.v * calm.loss);
   linear.v = pc_select3(dynamic_body, pc_snap3(u), linear.v);
   angular.v = pc_select3(dynamic_body, pc_snap3(l), angular.v);
   angular.s = PC_REAL(0.0);

@@ -186,8 +186,9 @@ PC_FN Real pc_angle(Real y, Real x) {
 // e = exp(-x), phi = (1 - e) / x and phi2 = (1 - phi) / x for x >= 0 (clamped to 60): with them linear drag
 // is exact under constant force. Taylor series of phi2 at y = x / 64, then six doublings:
 //   phi(2y) = phi (1 - y phi / 2),  phi2(2y) = (phi2 + phi^2 / 2) / 2,  e(2y) = e(y)^2.
-// Below x = 1, e = 1 - x phi rounds once instead of doubling its error six times.
-struct Decay { Real e; Real phi; Real phi2; };
+// Below x = 1, e = 1 - x phi rounds once instead of doubling its error six times. loss = 1 - e without
+// cancellation: a velocity that is changed by its loss keeps the digits that multiplying by e would drop.
+struct Decay { Real e; Real loss; Real phi; Real phi2; };
 PC_FN Decay pc_decay(Real drag_times_h) {
   Real x = pc_min(drag_times_h, PC_REAL(60.0));
   precise Real y0 = x * PC_REAL(0.015625);
@@ -203,6 +204,7 @@ PC_FN Decay pc_decay(Real drag_times_h) {
     precise Real twice = y + y;
     phi2 = n2; phi = n1; e = n0; y = twice;
   }
-  precise Real small = PC_REAL(1.0) - x * phi;
-  Decay d; d.e = pc_select(x < PC_REAL(1.0), small, e); d.phi = phi; d.phi2 = phi2; return d;
+  precise Real loss = x * phi;
+  precise Real gentle = PC_REAL(1.0) - loss;
+  Decay d; d.e = pc_select(x < PC_REAL(1.0), gentle, e); d.loss = loss; d.phi = phi; d.phi2 = phi2; return d;
 }

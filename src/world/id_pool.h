@@ -16,7 +16,7 @@ class IdPool {
   };
 
   std::uint32_t allocate(std::uint32_t row) {
-    std::uint32_t index;
+    std::uint32_t index = 0;
     if (free_.empty()) {
       index = std::uint32_t(slots_.size());
       slots_.emplace_back();

@@ -24,6 +24,13 @@ class Tables {
   void resize(Table table, std::uint32_t rows);
   void copy_row(Table table, std::uint32_t from, std::uint32_t to);
 
+  /// Takes over the rows of a table of one buffer, handing back those it had.
+  void exchange(Table table, Buffer buffer, AlignedBytes& bytes, std::uint32_t rows) {
+    std::swap(bytes_[std::size_t(buffer)], bytes);
+    rows_[std::size_t(table)] = rows;
+    touch(buffer);
+  }
+
   AlignedBytes& bytes(Buffer buffer) { return bytes_[std::size_t(buffer)]; }
   const AlignedBytes& bytes(Buffer buffer) const { return bytes_[std::size_t(buffer)]; }
   template <class Scalar> Scalar* data(Buffer buffer) { return reinterpret_cast<Scalar*>(bytes(buffer).data()); }

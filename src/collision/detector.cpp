@@ -1,0 +1,177 @@
+#include "collision/detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <type_traits>
+
+#ifdef PCPHYS_HAVE_FCL
+#include "collision/fcl_narrow.h"
+#endif
+#include "collision/view.h"
+#include "pcphys/constants.h"
+
+namespace pcphys {
+namespace {
+
+/// A pair is listed when it may ever touch: other bodies, one of them dynamic, no joint between, filters agree.
+bool may_touch(const void* context, std::uint32_t a, std::uint32_t b) {
+  const WorldState& s = *static_cast<const WorldState*>(context);
+  const ShapeRecord &x = s.shapes[a], &y = s.shapes[b];
+  if (x.body == y.body) return false;
+  if (s.bodies[s.body_ids.row(x.body)].kind != BodyKind::dynamic && s.bodies[s.body_ids.row(y.body)].kind != BodyKind::dynamic) return false;
+  if (x.filter.group != 0 && x.filter.group == y.filter.group) {
+    if (x.filter.group < 0) return false;
+  } else if (!(x.filter.category & y.filter.mask) || !(y.filter.category & x.filter.mask)) {
+    return false;
+  }
+  return s.no_collide.empty() || !s.no_collide.contains(WorldState::pair_key(x.body, y.body));
+}
+
+float bounding_radius(const ShapeDef& d) {
+  const double own = d.kind == ShapeKind::box ? length(d.size) : d.kind == ShapeKind::sphere ? d.size.x : d.size.x + d.size.y;
+  return float(own + length(d.local.position));
+}
+
+}  // namespace
+
+void Detector::rebuild(const WorldState& s) {
+  structure_ = s.structure_version;
+  world_ = &s;
+  pairs_ = PairCache();
+  pairs_.set_margin(float(constants::broad_margin), 0.125f);
+  pairs_.set_filter(may_touch, &s);
+  proxies_.assign(s.shapes.size(), {});
+  tight_.assign(s.shapes.size(), {});
+  reach_.assign(s.shapes.size(), 0);
+  hints_.clear();
+  bool some_dynamic = false;
+  std::uint32_t solid = 0;
+  for (std::uint32_t i = 0; i < s.shapes.size(); i++) {
+    const ShapeRecord& shape = s.shapes[i];
+    if (!shape.alive || (shape.filter.mask == 0 && shape.filter.group <= 0)) continue;
+    const std::uint32_t row = s.body_ids.row(shape.body);
+    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{}, row, bounding_radius(shape.def)};
+    pairs_.add(i, s.bodies[row].kind != BodyKind::fixed);
+    some_dynamic |= s.bodies[row].kind == BodyKind::dynamic;
+    solid++;
+  }
+  possible_ = some_dynamic && solid > 1;
+}
+
+bool Detector::may_bounce(const WorldState& s) {
+  for (std::uint32_t row = 0; row < s.bodies.size(); row++)
+    if (s.tables.get(Buffer::material, row, 2) > 0) return true;
+  return false;
+}
+
+Status Detector::find_pairs(const WorldState& s, double dt, const Options& options) {
+  if (structure_ != s.structure_version || world_ != &s) rebuild(s);
+  if (!possible_) return {};
+  if (s.tables.precision() == Precision::f32) bound<float>(s, dt, options.contact_margin, scratch_f_.shapes);
+  else bound<double>(s, dt, options.contact_margin, scratch_d_.shapes);
+  pairs_.set_capacity(options.max_pairs);
+  const PairReport report = pairs_.update(tight_);
+  if (report.overflow)
+    return Error{ErrorCode::buffer_full, "The scene has " + std::to_string(report.pairs_needed) + (report.needed_is_exact ? "" : " or fewer") + " pairs of shapes close together and room for " + std::to_string(options.max_pairs) +
+                                             "; raise StepSettings::max_pairs, or spread the bodies. The world is as before the step."};
+  if (report.refused > 0) {
+    const std::uint32_t body = s.shapes[report.first_refused].body;
+    structure_ = 0;  // the broad phase dropped the shape: list all of them anew once the host has mended it
+    return Error{ErrorCode::not_finite, "The pose or velocity of body " + std::to_string(body) + " is not finite; set it anew or destroy the body. The world is as before the step."};
+  }
+  if (report.changed) {
+    next_hints_.resize(pairs_.pairs().size());
+    const auto previous = pairs_.previous_index();
+    for (std::size_t i = 0; i < next_hints_.size(); i++) next_hints_[i] = previous[i] < hints_.size() ? hints_[previous[i]] : 0;
+    hints_.swap(next_hints_);
+  }
+  return {};
+}
+
+// Each box is grown by half the margin and by how far its shape can come within the step, so that every two
+// shapes that come within the margin of each other have overlapping boxes.
+template <class Scalar>
+void Detector::bound(const WorldState& s, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes) {
+  shapes.resize(s.shapes.size());
+  const BodyReader<Scalar> bodies(s.tables);
+  const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
+  const double fall = length(s.gravity) * dt * dt;
+  for (std::uint32_t i = 0; i < proxies_.size(); i++) {
+    const Proxy& proxy = proxies_[i];
+    if (!proxy.alive) continue;
+    ShapeView<Scalar>& view = shapes[i];
+    place_shape(table + std::size_t(i + 1) * 12, proxy.kind, proxy.centred, bodies.orientation(proxy.body), view);
+    const bool moves = s.bodies[proxy.body].kind != BodyKind::fixed;
+    const float turn = std::min(float(dt) * bodies.angular_speed(proxy.body), 2.0f) * proxy.radius;
+    reach_[i] = moves ? float(dt) * bodies.speed(proxy.body) + turn + float(fall) : 0.0f;
+    tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
+  }
+}
+
+template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }
+template <> Detector::Scratch<double>& Detector::scratch() { return scratch_d_; }
+
+Status Detector::find_contacts(WorldState& s, const Options& options, Found& found) {
+  if (!possible_) {
+    if (s.contact_rows() > 1) s.tables.resize(Table::contact, 1);
+    return {};
+  }
+  return s.tables.precision() == Precision::f32 ? narrow_all(s, options, scratch<float>(), found) : narrow_all(s, options, scratch<double>(), found);
+}
+
+template <class Scalar>
+Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scalar>& scratch, Found& found) {
+  const auto pairs = pairs_.pairs();
+  const BodyReader<Scalar> bodies(s.tables);
+  const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
+  const Scalar* before = s.tables.data<Scalar>(Buffer::contact);
+  const std::uint32_t before_rows = s.contact_rows();
+  constexpr std::size_t reals = 32;
+  next_.keys.resize(1);
+  next_.ends.resize(1);
+  next_.features.resize(1);
+  std::uint32_t old = 1;
+  hints_.resize(pairs.size());
+  found = {};
+  found.pairs = std::uint32_t(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); i++) {
+    const auto [a, b] = pairs[i];
+    if (!overlap(tight_[a], tight_[b])) continue;
+    // body a of the contact is the one that moves, so that arms are short
+    const bool swap = s.bodies[proxies_[a].body].kind != BodyKind::dynamic;
+    const std::uint32_t first = swap ? b : a, second = swap ? a : b;
+    const std::uint32_t row_a = proxies_[first].body, row_b = proxies_[second].body;
+    ShapeView<Scalar> there = scratch.shapes[second];
+    bodies.shift(row_a, row_b, there.p);
+    Manifold<Scalar> manifold;
+    const Scalar margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
+#ifdef PCPHYS_HAVE_FCL
+    if (options.narrow == NarrowPhase::fcl) narrow_fcl(scratch.shapes[first], there, margin, manifold);
+    else
+#endif
+      narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
+    if (manifold.count == 0) continue;
+
+    const std::uint32_t row = std::uint32_t(next_.keys.size());
+    const ContactKey key{a, b};
+    next_.keys.push_back(key);
+    next_.ends.push_back({row_a, row_b});
+    next_.features.push_back({});
+    if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
+    Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
+    write_contact(manifold, materials + std::size_t(row_a) * 4, materials + std::size_t(row_b) * 4, out, next_.features[row].data());
+    while (old < before_rows && s.contacts.keys[old] < key) old++;
+    if (old < before_rows && s.contacts.keys[old] == key) remember_impulses(before + old * reals, s.contacts.features[old].data(), out, next_.features[row].data());
+    found.points += manifold.count;
+    found.restitution |= out[30] > 0;
+  }
+  found.contacts = std::uint32_t(next_.keys.size()) - 1;
+  found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
+  scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));
+  s.tables.exchange(Table::contact, Buffer::contact, scratch.contacts, std::uint32_t(next_.keys.size()));
+  std::swap(s.contacts, next_);
+  return {};
+}
+
+}  // namespace pcphys

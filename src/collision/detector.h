@@ -1,0 +1,70 @@
+// Finds the contacts of a step: boxes, pairs, manifolds, and each manifold's memory from the last step.
+// What it finds depends on poses and velocities alone, never on what the broad phase remembers.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collision/aabb.h"
+#include "collision/narrow.h"
+#include "collision/pair_cache.h"
+#include "pcphys/step.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+class Detector {
+ public:
+  struct Options {
+    NarrowPhase narrow = NarrowPhase::native;
+    double contact_margin = 0.02;
+    std::size_t max_pairs = 0;
+  };
+  struct Found {
+    std::uint32_t pairs = 0, contacts = 0, points = 0;
+    bool restitution = false;  // some contact bounces
+    bool changed = false;      // other pairs touch than in the last step
+  };
+
+  /// Broad phase. Errors (too many pairs, a pose that is not finite) leave the world as it was.
+  Status find_pairs(const WorldState& state, double dt, const Options& options);
+  /// Narrow phase: replaces the world's contacts.
+  Status find_contacts(WorldState& state, const Options& options, Found& found);
+  /// Whether two shapes of the world could ever touch.
+  bool possible() const { return possible_; }
+  /// Whether some body's restitution is above zero.
+  static bool may_bounce(const WorldState& state);
+
+ private:
+  /// What does not change while the structure stays, compact and by shape index.
+  struct Proxy {
+    ShapeKind kind = ShapeKind::sphere;
+    bool alive = false, centred = true;  // centred: its frame is the body's
+    std::uint32_t body = 0;              // row
+    float radius = 0;                    // of the sphere about the body's centre that holds it
+  };
+
+  template <class Scalar> struct Scratch {
+    std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
+    AlignedBytes contacts;                  // the table of the next step
+  };
+
+  void rebuild(const WorldState& state);
+  template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
+  template <class Scalar> Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  template <class Scalar> Scratch<Scalar>& scratch();
+
+  std::uint64_t structure_ = 0;
+  const WorldState* world_ = nullptr;
+  bool possible_ = false;
+  std::vector<Proxy> proxies_;
+  std::vector<Aabb> tight_;
+  std::vector<float> reach_;  // how far a shape may come this step [m]
+  PairCache pairs_;
+  std::vector<std::uint32_t> hints_, next_hints_;
+  ContactColumns next_;
+  Scratch<float> scratch_f_;
+  Scratch<double> scratch_d_;
+};
+
+}  // namespace pcphys

@@ -1,0 +1,122 @@
+// Between tables and collision shapes: where a shape stands, its box, its contact row.
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "collision/aabb.h"
+#include "collision/narrow.h"
+#include "world/tables.h"
+
+namespace pcphys {
+
+/// What the narrow phase reads of a body, straight from the tables' rows.
+template <class Scalar> class BodyReader {
+ public:
+  explicit BodyReader(const Tables& t)
+      : pose_(t.data<Scalar>(Buffer::pose)), motion_(t.data<Scalar>(Buffer::motion)), mass_(t.data<Scalar>(Buffer::mass)) {}
+
+  const Scalar* orientation(std::uint32_t row) const { return pose_ + std::size_t(row) * 12 + 4; }
+  Vec3 position(std::uint32_t row) const {
+    const Scalar* p = pose_ + std::size_t(row) * 12;
+    return {double(p[0]) + double(p[8]), double(p[1]) + double(p[9]), double(p[2]) + double(p[10])};
+  }
+  /// Adds b's centre as seen from a's.
+  void shift(std::uint32_t a, std::uint32_t b, Scalar* p) const {
+    const Scalar *x = pose_ + std::size_t(a) * 12, *y = pose_ + std::size_t(b) * 12;
+    for (int k = 0; k < 3; k++) p[k] += (y[k] - x[k]) + (y[8 + k] - x[8 + k]);
+  }
+  float speed(std::uint32_t row) const { return norm(motion_ + std::size_t(row) * 8); }
+  /// An upper bound: momentum over the smallest moment.
+  float angular_speed(std::uint32_t row) const {
+    const Scalar* i = mass_ + std::size_t(row) * 8 + 4;
+    return norm(motion_ + std::size_t(row) * 8 + 4) * float(std::fmax(i[0], std::fmax(i[1], i[2])));
+  }
+
+ private:
+  static float norm(const Scalar* v) { return std::sqrt(float(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])); }
+  const Scalar *pose_, *motion_, *mass_;
+};
+
+template <class Scalar> void rotate_by(const Scalar* q, const Scalar* v, Scalar* out) {
+  const Scalar tx = 2 * (q[1] * v[2] - q[2] * v[1]), ty = 2 * (q[2] * v[0] - q[0] * v[2]), tz = 2 * (q[0] * v[1] - q[1] * v[0]);
+  out[0] = v[0] + q[3] * tx + (q[1] * tz - q[2] * ty);
+  out[1] = v[1] + q[3] * ty + (q[2] * tx - q[0] * tz);
+  out[2] = v[2] + q[3] * tz + (q[0] * ty - q[1] * tx);
+}
+
+/// `row`: of the shape table; q: the body's orientation. The view's p is relative to the body's centre.
+template <class Scalar> void place_shape(const Scalar* row, ShapeKind kind, bool centred, const Scalar* q, ShapeView<Scalar>& view) {
+  view.kind = kind;
+  for (int k = 0; k < 3; k++) view.size[k] = row[k];
+  for (int k = 0; k < 3; k++) view.p[k] = 0;
+  for (int k = 0; k < 4; k++) view.q[k] = q[k];
+  if (centred) return;
+  rotate_by(q, row + 4, view.p);
+  const Scalar* l = row + 8;
+  view.q[0] = q[3] * l[0] + q[0] * l[3] + q[1] * l[2] - q[2] * l[1];
+  view.q[1] = q[3] * l[1] - q[0] * l[2] + q[1] * l[3] + q[2] * l[0];
+  view.q[2] = q[3] * l[2] + q[0] * l[1] - q[1] * l[0] + q[2] * l[3];
+  view.q[3] = q[3] * l[3] - q[0] * l[0] - q[1] * l[1] - q[2] * l[2];
+}
+
+/// The shape's box about `centre` (of its body), grown by `more`.
+template <class Scalar> Aabb box_of(const ShapeView<Scalar>& view, Vec3 centre, float more) {
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  if (view.kind == ShapeKind::plane) return {{-infinite, -infinite, -infinite}, {infinite, infinite, infinite}};
+  float extent[3];
+  const float qx = float(view.q[0]), qy = float(view.q[1]), qz = float(view.q[2]), qw = float(view.q[3]);
+  const float sx = float(view.size[0]), sy = float(view.size[1]), sz = float(view.size[2]);
+  const float y[3] = {2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz), 2 * (qy * qz + qw * qx)};
+  if (view.kind == ShapeKind::sphere) {
+    for (float& e : extent) e = sx;
+  } else if (view.kind == ShapeKind::box) {
+    const float x[3] = {1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qw * qz), 2 * (qx * qz - qw * qy)};
+    const float z[3] = {2 * (qx * qz + qw * qy), 2 * (qy * qz - qw * qx), 1 - 2 * (qx * qx + qy * qy)};
+    for (int k = 0; k < 3; k++) extent[k] = std::fabs(x[k]) * sx + std::fabs(y[k]) * sy + std::fabs(z[k]) * sz;
+  } else {  // a cylinder's box is within its capsule's
+    for (int k = 0; k < 3; k++) extent[k] = std::fabs(y[k]) * sy + sx;
+  }
+  Aabb box;
+  const double c[3] = {centre.x + double(view.p[0]), centre.y + double(view.p[1]), centre.z + double(view.p[2])};
+  for (int k = 0; k < 3; k++) {
+    const double e = double(extent[k]) * 1.00001 + double(more);  // beyond the rounding of the terms above
+    box.min[k] = round_down(c[k] - e);
+    box.max[k] = round_up(c[k] + e);
+  }
+  return box;
+}
+
+/// A manifold as a row of the contact table (properties.inl), without impulses.
+template <class Scalar> void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Scalar* material_b, Scalar* out, std::uint32_t* features) {
+  for (int k = 0; k < 3; k++) out[k] = m.normal[k];
+  out[3] = Scalar(m.count);
+  for (std::uint32_t i = 0; i < 4; i++) {
+    const bool real = i < m.count;
+    for (int k = 0; k < 3; k++) out[4 + 4 * i + k] = real ? m.points[i].p[k] : Scalar(0);
+    out[7 + 4 * i] = real ? m.points[i].separation : Scalar(0);
+    features[i] = real ? m.points[i].feature : 0xffffffffu;
+  }
+  for (int k = 20; k < 28; k++) out[k] = 0;
+  out[28] = std::sqrt(material_a[0] * material_b[0]);
+  out[29] = std::sqrt(material_a[1] * material_b[1]);
+  out[30] = (material_a[2] + material_b[2]) * Scalar(0.5);
+  out[31] = 0;
+}
+
+/// Points of the last step with the same feature hand on their impulse; friction goes with the manifold.
+template <class Scalar> void remember_impulses(const Scalar* before, const std::uint32_t* before_features, Scalar* out, const std::uint32_t* features) {
+  const int count = int(out[3]), before_count = int(before[3]);
+  bool any = false;
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < before_count; j++)
+      if (features[i] == before_features[j]) {
+        out[20 + i] = before[20 + j];
+        any = true;
+        break;
+      }
+  if (!any) return;
+  for (int k = 24; k < 28; k++) out[k] = before[k];
+}
+
+}  // namespace pcphys

@@ -1,0 +1,61 @@
+#include "plan/infos.h"
+
+#include "pcphys/constants.h"
+
+namespace pcphys {
+namespace {
+
+/// A spring-damper of angular frequency w and damping ratio z, taken implicitly over a sub-step h, as scales of
+/// a rigid row's impulse: rate = w / (2 z + h w), mass scale = c / (1 + c), impulse scale = 1 / (1 + c) with
+/// c = h w (2 z + h w). (E. Catto, Solver2D, 2024; Soft constraints, GDC 2011.)
+struct Soft {
+  double rate, mass_scale, impulse_scale;
+};
+Soft soft(double frequency_times_h, double damping_ratio, double h) {
+  const double a = 2 * damping_ratio + frequency_times_h, c = frequency_times_h * a;
+  return {frequency_times_h / (h * a), c / (1 + c), 1 / (1 + c)};
+}
+
+}  // namespace
+
+double substep_length(const StepSettings& settings, double dt) { return dt / settings.substeps; }
+
+template <class Scalar> void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep, InfoOf<Scalar> (&infos)[phase_count]) {
+  const double h = substep_length(settings, dt), ratio = last_substep > 0 ? h / last_substep : 1;
+  const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
+  const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
+
+  InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
+  biased = {};
+  biased.h = Scalar(h);
+  biased.inverse_h = Scalar(1 / h);
+  biased.gravity_x = Scalar(gravity.x);
+  biased.gravity_y = Scalar(gravity.y);
+  biased.gravity_z = Scalar(gravity.z);
+  biased.impulse_ratio = 1;
+  biased.contact_rate = Scalar(contact.rate);
+  biased.contact_mass_scale = Scalar(contact.mass_scale);
+  biased.contact_impulse_scale = Scalar(contact.impulse_scale);
+  biased.push_speed = Scalar(settings.push_speed);
+  biased.joint_rate = Scalar(joint.rate);
+  biased.joint_mass_scale = Scalar(joint.mass_scale);
+  biased.joint_impulse_scale = Scalar(joint.impulse_scale);
+  biased.joint_push_speed = Scalar(constants::joint_push_speed);
+  biased.restitution_threshold = Scalar(settings.restitution_threshold);
+
+  InfoOf<Scalar>& first = infos[unsigned(Phase::first)];
+  first = biased;
+  first.h_change = Scalar(1 - ratio);
+  first.impulse_ratio = Scalar(ratio);
+
+  InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
+  relax = biased;
+  relax.contact_rate = relax.joint_rate = 0;
+  relax.contact_mass_scale = relax.joint_mass_scale = 1;
+  relax.contact_impulse_scale = relax.joint_impulse_scale = 0;
+}
+
+template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);
+template void fill_infos<double>(const StepSettings&, Vec3, double, double, InfoOf<double> (&)[phase_count]);
+
+}  // namespace pcphys

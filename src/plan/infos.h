@@ -1,0 +1,16 @@
+// The numbers that kernels are given besides buffers, from dt and the settings.
+#pragma once
+#include "pcphys/math.h"
+#include "pcphys/plan.h"
+#include "pcphys/step.h"
+#include "world/schema.h"
+
+namespace pcphys {
+
+/// [s]
+double substep_length(const StepSettings& settings, double dt);
+
+/// One block a phase, by Phase. `last_substep`: of the step before, 0 if there was none [s].
+template <class Scalar> void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep, InfoOf<Scalar> (&infos)[phase_count]);
+
+}  // namespace pcphys

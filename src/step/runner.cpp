@@ -1,0 +1,156 @@
+#include "step/runner.h"
+
+#include <chrono>
+#include <string>
+
+namespace pcphys {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Timer timer_of(Stage stage) {
+  constexpr Timer timers[stage_count] = {Timer::integrate, Timer::joints, Timer::impulses};
+  return timers[std::size_t(stage)];
+}
+Timer timer_of(const PlanEntry& entry) {
+  if (entry.kind == PlanEntry::Kind::upload) return Timer::upload;
+  if (entry.kind == PlanEntry::Kind::download) return Timer::download;
+  return timer_of(schema(entry.kernel).stage);
+}
+
+Place place_of(const StepSettings& s, Stage stage) {
+  const Place places[stage_count] = {s.integrate, s.joints, s.impulses};
+  return places[std::size_t(stage)];
+}
+
+/// The list or slot array behind a buffer that is no table's, or null.
+std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
+  switch (buffer) {
+    case Buffer::bodies: return &schedule.bodies;
+    case Buffer::joint_ends: return &schedule.joints.ends();
+    case Buffer::joint_order: return &schedule.joints.order();
+    case Buffer::contact_ends: return &schedule.contacts.ends();
+    case Buffer::contact_order: return &schedule.contacts.order();
+    default: return nullptr;
+  }
+}
+std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule& schedule) {
+  if (buffer < Buffer::table_buffers) return state.tables.version(buffer) + 1;
+  if (buffer == Buffer::bodies) return schedule.bodies_version + 1;
+  if (buffer == Buffer::joint_ends || buffer == Buffer::joint_order) return schedule.joints.version() + 1;
+  return schedule.contacts.version() + 1;
+}
+
+}  // namespace
+
+std::string Runner::device(Place place) const {
+  const Device& d = devices_[std::size_t(place)];
+  return d.backend ? d.backend->device() : std::string();
+}
+
+Status Runner::prepare(const StepSettings& s, Precision precision) {
+  for (Place place : {Place::cpu, Place::gl}) {
+    Device& d = at(place);
+    if (s.integrate != place && s.joints != place && s.impulses != place) continue;
+    const bool fits = d.backend && d.precision == precision && (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
+    if (fits) continue;
+    auto made = place == Place::cpu ? make_cpu_backend(precision, s.lanes) : make_gl_backend(precision, s.device, s.host_context);
+    if (!made) return made.error();
+    d = {};
+    d.backend = std::move(*made);
+    d.precision = precision;
+    d.lanes = s.lanes;
+    d.index = s.device;
+    d.host_context = s.host_context;
+  }
+  return {};
+}
+
+Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes) {
+  Device& d = at(place);
+  Copy& copy = d.copies[std::size_t(buffer)];
+  if (copy.host == host && copy.bytes == bytes) return {};
+  if (place == Place::gl && copy.bytes != bytes) copy.version = 0;
+  copy.host = host;
+  copy.bytes = bytes;
+  return d.backend->attach(buffer, host, bytes);
+}
+
+Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule) {
+  std::array<std::array<bool, buffer_count>, 2> bound{};
+  for (const PlanEntry& entry : plan.entries) {
+    if (entry.kind != PlanEntry::Kind::kernel) continue;
+    const KernelSchema& k = schema(entry.kernel);
+    if (k.domain == Domain::joint) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
+    if (k.domain == Domain::contact) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
+    for (const Access& a : k.accesses) {
+      bool& done = bound[std::size_t(entry.place)][std::size_t(a.buffer)];
+      if (done) continue;
+      done = true;
+      Status ok;
+      if (a.buffer < Buffer::table_buffers) ok = attach(entry.place, a.buffer, state.tables.bytes(a.buffer).data(), state.tables.bytes(a.buffer).size());
+      else if (std::vector<std::uint32_t>* list = list_of(a.buffer, schedule)) ok = attach(entry.place, a.buffer, list->data(), list->size() * 4);
+      else ok = at(entry.place).backend->reserve(a.buffer, (k.domain == Domain::joint ? schedule.joints : schedule.contacts).slots());
+      if (!ok) return ok;
+    }
+  }
+  return {};
+}
+
+Status Runner::upload(Buffer buffer, std::uint64_t version, StepReport& report) {
+  Device& d = at(Place::gl);
+  Copy& copy = d.copies[std::size_t(buffer)];
+  if (copy.version == version) return {};
+  copy.version = version;
+  report.transfer_bytes += copy.bytes;
+  return d.backend->upload(buffer);
+}
+
+Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& report) {
+  Device& d = at(Place::gl);
+  Copy& copy = d.copies[std::size_t(entry.buffer)];
+  report.transfer_bytes += copy.bytes;
+  if (Status ok = d.backend->download(entry.buffer); !ok) return ok;
+  state.tables.touch(entry.buffer);
+  copy.version = state.tables.version(entry.buffer) + 1;
+  return {};
+}
+
+Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport&) {
+  const KernelSchema& k = schema(entry.kernel);
+  const Range moving{0, std::uint32_t(schedule.bodies.size())};
+  std::span<const Range> ranges(&moving, 1);
+  if (k.domain == Domain::joint) ranges = schedule.joints.ranges();
+  if (k.domain == Domain::contact) ranges = schedule.contacts.ranges();
+  Status ok = at(entry.place).backend->run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
+  if (entry.place == Place::cpu)
+    for (const Access& a : k.accesses)
+      if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
+  return ok;
+}
+
+Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos, StepReport& report) {
+  for (Device& d : devices_)
+    if (d.backend)
+      if (Status ok = d.backend->set_infos(infos, phase_count); !ok) return ok;
+  const bool gl = settings.integrate == Place::gl || settings.joints == Place::gl || settings.impulses == Place::gl;
+  auto began = Clock::now();
+  for (std::size_t i = 0; i < plan.entries.size(); i++) {
+    const PlanEntry& entry = plan.entries[i];
+    Status ok;
+    if (entry.kind == PlanEntry::Kind::kernel) ok = kernel(entry, state, schedule, report);
+    else if (entry.kind == PlanEntry::Kind::download) ok = transfer(entry, state, report);
+    else ok = upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
+    if (!ok) return ok;
+    const bool last_of_kind = i + 1 == plan.entries.size() || timer_of(plan.entries[i + 1]) != timer_of(entry) || plan.entries[i + 1].place != entry.place;
+    if (!settings.timings || !last_of_kind) continue;
+    if (gl)
+      if (Status done = at(Place::gl).backend->finish(); !done) return done;
+    const auto now = Clock::now();
+    report.ms[std::size_t(timer_of(entry))] += std::chrono::duration<double, std::milli>(now - began).count();
+    began = now;
+  }
+  return gl ? at(Place::gl).backend->finish() : Status();
+}
+
+}  // namespace pcphys

@@ -1,0 +1,49 @@
+// Runs a plan: keeps the backends, their copies of buffers, and the clock.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "pcphys/step.h"
+#include "plan/plan.h"
+#include "step/backend.h"
+#include "step/schedule.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+class Runner {
+ public:
+  /// Makes the backends that the settings ask for, keeping those that still fit.
+  Status prepare(const StepSettings& settings, Precision precision);
+  /// Everything a plan binds: lists and colours packed for their backends, buffers attached.
+  Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
+  Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos, StepReport& report);
+
+  std::string device(Place place) const;
+
+ private:
+  struct Copy {
+    void* host = nullptr;
+    std::size_t bytes = 0;
+    std::uint64_t version = 0;  // of the host's data that the device holds; 0: none
+  };
+  struct Device {
+    std::unique_ptr<Backend> backend;
+    Precision precision = Precision::f32;
+    std::uint32_t lanes = 0;
+    int index = -1;
+    bool host_context = false;
+    std::array<Copy, buffer_count> copies{};
+  };
+
+  Device& at(Place place) { return devices_[std::size_t(place)]; }
+  Status attach(Place place, Buffer buffer, void* host, std::size_t bytes);
+  Status upload(Buffer buffer, std::uint64_t version, StepReport& report);
+  Status kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report);
+  Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
+
+  std::array<Device, 2> devices_;  // by Place
+};
+
+}  // namespace pcphys

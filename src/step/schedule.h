@@ -1,0 +1,55 @@
+// Who goes when: the list of bodies that move, and the colours of joints and contacts as slots of a backend.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "plan/coloring.h"
+#include "step/backend.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+/// Constraints of one domain, grouped into colours: two of one colour share no body that moves.
+class ColouredSlots {
+ public:
+  /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ.
+  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind);
+  /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
+  void pack(std::uint32_t width);
+
+  std::uint32_t colours() const { return colouring_.colours(); }
+  std::size_t slots() const { return slots_.order.size(); }
+  std::span<const Range> ranges() const { return slots_.ranges; }
+  std::vector<std::uint32_t>& ends() { return slots_.ends; }
+  std::vector<std::uint32_t>& order() { return slots_.order; }
+  /// Counts the changes of `ends` and `order`.
+  std::uint64_t version() const { return version_; }
+
+ private:
+  Colouring colouring_;
+  Slots slots_;
+  std::vector<std::uint32_t> units_, priorities_, ends_, rows_;
+  std::uint32_t width_ = 0;
+  std::uint64_t version_ = 0;
+};
+
+class Schedule {
+ public:
+  /// Follows a change of the world's objects.
+  void update_structure(const WorldState& state);
+  void update_contacts(const WorldState& state) { contacts.colour(state, state.contacts.ends, 1); }
+
+  std::vector<std::uint32_t> bodies;  // rows that move, padded with row 0 to a multiple of `padding`
+  std::uint32_t moving = 0;           // without the padding
+  std::uint64_t bodies_version = 0;
+  ColouredSlots joints, contacts;
+
+  static constexpr std::uint32_t padding = 32;  // the widest backend
+
+ private:
+  std::vector<std::array<std::uint32_t, 2>> joint_ends_;
+};
+
+}  // namespace pcphys

@@ -1,0 +1,188 @@
+// One step, readable on a screen: forces, contacts, schedule, plan, run.
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "collision/detector.h"
+#include "pcphys/step.h"
+#include "plan/infos.h"
+#include "plan/plan.h"
+#include "step/processor_state.h"
+#include "step/runner.h"
+#include "step/schedule.h"
+#include "world/state.h"
+#include "world/validate.h"
+
+namespace pcphys {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Status check_settings(const StepSettings& s) {
+  if (s.substeps < 1 || s.substeps > 1000) return Error{ErrorCode::bad_time_step, "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
+  if (s.threads != 1) return Error{ErrorCode::unavailable, "More than one thread is not there yet; set threads to 1."};
+  for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
+    if (!std::isfinite(x) || x < 0) return Error{ErrorCode::bad_argument, "Push speed, restitution threshold and contact margin must be finite and not below zero."};
+#ifndef PCPHYS_HAVE_FCL
+  if (s.narrow == NarrowPhase::fcl) return Error{ErrorCode::unavailable, "This build has no FCL; install libfcl-dev and build again, or use the native narrow phase."};
+#endif
+  return {};
+}
+
+Status check_dt(double dt) {
+  if (std::isfinite(dt) && dt > 0) return {};
+  return Error{ErrorCode::bad_time_step, "The time step is " + std::to_string(dt) + " s; it must be finite and above zero. The world is as it was."};
+}
+
+}  // namespace
+
+const char* name(Timer timer) {
+  constexpr const char* names[] = {"forces", "broad", "narrow", "plan", "upload", "integrate", "joints", "impulses", "download"};
+  return names[std::size_t(timer)];
+}
+
+struct Stepper::Inside {
+  StepSettings settings;
+  Detector detector;
+  Schedule schedule;
+  Runner runner;
+  StepReport report;
+  std::vector<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few
+  const StepPlan* plan = nullptr;
+  std::uint64_t structure = 0;
+  const WorldState* world = nullptr;
+  InfoOf<float> infos_f[phase_count];
+  InfoOf<double> infos_d[phase_count];
+  StepPlan no_plan;
+  Clock::time_point began;
+
+  void lap(Timer timer) {
+    const auto now = Clock::now();
+    report.ms[std::size_t(timer)] += std::chrono::duration<double, std::milli>(now - began).count();
+    began = now;
+  }
+
+  Detector::Options detection() const { return {settings.narrow, settings.contact_margin, settings.max_pairs}; }
+
+  PlanSignature signature(const WorldState& s, bool restitution) const {
+    return {settings.substeps, {settings.integrate, settings.joints, settings.impulses}, schedule.moving > 0, s.joints.size() > 1, detector.possible(), s.contact_rows() > 1, restitution};
+  }
+
+  const StepPlan& find_plan(const PlanSignature& wanted) {
+    for (const auto& [signature, plan] : plans)
+      if (signature == wanted) return plan;
+    return plans.emplace_back(wanted, make_plan(wanted)).second;
+  }
+
+  const void* fill(const WorldState& s, double dt) {
+    if (s.tables.precision() == Precision::f32) {
+      fill_infos(settings, s.gravity, dt, s.last_substep, infos_f);
+      return infos_f;
+    }
+    fill_infos(settings, s.gravity, dt, s.last_substep, infos_d);
+    return infos_d;
+  }
+
+  /// Forces of callbacks on top of the constant ones.
+  Status call_back(World& world) {
+    WorldState& s = world.state();
+    if (s.callbacks == 0) return {};
+    for (const ForceRecord& f : s.forces)
+      if (f.callback) s.sum_forces(s.body_ids.row(f.body));
+    for (const ForceRecord& f : s.forces) {
+      if (!f.callback) continue;
+      const std::uint32_t row = s.body_ids.row(f.body);
+      const Wrench w = f.callback(world, s.body_ids.id<BodyId>(f.body));
+      if (Status ok = check_finite(w.force, "force of a callback"); !ok) return ok;
+      if (Status ok = check_finite(w.torque, "torque of a callback"); !ok) return ok;
+      s.tables.set3(Buffer::force, row, 0, s.tables.get3(Buffer::force, row, 0) + w.force);
+      s.tables.set3(Buffer::force, row, 4, s.tables.get3(Buffer::force, row, 4) + w.torque);
+    }
+    return {};
+  }
+
+  Status step(World& world, double dt) {
+    WorldState& s = world.state();
+    Status ok = check_dt(dt);
+    if (ok) ok = check_settings(settings);
+    if (ok) ok = runner.prepare(settings, s.tables.precision());
+    if (ok) ok = call_back(world);
+    if (!ok) return ok;
+    lap(Timer::forces);
+
+    const FlushSubnormals flush;
+    if (world_changed(s)) schedule.update_structure(s);
+    if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
+    lap(Timer::broad);
+    Detector::Found found;
+    if (ok = detector.find_contacts(s, detection(), found); !ok) return ok;
+    lap(Timer::narrow);
+    if (found.changed || structure != s.structure_version) schedule.update_contacts(s);
+    remember(s);
+    plan = &find_plan(signature(s, found.restitution));
+    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return ok;
+    lap(Timer::plan);
+
+    if (ok = runner.run(settings, *plan, s, schedule, fill(s, dt), report); !ok) return ok;
+    s.last_substep = substep_length(settings, dt);
+    report.pairs = found.pairs;
+    report.contacts = found.contacts;
+    report.points = found.points;
+    report.colours = found.contacts ? schedule.contacts.colours() : 0;
+    return {};
+  }
+
+  bool world_changed(const WorldState& s) const { return world != &s || structure != s.structure_version; }
+  void remember(const WorldState& s) {
+    world = &s;
+    structure = s.structure_version;
+  }
+};
+
+Stepper::Stepper(const StepSettings& settings) : inside_(std::make_unique<Inside>()) { inside_->settings = settings; }
+Stepper::~Stepper() = default;
+Stepper::Stepper(Stepper&&) noexcept = default;
+Stepper& Stepper::operator=(Stepper&&) noexcept = default;
+
+Status Stepper::configure(const StepSettings& settings) {
+  if (Status ok = check_settings(settings); !ok) return ok;
+  inside_->settings = settings;
+  return {};
+}
+const StepSettings& Stepper::settings() const { return inside_->settings; }
+
+const StepReport& Stepper::step(World& world, double dt) {
+  Inside& in = *inside_;
+  const std::uint64_t made = in.report.step;
+  in.report = {};
+  const auto start = in.began = Clock::now();
+  const Status ok = in.step(world, dt);
+  if (!ok) in.report.error = ok.error();
+  in.report.step = made + (ok ? 1 : 0);
+  in.report.bodies = std::uint32_t(world.body_count());
+  in.report.joints = std::uint32_t(world.joint_count());
+  in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  return in.report;
+}
+
+const StepPlan& Stepper::plan() const { return inside_->plan ? *inside_->plan : inside_->no_plan; }
+
+Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
+  Inside& in = *inside_;
+  Status ok = check_dt(dt);
+  if (ok) ok = check_settings(in.settings);
+  if (!ok) return ok.error();
+  Schedule schedule;
+  schedule.update_structure(world.state());
+  Detector detector;
+  if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
+  PlanSignature wanted = in.signature(world.state(), true);
+  wanted.bodies = schedule.moving > 0;
+  wanted.shapes = wanted.contacts = detector.possible();
+  wanted.restitution = detector.may_bounce(world.state());
+  return make_plan(wanted);
+}
+
+std::string Stepper::device(Place place) const { return inside_->runner.device(place); }
+
+}  // namespace pcphys
