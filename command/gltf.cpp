@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "mesh.h"
+#include "pcphys/version.h"
 
 namespace pcphys::command {
 namespace {

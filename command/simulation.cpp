@@ -14,10 +14,10 @@ constexpr double settling_time = 4;        // before it, limits may be exceeded 
 }  // namespace
 
 Result<Simulation> Simulation::make(const Setup& setup) {
-  Simulation result{setup, World({setup.precision}), {}, Stepper(), 0};
-  auto scene = scenes::make(setup.scene, setup.scene_options, result.world);
+  World world({setup.precision});
+  auto scene = scenes::make(setup.scene, setup.scene_options, world);
   if (!scene) return scene.error();
-  result.scene = std::move(*scene);
+  Simulation result{setup, std::move(world), std::move(*scene), Stepper(), 0};
   auto cpu = make_cpu_backend(setup.precision, setup.settings.lanes);
   if (!cpu) return cpu.error();
   result.lanes = (*cpu)->width();

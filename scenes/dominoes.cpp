@@ -25,7 +25,7 @@ void build_dominoes(Builder& builder) {
     def.density = 500;
     def.pose.position = radius * outward + Vec3{0, half.y, 0};
     def.pose.orientation = axis_angle({0, 1, 0}, std::atan2(-along.z, along.x));
-    const int domino = builder.add(def);
+    builder.add(def);
     if (i == 0) {
       BodyDef ball;
       ball.shapes = {ShapeDef::sphere(0.2)};
@@ -33,7 +33,6 @@ void build_dominoes(Builder& builder) {
       ball.velocity = 3.0 * along;
       builder.add(ball);
     }
-    builder.scene().supports.push_back({domino, -1});
     angle += spacing / run;
   }
 }

@@ -17,7 +17,7 @@ struct Case {
 };
 
 const Case cases[] = {
-    {"", 2, "subcommand"},
+    {"", 2, "A subcommand is required"},
     {"fly", 2, "fly"},
     {"run", 2, "SCENE"},
     {"run marbles", 2, "choose one of balls, ragdolls"},
@@ -65,7 +65,7 @@ const Case cases[] = {
     {"doctor --csv /no/such/folder/a.csv", 1, "folder that exists"},
     {"plan balls --json /no/such/folder/a.json", 1, "folder that exists"},
     {"run balls --backend gl --device 99", 1, "99"},
-    {"plan balls --backend gl --device 99", 1, "99"},
+    {"plan balls --steps 1 --backend gl --device 99", 1, "99"},
     {"accuracy", 1, "later version"},
     {"accuracy A1 A2 --json -", 1, "later version"},
     {"stability", 1, "later version"},
@@ -76,7 +76,7 @@ const Case cases[] = {
 
 TEST_CASE("errors: one line, the right code, nothing on standard output") {
   for (const Case& c : cases) {
-    CAPTURE(c.arguments);
+    CAPTURE(std::string(c.arguments));
     const Ran ran = command(c.arguments);
     CAPTURE(ran.error);
     CHECK(ran.code == c.code);

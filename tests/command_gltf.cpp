@@ -114,7 +114,7 @@ void check_mesh(const Gltf& gltf, const Json& primitive) {
 TEST_CASE("gltf: a binary file is sound and holds every frame of every moving body") {
   Folder folder;
   for (const char* scene : {"ragdolls", "dominoes", "chain"}) {
-    CAPTURE(scene);
+    CAPTURE(std::string(scene));
     const std::string path = folder.file("run.glb");
     const Ran ran = command(std::string("run ") + scene + " --count 2 --steps 15 --poses --json - --gltf " + path);
     REQUIRE_MESSAGE(ran.code == 0, ran.error);

@@ -33,7 +33,7 @@ struct Built {
 
 TEST_CASE("metrics: scenes start without overlap, separation or violated limit, except by rounding") {
   for (const scenes::SceneInfo& info : scenes::list()) {
-    CAPTURE(info.name);
+    CAPTURE(std::string(info.name));
     Built built(info.name.data(), info.default_count);
     const scenes::Metrics metrics = built.measure();
     CHECK(metrics.penetration.max < 1e-9);

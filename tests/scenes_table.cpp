@@ -151,7 +151,7 @@ TEST_CASE("scenes: equal to the peers' table") {
 TEST_CASE("scenes: every scene is built from its defaults, in both precisions, and from no objects") {
   for (const scenes::SceneInfo& info : scenes::list())
     for (Precision precision : {Precision::f32, Precision::f64}) {
-      CAPTURE(info.name);
+      CAPTURE(std::string(info.name));
       World world({precision});
       auto scene = scenes::make(info.name, {}, world);
       REQUIRE(scene);
@@ -178,7 +178,7 @@ TEST_CASE("scenes: a seed changes the draws, the own seed is the default") {
 
 TEST_CASE("scenes: joints coincide at the start") {
   for (const char* name : {"ragdolls", "chain", "chainswing", "door"}) {
-    CAPTURE(name);
+    CAPTURE(std::string(name));
     World world({Precision::f64});
     auto scene = scenes::make(name, {}, world);
     REQUIRE(scene);
