@@ -61,7 +61,8 @@ int main(int argc, char** argv) {
   const char* const later[] = {"accuracy", "stability", "compare"};
   for (const char* name : later) app.add_subcommand(name, "comes with a later version")->allow_extras();
 
-  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr)
+  const auto is_first_word = [&](CLI::App* command) { return command->check_name(argv[1]); };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first_word).empty())
     return usage_error("There is no sub-command '" + std::string(argv[1]) + "'.");
   try {
     app.parse(argc, argv);
