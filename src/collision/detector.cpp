@@ -127,7 +127,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
   const Scalar* before = s.tables.data<Scalar>(Buffer::contact);
   const std::uint32_t before_rows = s.contact_rows();
-  constexpr std::size_t reals = 32;
+  const std::size_t reals = schema(Buffer::contact).reals;
   next_.keys.resize(1);
   next_.ends.resize(1);
   next_.features.resize(1);

@@ -84,11 +84,11 @@ StepPlan make_plan(const PlanSignature& s) {
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);
     b.kernel(Kernel::integrate, Phase::biased, k);
+    // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
-    if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+    if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::biased, k);
-    if (s.joints && s.contacts) b.kernel(Kernel::joint_solve, Phase::biased, k);
     b.kernel(Kernel::advance, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::relax, k);
