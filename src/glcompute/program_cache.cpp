@@ -66,7 +66,7 @@ void ProgramCache::store(std::string_view text, const std::vector<char>& bytes) 
   static std::atomic<unsigned> serial{0};
   const std::filesystem::path target = file(text);
   std::filesystem::path draft = target;
-  draft += "." + std::to_string(getpid()) + "." + std::to_string(serial++);
+  draft += std::to_string(getpid()) + '-' + std::to_string(serial++) + ".draft";
   std::ofstream out(draft, std::ios::binary);
   const std::uint64_t sum = hash({bytes.data(), bytes.size()}, hash_start);
   out.write(magic, sizeof magic).write(reinterpret_cast<const char*>(&sum), sizeof sum).write(bytes.data(), std::streamsize(bytes.size()));
