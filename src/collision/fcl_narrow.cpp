@@ -119,17 +119,24 @@ bool narrow_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double m
   return true;
 }
 
+// FCL's own signed distance is not used: its polytope search stops the program on an assertion now and then.
 bool distance_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double& distance) {
   if (a.kind == ShapeKind::plane || b.kind == ShapeKind::plane) return false;
+  Found found;
   try {
     const Object first = object(a, 0), second = object(b, 0);
-    fcl::DistanceRequestd request(true, true, 0, 0, 1e-9, fcl::GST_LIBCCD);
+    if (collide(first, second, 0, found)) {
+      distance = 0;
+      for (const auto& [p, separation] : found.points) distance = std::min(distance, separation);
+      return true;
+    }
+    fcl::DistanceRequestd request(false, false, 0, 0, 1e-9, fcl::GST_LIBCCD);
     fcl::DistanceResultd result;
     distance = fcl::distance(first.geometry.get(), first.pose, second.geometry.get(), second.pose, request, result);
   } catch (const std::exception&) {
     return false;
   }
-  return std::isfinite(distance);
+  return std::isfinite(distance) && distance >= 0;
 }
 
 }  // namespace pcphys

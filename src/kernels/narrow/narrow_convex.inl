@@ -29,10 +29,17 @@ PC_FN_LARGE void pc_sharpen(PC_INOUT(Contact) k, Core a, Core b) {
       }
     }
   }
-  // beside a round side: square to its axis
+  // beside a round side: square to its axis, straight at the other's axis or corner
   for (uint side = 0u; side < 2u; side++) {
     Vec3 y = side == 0u ? a.axes.y : b.axes.y; bool round_ = side == 0u ? a.kind != PC_BOX : b.kind != PC_BOX;
-    if (round_) pc_try_normal(k, a, b, pc_unit_or_zero(pc_madd(n, y, -pc_dot(n, y))), n, slop, found);
+    if (round_ && !found) {
+      Vec3 own = side == 0u ? a.p : b.p; Vec3 other = side == 0u ? b.p : a.p;
+      if (side == 0u && b.kind == PC_BOX) other = pc_core_support(b, pc_negate(n));
+      if (side == 1u && a.kind == PC_BOX) other = pc_core_support(a, n);
+      Vec3 d = pc_sub(other, own);
+      pc_try_normal(k, a, b, pc_unit_or_zero(pc_madd(d, y, -pc_dot(d, y))), n, slop, found);
+      pc_try_normal(k, a, b, pc_unit_or_zero(pc_madd(n, y, -pc_dot(n, y))), n, slop, found);
+    }
   }
 }
 
