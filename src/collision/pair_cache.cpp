@@ -125,12 +125,14 @@ bool PairCache::renew_tree() {
 // The pairs of all that moved into found_. False when they do not fit beside those that are kept.
 bool PairCache::collect(PairReport& report) {
   found_.clear();
+  // Without a filter the tree counts exactly and at once.
+  const std::uint64_t count_until = capacity_ + (filter_ ? count_at_most : 0);
   std::uint64_t count = 0;
   const bool all_counted = tree_.pairs([&](std::uint32_t a, std::uint32_t b) {
     const Pair pair{std::min(a, b), std::max(a, b)};
     if (filter_ && !filter_(context_, pair.a, pair.b)) return true;
     if (++count <= capacity_) found_.push_back(key(pair));
-    return count <= capacity_ + count_at_most;
+    return count <= count_until;
   });
   if (count + pairs_.size() <= capacity_) return true;
   const auto kept = static_cast<std::uint64_t>(std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& pair) { return keeps(pair); }));

@@ -1,0 +1,94 @@
+#include "plan/coloring.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+#include "collision/radix_sort.h"
+
+namespace pcphys {
+
+void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities) {
+  assert(units.size() == 2 * priorities.size());
+  sort_by_priority(priorities);
+  choose(unit_count, units);
+  group();
+}
+
+void Colouring::sort_by_priority(std::span<const std::uint32_t> priorities) {
+  const std::size_t count = priorities.size();
+  order_.resize(count);
+  order_scratch_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) order_[i] = std::uint64_t{priorities[i]} << 32 | i;
+  const auto key = [](std::uint64_t item) { return item; };
+  if (radix_sort(order_.data(), order_scratch_.data(), count, 32, 64, key) != order_.data()) order_.swap(order_scratch_);
+}
+
+// Row `unit_count` stands for all fixed units: its mask is cleared whenever it was set.
+void Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units) {
+  taken_.assign(std::size_t{unit_count} + 1, 0);
+  next_above_.clear();
+  colour_of_.resize(order_.size());
+  std::uint64_t* taken = taken_.data();
+  for (const std::uint64_t item : order_) {
+    const auto i = static_cast<std::uint32_t>(item);
+    const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count), b = std::min(units[2 * std::size_t{i} + 1], unit_count);
+    const std::uint64_t free = ~(taken[a] | taken[b]);
+    if (free == 0) {
+      colour_of_[i] = choose_above(a, b, unit_count);
+      continue;
+    }
+    const std::uint64_t lowest = free & (0 - free);
+    taken[a] |= lowest;
+    taken[b] |= lowest;
+    taken[unit_count] = 0;
+    colour_of_[i] = static_cast<std::uint32_t>(std::countr_zero(free));
+  }
+}
+
+std::uint32_t Colouring::choose_above(std::uint32_t a, std::uint32_t b, std::uint32_t unit_count) {
+  if (next_above_.empty()) next_above_.assign(std::size_t{unit_count} + 1, mask_colours);
+  const std::uint32_t colour = std::max(next_above_[a], next_above_[b]);
+  next_above_[a] = next_above_[b] = colour + 1;
+  next_above_[unit_count] = mask_colours;
+  return colour;
+}
+
+void Colouring::group() {
+  std::uint32_t colours = 0;
+  for (const std::uint32_t colour : colour_of_) colours = std::max(colours, colour + 1);
+  offsets_.assign(std::size_t{colours} + 1, 0);
+  for (const std::uint32_t colour : colour_of_) ++offsets_[colour + 1];
+  for (std::uint32_t c = 0; c < colours; ++c) offsets_[c + 1] += offsets_[c];
+  cursor_.assign(offsets_.begin(), offsets_.end());
+  list_.resize(colour_of_.size());
+  for (std::uint32_t i = 0; i < colour_of_.size(); ++i) list_[cursor_[colour_of_[i]]++] = i;
+}
+
+void pack_slots(const Colouring& colouring, std::uint32_t width, std::span<const std::uint32_t> ends,
+                std::span<const std::uint32_t> rows, std::vector<std::uint32_t>& out_ends, std::vector<std::uint32_t>& out_order,
+                std::vector<Range>& out_ranges) {
+  assert(width > 0 && ends.size() == 2 * rows.size() && rows.size() == colouring.constraints());
+  out_ranges.resize(colouring.colours());
+  std::uint32_t blocks = 0;
+  for (std::uint32_t c = 0; c < colouring.colours(); ++c) {
+    const std::uint32_t first = blocks;
+    blocks += (static_cast<std::uint32_t>(colouring.of_colour(c).size()) + width - 1) / width;
+    out_ranges[c] = {first, blocks};
+  }
+  out_order.assign(std::size_t{blocks} * width, 0);
+  out_ends.assign(std::size_t{blocks} * width * 2, 0);
+  for (std::uint32_t c = 0; c < colouring.colours(); ++c) {
+    std::size_t slot = std::size_t{out_ranges[c].begin} * width, lane = 0;
+    for (const std::uint32_t i : colouring.of_colour(c)) {
+      const std::size_t side_a = 2 * (slot - lane) + lane;  // blocks hold `width` ends of side 0, then of side 1
+      out_order[slot] = rows[i];
+      out_ends[side_a] = ends[2 * std::size_t{i}];
+      out_ends[side_a + width] = ends[2 * std::size_t{i} + 1];
+      ++slot;
+      if (++lane == width) lane = 0;
+    }
+  }
+}
+
+}  // namespace pcphys
