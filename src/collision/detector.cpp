@@ -162,7 +162,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
     write_contact(manifold, materials + std::size_t(row_a) * 4, materials + std::size_t(row_b) * 4, out, next_.features[row].data());
     while (old < before_rows && s.contacts.keys[old] < key) old++;
-    if (old < before_rows && s.contacts.keys[old] == key) remember_impulses(before + old * reals, s.contacts.features[old].data(), out, next_.features[row].data());
+    if (old < before_rows && s.contacts.keys[old] == key) remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(options.contact_margin), out, next_.features[row].data());
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
   }

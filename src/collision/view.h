@@ -104,19 +104,37 @@ template <class Scalar> void write_contact(const Manifold<Scalar>& m, const Scal
   out[31] = 0;
 }
 
-/// Points of the last step with the same feature hand on their impulse; friction goes with the manifold.
-template <class Scalar> void remember_impulses(const Scalar* before, const std::uint32_t* before_features, Scalar* out, const std::uint32_t* features) {
+/// Hands on the impulses of the last step's manifold: point by point to the same feature; what is left over to
+/// the nearest point within `reach` [m], since a feature may change its name while the contact stays; friction
+/// goes with the manifold. `before` and `out` are rows of the contact table.
+template <class Scalar>
+void remember_impulses(const Scalar* before, const std::uint32_t* before_features, Scalar reach, Scalar* out, const std::uint32_t* features) {
   const int count = int(out[3]), before_count = int(before[3]);
-  bool any = false;
+  bool taken[4] = {}, given[4] = {};
+  const auto hand_on = [&](int i, int j) {
+    out[20 + i] = before[20 + j];
+    given[i] = taken[j] = true;
+  };
   for (int i = 0; i < count; i++)
     for (int j = 0; j < before_count; j++)
-      if (features[i] == before_features[j]) {
-        out[20 + i] = before[20 + j];
-        any = true;
-        break;
+      if (!given[i] && !taken[j] && features[i] == before_features[j]) hand_on(i, j);
+  for (int i = 0; i < count; i++) {
+    if (given[i]) continue;
+    int nearest = -1;
+    Scalar best = reach * reach;
+    for (int j = 0; j < before_count; j++) {
+      if (taken[j]) continue;
+      const Scalar dx = out[4 + 4 * i] - before[4 + 4 * j], dy = out[5 + 4 * i] - before[5 + 4 * j], dz = out[6 + 4 * i] - before[6 + 4 * j];
+      const Scalar d = dx * dx + dy * dy + dz * dz;
+      if (d < best) {
+        best = d;
+        nearest = j;
       }
-  if (!any) return;
-  for (int k = 24; k < 28; k++) out[k] = before[k];
+    }
+    if (nearest >= 0) hand_on(i, nearest);
+  }
+  if (taken[0] || taken[1] || taken[2] || taken[3])
+    for (int k = 24; k < 28; k++) out[k] = before[k];
 }
 
 }  // namespace pcphys
