@@ -200,8 +200,8 @@ Status World::restore(std::span<const std::byte> snapshot) {
   const Error cut{ErrorCode::bad_snapshot, "These bytes are no whole snapshot; take them from World::snapshot, unchanged."};
   Reader r(snapshot);
   char head[8];
-  std::uint64_t objects;
-  double substep;
+  std::uint64_t objects = 0;
+  double substep = 0;
   Vec3 gravity;
   if (!r.get(head) || std::memcmp(head, magic, sizeof magic) != 0 || !r.get(objects)) return cut;
   if (objects != object_hash(s)) return Error{ErrorCode::bad_snapshot, "The snapshot is of a world with other objects or another precision; restore it into one with the same bodies and joints."};
@@ -210,14 +210,14 @@ Status World::restore(std::span<const std::byte> snapshot) {
   // the whole length is checked before anything is written, so that a cut snapshot changes nothing
   const std::size_t fixed_part = (s.bodies.size() - 1) * (4 + state_bytes(s.tables, Table::body)) + (s.joints.size() - 1) * (4 + state_bytes(s.tables, Table::joint));
   const std::size_t offset = sizeof magic + 8 + 8 + sizeof(Vec3) + fixed_part;
-  std::uint32_t contacts;
+  std::uint32_t contacts = 0;
   if (snapshot.size() < offset + 4) return cut;
   std::memcpy(&contacts, snapshot.data() + offset, 4);
   if (contacts < 1 || snapshot.size() != offset + 4 + (contacts - 1) * (sizeof(ContactKey) + 16 + state_bytes(s.tables, Table::contact))) return cut;
 
   s.last_substep = substep;
   s.gravity = gravity;
-  std::uint32_t index;
+  std::uint32_t index = 0;
   for (std::size_t i = 1; i < s.bodies.size(); i++) {
     (void)r.get(index);
     (void)read_table(r, s.tables, Table::body, s.body_ids.row(index));
