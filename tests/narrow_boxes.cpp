@@ -75,6 +75,34 @@ TEST_CASE("narrow: a resting stack of boxes keeps its points and features") {
   }
 }
 
+TEST_CASE("narrow: a standing cylinder keeps its points and features") {
+  Pairs random(6);
+  const View floors[] = {box({2, 0.5, 2}, {0.3, -1, 0}), box({100, 0.5, 100}, {40, -1, 20}), to_float(shape(ShapeKind::cylinder, {0.7, 0.5, 0}, {0.1, -1, 0})),
+                         to_float(shape(ShapeKind::plane, {}, {0, -0.5, 0}))};
+  for (const View& floor : floors) {
+    CAPTURE(kind_names[std::size_t(floor.kind)]);
+    std::set<std::set<std::uint32_t>> seen;
+    for (int i = 0; i < 1000; i++) {
+      const Vec3 shift = random.ball(1e-5);
+      const View a = to_float(shape(ShapeKind::cylinder, {0.4, 0.5, 0}, shift, axis_angle(random.direction(), 1e-5)));
+      const Manifold<float> m = find(a, floor, 0.02f);
+      REQUIRE(m.count == 4);
+      std::set<std::uint32_t> features;
+      double least = 1, most = -1;
+      for (std::uint32_t k = 0; k < 4; k++) {
+        features.insert(m.points[k].feature);
+        CHECK(std::abs(m.points[k].separation) < 4e-5);
+        CHECK(std::abs(std::hypot(m.points[k].p[0], m.points[k].p[2]) - 0.4) < 1e-4);
+        least = std::min(least, double(m.points[k].p[0]));
+        most = std::max(most, double(m.points[k].p[0]));
+      }
+      CHECK(most - least > 0.5);
+      seen.insert(features);
+    }
+    CHECK(seen.size() == 1);
+  }
+}
+
 TEST_CASE("narrow: boxes turned against each other touch in the corners of their octagon") {
   Pairs random(5);
   for (int i = 0; i < 2000; i++) {

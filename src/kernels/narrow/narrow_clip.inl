@@ -33,18 +33,18 @@ PC_FN_LARGE void pc_clip(PC_INOUT(NarrowPolygon) polygon, Real a, Real b, Real c
       rest.count = rest.count + 1u;
     }
   }
-  polygon = rest;
+  polygon.count = rest.count;
+  for (uint i = 0u; i < rest.count; i++) { polygon.x[i] = rest.x[i]; polygon.y[i] = rest.y[i]; polygon.id[i] = rest.id[i]; }
 }
 
 PC_FN void pc_keep(PC_INOUT(NarrowPolygon) polygon, uint to, uint from) {
   polygon.x[to] = polygon.x[from]; polygon.y[to] = polygon.y[from]; polygon.s[to] = polygon.s[from]; polygon.id[to] = polygon.id[from];
 }
 
-// Twice the area of the triangle (i, j, k), signed.
-PC_FN Real pc_corner_area(NarrowPolygon polygon, uint i, uint j, uint k) {
-  precise Real r = (polygon.x[j] - polygon.x[i]) * (polygon.y[k] - polygon.y[i]) - (polygon.y[j] - polygon.y[i]) * (polygon.x[k] - polygon.x[i]);
-  return r;
-}
+// Twice the area of the triangle a b c, signed.
+struct Corner { Real x; Real y; };
+PC_FN Corner pc_corner(Real x, Real y) { Corner c; c.x = x; c.y = y; return c; }
+PC_FN Real pc_corner_area(Corner a, Corner b, Corner c) { precise Real r = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); return r; }
 
 // Drops points beyond the margin and keeps four: the deepest, the farthest from it, the one that spans the
 // largest triangle with them, and the one that adds most on the other side. Gains within noise go to the
@@ -59,21 +59,25 @@ PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real si
   precise Real slop = size * PC_DEEPER_SLOP;
   uint a = 0u;
   for (uint i = 1u; i < count; i++) { precise Real s = polygon.s[i] + slop; if (s < polygon.s[a]) a = i; }
+  Corner at_a = pc_corner(polygon.x[a], polygon.y[a]);
   uint b = a; Real best = PC_REAL(0.0);
   for (uint i = 0u; i < count; i++) {
-    precise Real dx = polygon.x[i] - polygon.x[a]; precise Real dy = polygon.y[i] - polygon.y[a];
+    precise Real dx = polygon.x[i] - at_a.x; precise Real dy = polygon.y[i] - at_a.y;
     precise Real far = dx * dx + dy * dy; precise Real least = best * PC_WIDER_SLOP;
     if (far > least) { best = far; b = i; }
   }
+  Corner at_b = pc_corner(polygon.x[b], polygon.y[b]);
   uint c = a; best = PC_REAL(0.0); bool turn = false;
   for (uint i = 0u; i < count; i++) {
-    Real area = pc_corner_area(polygon, a, b, i); precise Real least = best * PC_WIDER_SLOP;
+    Real area = pc_corner_area(at_a, at_b, pc_corner(polygon.x[i], polygon.y[i])); precise Real least = best * PC_WIDER_SLOP;
     if (pc_abs(area) > least) { best = pc_abs(area); c = i; turn = area > PC_REAL(0.0); }
   }
+  Corner at_c = pc_corner(polygon.x[c], polygon.y[c]);
   // the fourth: largest triangle beyond any side of a, b, c
   uint d = a; best = PC_REAL(0.0);
   for (uint i = 0u; i < count; i++) {
-    Real ab = pc_corner_area(polygon, a, b, i); Real bc = pc_corner_area(polygon, b, c, i); Real ca = pc_corner_area(polygon, c, a, i);
+    Corner p = pc_corner(polygon.x[i], polygon.y[i]);
+    Real ab = pc_corner_area(at_a, at_b, p); Real bc = pc_corner_area(at_b, at_c, p); Real ca = pc_corner_area(at_c, at_a, p);
     Real out_ab = turn ? -ab : ab; Real out_bc = turn ? -bc : bc; Real out_ca = turn ? -ca : ca;
     Real area = pc_max(out_ab, pc_max(out_bc, out_ca)); precise Real least = best * PC_WIDER_SLOP;
     if (area > least) { best = area; d = i; }

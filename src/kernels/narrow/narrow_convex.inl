@@ -12,15 +12,14 @@ PC_FN void pc_try_normal(PC_INOUT(Contact) k, Core a, Core b, Vec3 c, Vec3 about
   Real gap = -pc_overlap(a, b, n); precise Real least = k.gap - slop;
   if (gap >= least) { k.n = n; k.gap = gap; found = true; }
 }
+PC_FN bool pc_has_face(Core c, uint i) { return c.kind == PC_BOX || (c.kind == PC_CYLINDER && i == 1u); }
 // Direction of edge or axis i of a core; only boxes have three.
 PC_FN bool pc_has_line(Core c, uint i) { return c.kind == PC_BOX || i == 1u; }
 PC_FN_LARGE void pc_sharpen(PC_INOUT(Contact) k, Core a, Core b) {
   precise Real slop = (a.reach + b.reach) * PC_SHARPEN_SLOP;
   Vec3 n = k.n; bool found = false;
-  for (uint i = 0u; i < 3u; i++) {
-    if (a.kind == PC_BOX || (a.kind == PC_CYLINDER && i == 1u)) pc_try_normal(k, a, b, pc_axis(a.axes, i), n, slop, found);
-    if (b.kind == PC_BOX || (b.kind == PC_CYLINDER && i == 1u)) pc_try_normal(k, a, b, pc_axis(b.axes, i), n, slop, found);
-  }
+  for (uint i = 0u; i < 3u; i++) { if (pc_has_face(a, i)) pc_try_normal(k, a, b, pc_axis(a.axes, i), n, slop, found); }
+  for (uint i = 0u; i < 3u; i++) { if (pc_has_face(b, i)) pc_try_normal(k, a, b, pc_axis(b.axes, i), n, slop, found); }
   for (uint i = 0u; i < 3u && !found; i++) {
     for (uint j = 0u; j < 3u; j++) {
       if (pc_has_line(a, i) && pc_has_line(b, j)) {
@@ -200,7 +199,11 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
     bool along = pc_abs(pc_dot(la.u, k.n)) < PC_REAL(0.02) && pc_abs(pc_dot(lb.u, k.n)) < PC_REAL(0.02);
     if (along) pc_parallel_points(la.c, la.u, la.h, a.radius, lb.c, lb.u, lb.h, b.radius, s, margin, 0x3000001u, m);
   }
-  // the closest point itself, where nothing else holds it: instead of the shallowest of four
+  // the closest point itself, where nothing else holds it: instead of the shallowest of four. Over a face it is
+  // what stands out farthest, which does not depend on how the search went
+  Vec3 closest = k.a;
+  if (use_a) closest = pc_madd(pc_core_support(b, pc_negate(k.n)), k.n, -k.gap);
+  else if (use_b) closest = pc_core_support(a, k.n);
   precise Real separation = k.gap - a.radius - b.radius;
   precise Real deepest = separation + pc_min(a.reach, b.reach) * PC_CORE_TOUCH;
   bool held = false; uint shallowest = 0u;
@@ -210,7 +213,7 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
   }
   if (held || separation > margin) return;
   if (m.count == 4u) { m.count = 3u; m.points[shallowest] = m.points[3]; }
-  pc_push_from(m, k.a, k.n, a.radius, separation, margin, 0x3000000u);
+  pc_push_from(m, closest, k.n, a.radius, separation, margin, 0x3000000u);
 }
 
 // ---- the pair -------------------------------------------------------------------------------------------
