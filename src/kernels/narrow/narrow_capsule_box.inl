@@ -113,7 +113,7 @@ PC_FN_LARGE void pc_capsule_box(NarrowShape a, NarrowShape b, Real margin, PC_IN
     pc_parallel_points(a.p, along, h, r, centre, pc_axis(axes, i), pc_component(hb, i), PC_REAL(0.0), o, margin, 32u + i * 2u, m);
   }
   // the closest point itself, where nothing else holds it
-  precise Real deepest = separation + touch * PC_REAL(0.1);
+  precise Real deepest = separation + (r + h) * PC_HELD_SLOP;
   bool held = false;
   for (uint k = 0u; k < m.count; k++) held = held || m.points[k].separation <= deepest;
   if (!held) pc_push_from(m, pc_madd(a.p, along, t), m.normal, r, separation, margin, 0u);

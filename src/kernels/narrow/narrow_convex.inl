@@ -205,7 +205,7 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
   if (use_a) closest = pc_madd(pc_core_support(b, pc_negate(k.n)), k.n, -k.gap);
   else if (use_b) closest = pc_core_support(a, k.n);
   precise Real separation = k.gap - a.radius - b.radius;
-  precise Real deepest = separation + pc_min(a.reach, b.reach) * PC_CORE_TOUCH;
+  precise Real deepest = separation + pc_min(a.reach, b.reach) * PC_HELD_SLOP;
   bool held = false; uint shallowest = 0u;
   for (uint i = 0u; i < m.count; i++) {
     held = held || m.points[i].separation <= deepest;

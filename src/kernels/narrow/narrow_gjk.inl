@@ -33,8 +33,8 @@ PC_FN_LARGE Nearest pc_nearest_on_triangle(Vec3 a, Vec3 b, Vec3 c) {
   precise Real e1 = d4 - d3; precise Real e2 = d5 - d6;
   if (va <= zero && e1 >= zero && e2 >= zero) { Nearest n = pc_nearest_on_segment(b, c); return pc_nearest(n.v, zero, n.l0, n.l1); }
   Vec3 normal = pc_cross(ab, ac); Real squared = pc_dot(normal, normal);
-  precise Real sum = va + vb + vc;
-  if (!pc_has_length(squared) || !(sum > zero)) {  // a sliver: the nearest of its sides
+  precise Real sum = va + vb + vc; precise Real sliver = pc_dot(ab, ab) * pc_dot(ac, ac) * PC_GJK_SLIVER;
+  if (!(squared > sliver) || !(sum > zero)) {  // no normal to speak of: the nearest of its sides
     Nearest n1 = pc_nearest_on_segment(a, b); Nearest n2 = pc_nearest_on_segment(a, c); Nearest n3 = pc_nearest_on_segment(b, c);
     Real s1 = pc_dot(n1.v, n1.v); Real s2 = pc_dot(n2.v, n2.v); Real s3 = pc_dot(n3.v, n3.v);
     if (s1 <= s2 && s1 <= s3) return n1;
@@ -81,7 +81,7 @@ PC_FN_LARGE Distance pc_distance(Core a, Core b, Vec3 start, Real farthest, Real
   Simplex s; s.count = 1u; s.v = first.w;
   for (uint i = 0u; i < 4u; i++) { s.w[i] = first.w; s.a[i] = first.a; s.l[i] = PC_REAL(1.0); }
   precise Real touch_squared = touch * touch;
-  Simplex best = s;
+  Simplex best = s; uint starts = 0u;
   for (uint k = 0u; k < 40u; k++) {
     Real squared = pc_dot(s.v, s.v);
     if (!(squared > touch_squared)) { o.touching = true; break; }
@@ -96,9 +96,14 @@ PC_FN_LARGE Distance pc_distance(Core a, Core b, Vec3 start, Real farthest, Real
     if (known) break;
     s.w[s.count] = p.w; s.a[s.count] = p.a; s.count = s.count + 1u;
     if (!pc_reduce_simplex(s)) { o.touching = true; break; }
-    if (!(pc_dot(s.v, s.v) < squared)) { s = best; break; }  // rounding: the last one was as good
-    best = s;
+    if (pc_dot(s.v, s.v) < pc_dot(best.v, best.v)) best = s;
+    if (!(pc_dot(s.v, s.v) < squared)) {  // rounding: the last one was as good; a narrow simplex is given up
+      precise Real good = squared * PC_CORE_TOUCH;
+      if (gap <= good || starts == 2u) break;
+      starts = starts + 1u; s.count = 1u; s.v = p.w; s.w[0] = p.w; s.a[0] = p.a; s.l[0] = PC_REAL(1.0);
+    }
   }
+  if (pc_dot(best.v, best.v) < pc_dot(s.v, s.v)) s = best;
   o.v = s.v; o.a = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0));
   for (uint i = 0u; i < s.count; i++) o.a = pc_madd(o.a, s.a[i], s.l[i]);
   return o;

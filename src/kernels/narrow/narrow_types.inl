@@ -20,6 +20,8 @@ const uint PC_PLANE = 4u;
 #define PC_PARALLEL_EXACT PC_REAL(1e-8)
 // cores closer than this times their size have no usable difference vector
 #define PC_CORE_TOUCH PC_REAL(1e-4)
+// the closest point is added where no other point is as deep to this times the smaller core's size
+#define PC_HELD_SLOP PC_REAL(2e-5)
 // an edge pair must beat the best face by this times the smallest half extent: faces carry four points
 #define PC_EDGE_SLOP PC_REAL(4e-3)
 // the second face must beat the larger face by this times the smallest half extent
@@ -106,14 +108,18 @@ PC_FN void pc_push_from(PC_INOUT(NarrowManifold) m, Vec3 x, Vec3 n, Real radius,
   pc_push(m, pc_madd(x, n, reach), separation, feature);
 }
 
-// Relative to the squared distance: GJK stops. Relative to both shapes' size: EPA stops; its rounding error.
+// GJK stops at this gap, relative to the squared distance; below this squared sine a triangle has no normal.
+// EPA stops at this gap, its vertices are rounded by that, and an exact normal may separate less by the last,
+// all relative to the size of both shapes.
 #ifdef PC_DOUBLE
 #define PC_GJK_GAP PC_REAL(1e-12)
+#define PC_GJK_SLIVER PC_REAL(1e-20)
 #define PC_EPA_GAP PC_REAL(1e-7)
 #define PC_EPA_ROUNDING PC_REAL(1e-15)
 #define PC_SHARPEN_SLOP PC_REAL(1e-9)
 #else
 #define PC_GJK_GAP PC_REAL(1e-6)
+#define PC_GJK_SLIVER PC_REAL(1e-8)
 #define PC_EPA_GAP PC_REAL(3e-6)
 #define PC_EPA_ROUNDING PC_REAL(3e-7)
 #define PC_SHARPEN_SLOP PC_REAL(1e-6)
