@@ -95,7 +95,10 @@ PC_FN_LARGE Distance pc_distance(Core a, Core b, Vec3 start, Real farthest, Real
     for (uint i = 0u; i < s.count; i++) known = known || (s.w[i].x == p.w.x && s.w[i].y == p.w.y && s.w[i].z == p.w.z);
     if (known) break;
     s.w[s.count] = p.w; s.a[s.count] = p.a; s.count = s.count + 1u;
-    if (!pc_reduce_simplex(s)) { o.touching = true; break; }
+    if (!pc_reduce_simplex(s)) {  // holds the origin, unless the bound says that it cannot: then it is flat
+      o.touching = !(bound > least); s = best;
+      break;
+    }
     if (pc_dot(s.v, s.v) < pc_dot(best.v, best.v)) best = s;
     if (!(pc_dot(s.v, s.v) < squared)) {  // rounding: the last one was as good; a narrow simplex is given up
       precise Real good = squared * PC_CORE_TOUCH;
