@@ -121,7 +121,12 @@ std::uint32_t checked_depth(const KdTree& tree) {
   bool precede = true, hold = true;
   for (std::size_t i = nodes.size(); i-- > 0;) {
     deepest = std::max(deepest, depth[i]);
-    if (nodes[i].leaf()) continue;
+    if (nodes[i].leaf()) {
+      const BoxBlock& block = tree.blocks()[nodes[i].link];
+      for (std::uint32_t l = 0; l < block.count; ++l)
+        for (int k = 0; k < 3; ++k) hold &= nodes[i].min[k] <= block.min[k][l] && nodes[i].max[k] >= block.max[k][l];
+      continue;
+    }
     for (const std::size_t child : {i - 1, std::size_t{nodes[i].link}}) {
       precede &= child < i;
       depth[child] = depth[i] + 1;
@@ -165,21 +170,27 @@ TEST_CASE("tree: queries are those of brute force") {
   }
 }
 
-TEST_CASE("tree: only pairs with a moved and a mobile object") {
-  const Boxes boxes = cloud(600, 31, 6, 6, 6, 0.6f);
+TEST_CASE("tree: no pairs of two still objects, nor of two immobile ones") {
+  Boxes boxes = cloud(600, 31, 6, 6, 6, 0.6f);
+  for (int i = 0; i < 10; ++i) boxes[60 * i] = {{-50, static_cast<float>(-i), -50}, {50, 0, i < 5 ? 50 : infinity}};  // large
+  for (const float moved_share : {0.0f, 0.05f, 0.3f, 1.0f}) {  // few and many are answered in different ways
+  CAPTURE(moved_share);
   std::vector<std::uint8_t> flags;
   Random random(32);
-  for (std::size_t i = 0; i < boxes.size(); ++i) flags.push_back(static_cast<std::uint8_t>(random(0, 4)));
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    flags.push_back(static_cast<std::uint8_t>((random(0, 1) < moved_share ? 0u : std::uint32_t{KdTree::still}) | (random(0, 1) < 0.6f ? std::uint32_t{KdTree::mobile} : 0u)));
   KdTree tree;
   tree.build(boxes, everyone(boxes.size()), flags);
   PairSet expected;
   std::size_t mobile = 0;
   for (const auto& [a, b] : brute_force(boxes)) {
-    if (((flags[a] | flags[b]) & KdTree::both) == KdTree::both) expected.insert({a, b});
+    const bool known = flags[a] & flags[b] & KdTree::still;
+    if (!known && ((flags[a] | flags[b]) & KdTree::mobile)) expected.insert({a, b});
     mobile += ((flags[a] | flags[b]) & KdTree::mobile) != 0;
   }
   CHECK(pairs_of(tree) == expected);
   CHECK(tree.count_pairs() == mobile);
+  }
 }
 
 TEST_CASE("tree: a refit answers for the new boxes") {

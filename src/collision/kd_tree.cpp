@@ -42,11 +42,14 @@ unsigned split_level(std::uint64_t difference, std::size_t position) {
   return difference != 0 ? 32 + std::bit_width(difference) : std::bit_width(position ^ (position + 1));
 }
 
+constexpr unsigned top_level = 128;  // above every split
+
 }  // namespace
 
-KdTree::Node KdTree::leaf_node(const Aabb& box, std::uint32_t index, std::span<const std::uint8_t> flags) {
-  const std::uint32_t flag = flags.empty() ? both : flags[index] & both;
-  return {{box.min[0], box.min[1], box.min[2]}, flag | leaf_bit | normal_bit, {box.max[0], box.max[1], box.max[2]}, index};
+KdTree::Node KdTree::object_node(const Aabb& box, std::uint32_t index, std::span<const std::uint8_t> flags) {
+  const std::uint32_t flag = flags.empty() ? std::uint32_t{mobile} : flags[index] & both;
+  const std::uint32_t info = flag | ((flag & still) ? 0 : moved_bit) | leaf_bit | normal_bit;
+  return {{box.min[0], box.min[1], box.min[2]}, info, {box.max[0], box.max[1], box.max[2]}, index};
 }
 
 KdTree::Node KdTree::inner_node(const Node& left, const Node& right, std::uint32_t left_index) {
@@ -54,7 +57,7 @@ KdTree::Node KdTree::inner_node(const Node& left, const Node& right, std::uint32
 #if defined(__SSE2__)
   // Built in registers: a store of one lane would stall the next read of all four.
   const __m128 sides = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
-  const __m128 kept = _mm_castsi128_ps(_mm_set_epi32(both | normal_bit, 0, 0, 0));
+  const __m128 kept = _mm_castsi128_ps(_mm_set_epi32(both | moved_bit | normal_bit, 0, 0, 0));
   const __m128 a = _mm_load_ps(left.min), b = _mm_load_ps(right.min);
   const __m128 low = _mm_or_ps(_mm_and_ps(_mm_min_ps(a, b), sides), _mm_and_ps(_mm_or_ps(a, b), kept));
   const __m128 high = _mm_and_ps(_mm_max_ps(_mm_load_ps(left.max), _mm_load_ps(right.max)), sides);
@@ -64,7 +67,7 @@ KdTree::Node KdTree::inner_node(const Node& left, const Node& right, std::uint32
 #else
   for (int i = 0; i < 3; ++i) node.min[i] = std::min(left.min[i], right.min[i]);
   for (int i = 0; i < 3; ++i) node.max[i] = std::max(left.max[i], right.max[i]);
-  node.info = (left.info | right.info) & (both | normal_bit);
+  node.info = (left.info | right.info) & (both | moved_bit | normal_bit);
   node.link = left_index;
 #endif
   return node;
@@ -80,7 +83,7 @@ void KdTree::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> a
     else if (bounded(boxes[i]))
       bounded_.push_back(i);
     else
-      large_.push_back(leaf_node(boxes[i], i, flags));
+      large_.push_back(object_node(boxes[i], i, flags));
   }
   const Scene scene = measure(boxes);
   set_aside_large(boxes, scene, flags);
@@ -89,12 +92,12 @@ void KdTree::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> a
   if (wide_) {
     sort_wide_codes(boxes, scene.frame);
     const WideCode* codes = wide_codes_.data();
-    emit(boxes, flags, [=](std::size_t i) { return codes[i].index; },
-         [=](std::size_t i) { return split_level(codes[i].code ^ codes[i + 1].code, i); });
+    cut_into_blocks([=](std::size_t i) { return split_level(codes[i].code ^ codes[i + 1].code, i); });
+    emit(boxes, flags, [=](std::size_t i) { return codes[i].index; });
   } else {
     const std::uint64_t* codes = codes_.data();
-    emit(boxes, flags, [=](std::size_t i) { return static_cast<std::uint32_t>(codes[i]); },
-         [=](std::size_t i) { return split_level(codes[i] >> 32 ^ codes[i + 1] >> 32, i); });
+    cut_into_blocks([=](std::size_t i) { return split_level(codes[i] >> 32 ^ codes[i + 1] >> 32, i); });
+    emit(boxes, flags, [=](std::size_t i) { return static_cast<std::uint32_t>(codes[i]); });
   }
   built_cost_ = cost_;
 }
@@ -140,7 +143,7 @@ void KdTree::set_aside_large(std::span<const Aabb> boxes, const Scene& scene, st
   const auto is_large = [&](std::uint32_t i) { return largest_side(boxes[i]) > limit; };
   while (std::count_if(bounded_.begin(), bounded_.end(), is_large) > static_cast<std::ptrdiff_t>(max_large)) limit *= 2;
   for (const std::uint32_t i : bounded_)
-    if (is_large(i)) large_.push_back(leaf_node(boxes[i], i, flags));
+    if (is_large(i)) large_.push_back(object_node(boxes[i], i, flags));
   std::erase_if(bounded_, is_large);
 }
 
@@ -177,46 +180,88 @@ void KdTree::sort_wide_codes(std::span<const Aabb> boxes, const Frame& frame) {
     wide_codes_.swap(wide_scratch_);
 }
 
-// One pass over the leaves in Morton order. Left subtrees whose right side is still open wait on a stack, in
-// falling order of level; a split ends all waiting ones that are deeper. So nodes come out in post-order and
-// every inner node finds the boxes of its children ready.
-template <class Index, class Level>
-void KdTree::emit(std::span<const Aabb> boxes, std::span<const std::uint8_t> flags, Index index, Level level) {
+// One pass over the objects in Morton order finds every node of the radix tree: left subtrees whose right side
+// is still open wait on a stack, in falling order of level, and a split ends all waiting ones that are deeper.
+// Here only the sizes of nodes are wanted: those of up to four objects are not divided.
+template <class Level> void KdTree::cut_into_blocks(Level level) {
+  struct Open {
+    std::uint32_t begin, split;
+  };
+  std::array<Open, max_depth + 1> open;
+  std::uint32_t height = 0;
+  const auto count = static_cast<std::uint32_t>(bounded_.size());
+  cuts_.resize(count);
+  std::uint8_t* cuts = cuts_.data();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const unsigned here = i + 1 < count ? level(i) : top_level;
+    std::uint32_t begin = i;
+    while (height > 0 && cuts[open[height - 1].split] < here) {
+      const Open& node = open[--height];
+      begin = node.begin;
+      if (i + 1 - begin <= BoxBlock::lanes) cuts[node.split] = 0;
+    }
+    cuts[i] = static_cast<std::uint8_t>(here);
+    open[height++] = {begin, i};
+  }
+}
+
+// The same pass over blocks. Nodes come out in post-order, so every inner node finds its children's boxes ready.
+template <class Index>
+void KdTree::emit(std::span<const Aabb> boxes, std::span<const std::uint8_t> flags, Index index) {
   struct Open {
     std::uint32_t node;
     unsigned level;
   };
   std::array<Open, max_depth + 1> open;
-  std::uint32_t height = 0, count = 0;
-  const std::size_t leaves = bounded_.size();
-  nodes_.resize(leaves == 0 ? 0 : 2 * leaves - 1);
-  Node* nodes = nodes_.data();
+  std::uint32_t height = 0;
+  nodes_.clear();
+  blocks_.clear();
   cost_ = 0;
-  for (std::size_t i = 0; i < leaves; ++i) {
-    const std::uint32_t box = index(i);
-    nodes[count++] = leaf_node(boxes[box], box, flags);
-    const unsigned split = i + 1 < leaves ? level(i) : 128;
-    while (height > 0 && open[height - 1].level < split) {
+  moved_count_ = 0;
+  for (std::size_t i = 0; i < bounded_.size(); ++i) {
+    BoxBlock& block = blocks_.emplace_back();
+    block.count = 0;
+    while (cuts_[i] == 0) block.index[block.count++] = index(i++);
+    block.index[block.count++] = index(i);
+    nodes_.push_back(load_block(static_cast<std::uint32_t>(blocks_.size()) - 1, boxes, flags));
+    while (height > 0 && open[height - 1].level < cuts_[i]) {
       const std::uint32_t left = open[--height].node;
-      nodes[count] = inner_node(nodes[left], nodes[count - 1], left);
-      for (int k = 0; k < 3; ++k) cost_ += nodes[count].max[k] - nodes[count].min[k];
-      ++count;
+      nodes_.push_back(inner_node(nodes_[left], nodes_.back(), left));
+      add_cost(nodes_.back());
     }
-    open[height++] = {count - 1, split};
+    open[height++] = {static_cast<std::uint32_t>(nodes_.size()) - 1, cuts_[i]};
   }
 }
 
+KdTree::Node KdTree::load_block(std::uint32_t at, std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
+  BoxBlock& block = blocks_[at];
+  const Aabb around = block.load(boxes);
+  block.still = 0;
+  block.mobile = 0;
+  for (std::uint32_t l = 0; l < block.count; ++l) {
+    const std::uint32_t flag = flags.empty() ? std::uint32_t{mobile} : flags[block.index[l]];
+    block.still |= (flag & still) << l;
+    block.mobile |= (flag / mobile & 1) << l;
+  }
+  const std::uint32_t moved = block.moved();
+  moved_count_ += static_cast<std::size_t>(std::popcount(moved));
+  const std::uint32_t info = (block.still ? std::uint32_t{still} : 0u) | (block.mobile ? std::uint32_t{mobile} : 0u) | (moved ? moved_bit : 0u);
+  return {{around.min[0], around.min[1], around.min[2]}, info | leaf_bit | normal_bit, {around.max[0], around.max[1], around.max[2]}, at};
+}
+
+void KdTree::add_cost(const Node& node) {
+  for (int k = 0; k < 3; ++k) cost_ += node.max[k] - node.min[k];
+}
+
 void KdTree::refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
-  for (Node& node : large_) node = leaf_node(boxes[node.link], node.link, flags);
-  Node* nodes = nodes_.data();
+  for (Node& node : large_) node = object_node(boxes[node.link], node.link, flags);
   cost_ = 0;
+  moved_count_ = 0;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes[i].leaf()) {
-      nodes[i] = leaf_node(boxes[nodes[i].link], nodes[i].link, flags);
-    } else {
-      nodes[i] = inner_node(nodes[nodes[i].link], nodes[i - 1], nodes[i].link);
-      for (int k = 0; k < 3; ++k) cost_ += nodes[i].max[k] - nodes[i].min[k];
-    }
+    const std::uint32_t link = nodes_[i].link;
+    const bool leaf = nodes_[i].leaf();
+    nodes_[i] = leaf ? load_block(link, boxes, flags) : inner_node(nodes_[link], nodes_[i - 1], link);
+    if (!leaf) add_cost(nodes_[i]);
   }
 }
 
@@ -229,8 +274,8 @@ struct Crowd {
   std::uint64_t count, fixed;
 };
 
-Crowd crowd_of(const KdTree::Node& leaf) {
-  return {{leaf.min[0], leaf.min[1], leaf.min[2]}, {leaf.max[0], leaf.max[1], leaf.max[2]}, 1, (leaf.flags() & KdTree::mobile) ? 0u : 1u};
+Crowd crowd_of(const Aabb& box, bool mobile) {
+  return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}, 1, mobile ? 0u : 1u};
 }
 
 Crowd joined(const Crowd& a, const Crowd& b) {
@@ -246,41 +291,68 @@ bool all_overlap(const Crowd& a, const Crowd& b) {
   return all;
 }
 
-std::uint64_t pairs_between(const Crowd& a, const Crowd& b) { return a.count * b.count - a.fixed * b.fixed; }
-std::uint64_t pairs_among(const Crowd& a) { return (a.count * (a.count - 1) - a.fixed * (a.fixed == 0 ? 0 : a.fixed - 1)) / 2; }
+std::uint64_t crowd_pairs(const Crowd& a, const Crowd& b) { return a.count * b.count - a.fixed * b.fixed; }
+std::uint64_t crowd_pairs(const Crowd& a) { return (a.count * (a.count - 1) - a.fixed * (a.fixed == 0 ? 0 : a.fixed - 1)) / 2; }
+
+// Lanes of a block as a crowd of its own.
+Crowd crowd_of(const BoxBlock& block) {
+  Crowd crowd = crowd_of(block.box(0), block.mobile & 1);
+  for (std::uint32_t l = 1; l < block.count; ++l) crowd = joined(crowd, crowd_of(block.box(l), block.mobile >> l & 1));
+  return crowd;
+}
+
+std::uint64_t count_between(const BoxBlock& a, const BoxBlock& b) {
+  int count = 0;
+  for (std::uint32_t l = 0; l < a.count; ++l)
+    count += std::popcount(overlapping_lanes(b, a, l) & (a.mobile >> l & 1 ? BoxBlock::all : b.mobile));
+  return static_cast<std::uint64_t>(count);
+}
+
+std::uint64_t count_within(const BoxBlock& a) {  // each twice, and each mobile one with itself
+  return (count_between(a, a) - static_cast<std::uint64_t>(std::popcount(a.mobile))) / 2;
+}
 
 }  // namespace
 
 std::uint64_t KdTree::count_pairs() const {
   std::vector<Node> nodes(nodes_);
+  std::vector<BoxBlock> blocks(blocks_);
   std::vector<Crowd> crowds(nodes.size());
   for (std::size_t i = 0; i < nodes.size(); ++i)
-    crowds[i] = nodes[i].leaf() ? crowd_of(nodes[i]) : joined(crowds[nodes[i].link], crowds[i - 1]);
+    crowds[i] = nodes[i].leaf() ? crowd_of(blocks[nodes[i].link]) : joined(crowds[nodes[i].link], crowds[i - 1]);
 
   std::uint64_t count = 0;
   std::vector<std::array<std::uint32_t, 2>> tasks;
-  const auto among = [&](std::uint32_t a) {
-    if (all_overlap(crowds[a], crowds[a])) count += pairs_among(crowds[a]);
+  const auto within = [&](std::uint32_t a) {
+    if (all_overlap(crowds[a], crowds[a])) count += crowd_pairs(crowds[a]);
+    else if (nodes[a].leaf()) count += count_within(blocks[nodes[a].link]);
     else tasks.push_back({a, a});
   };
   const auto between = [&](std::uint32_t a, std::uint32_t b) {
     if (!overlap(nodes[a], nodes[b])) return;
-    if (all_overlap(crowds[a], crowds[b])) count += pairs_between(crowds[a], crowds[b]);
+    if (all_overlap(crowds[a], crowds[b])) count += crowd_pairs(crowds[a], crowds[b]);
+    else if (nodes[a].leaf() && nodes[b].leaf()) count += count_between(blocks[nodes[a].link], blocks[nodes[b].link]);
     else tasks.push_back({a, b});
   };
-  const auto tree = static_cast<std::uint32_t>(nodes_.size());
-  if (tree > 0) among(tree - 1);
-  for (std::size_t i = 0; i < large_.size(); ++i) {
-    nodes.push_back(large_[i]);
-    crowds.push_back(crowd_of(large_[i]));
-    for (std::size_t j = 0; j < i; ++j) between(tree + static_cast<std::uint32_t>(j), tree + static_cast<std::uint32_t>(i));
-    if (tree > 0) between(tree - 1, tree + static_cast<std::uint32_t>(i));
+  const auto tree = static_cast<std::uint32_t>(nodes.size());
+  if (tree > 0) within(tree - 1);
+  for (std::uint32_t i = 0; i < large_.size(); ++i) {
+    const Node& object = large_[i];
+    const Aabb box{{object.min[0], object.min[1], object.min[2]}, {object.max[0], object.max[1], object.max[2]}};
+    crowds.push_back(crowd_of(box, object.info & mobile));
+    BoxBlock& block = blocks.emplace_back();
+    block.count = 1, block.index[0] = 0, block.still = 0, block.mobile = object.info / mobile & 1;
+    block.load({&box, 1});
+    nodes.push_back(object);
+    nodes.back().link = static_cast<std::uint32_t>(blocks.size()) - 1;
+    for (std::uint32_t j = 0; j < i; ++j) between(tree + j, tree + i);
+    if (tree > 0) between(tree - 1, tree + i);
   }
   while (!tasks.empty()) {
     const auto [a, b] = tasks.back();
     tasks.pop_back();
     if (a == b) {
-      among(a - 1), among(nodes[a].link), between(a - 1, nodes[a].link);
+      within(a - 1), within(nodes[a].link), between(a - 1, nodes[a].link);
     } else if (!nodes[a].leaf() && (nodes[b].leaf() || crowds[a].count >= crowds[b].count)) {
       between(a - 1, b), between(nodes[a].link, b);
     } else {

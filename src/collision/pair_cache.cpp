@@ -16,8 +16,8 @@ constexpr Aabb nowhere{{infinity, infinity, infinity}, {-infinity, -infinity, -i
 constexpr Aabb everywhere{{-infinity, -infinity, -infinity}, {infinity, infinity, infinity}};
 
 constexpr float worn_tree = 1.3f;  // growth of the tree's cost above which building anew pays
-// Pairs beyond the capacity that are counted one by one, a tenth of a second or so, before a bound must do.
-constexpr std::uint64_t count_at_most = std::uint64_t{1} << 25;
+// Overlaps asked one by one after an overflow, a tenth of a second or so, before a bound must do.
+constexpr std::uint64_t ask_at_most = std::uint64_t{1} << 25;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void PairCache::add(std::uint32_t proxy, bool moves) {
     fat_.resize(proxy + 1, everywhere);
     index_bits_ = static_cast<unsigned>(std::bit_width(proxy));
   }
-  state_[proxy] = static_cast<std::uint8_t>(present | fresh | (moves ? State::moves : 0));
+  state_[proxy] = static_cast<std::uint8_t>(present | still | fresh | (moves ? State::moves : 0));
   fat_[proxy] = nowhere;
 }
 
@@ -104,7 +104,7 @@ void PairCache::renew_fat_boxes(std::span<const Aabb> tight) {
     const float margin = state_[i] & moves ? std::min(margin_, margin_fraction_ * largest_side(tight[i])) : 0.0f;
     fat_[i] = grown(tight[i], margin);
     if (!(state_[i] & entered)) tree_stale_ = true;
-    state_[i] |= entered | moved_now;
+    state_[i] = static_cast<std::uint8_t>((state_[i] | entered) & ~still);
   }
 }
 
@@ -125,14 +125,14 @@ bool PairCache::renew_tree() {
 // The pairs of all that moved into found_. False when they do not fit beside those that are kept.
 bool PairCache::collect(PairReport& report) {
   found_.clear();
-  // Without a filter the tree counts exactly and at once.
-  const std::uint64_t count_until = capacity_ + (filter_ ? count_at_most : 0);
-  std::uint64_t count = 0;
+  // Beyond the capacity the rest is asked one by one for a while; without a filter the tree counts at once.
+  std::uint64_t count = 0, patience = filter_ ? ask_at_most : 0;
   const bool all_counted = tree_.pairs([&](std::uint32_t a, std::uint32_t b) {
     const Pair pair{std::min(a, b), std::max(a, b)};
-    if (filter_ && !filter_(context_, pair.a, pair.b)) return true;
-    if (++count <= capacity_) found_.push_back(key(pair));
-    return count <= count_until;
+    if (!filter_ || filter_(context_, pair.a, pair.b)) {
+      if (++count <= capacity_) found_.push_back(key(pair));
+    }
+    return count <= capacity_ || patience-- > 0;
   });
   if (count + pairs_.size() <= capacity_) return true;
   const auto kept = static_cast<std::uint64_t>(std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& pair) { return keeps(pair); }));
@@ -146,7 +146,7 @@ bool PairCache::collect(PairReport& report) {
 void PairCache::restore() {
   for (std::size_t n = 0; n < moved_.size(); ++n) {
     fat_[moved_[n]] = fat_before_[n];
-    state_[moved_[n]] &= static_cast<std::uint8_t>(~moved_now);
+    state_[moved_[n]] |= still;
   }
   moved_.clear();
   tree_stale_ = true;
@@ -160,8 +160,8 @@ void PairCache::sort_found() {
 }
 
 bool PairCache::keeps(const Pair& pair) const {
-  const unsigned a = state_[pair.a], b = state_[pair.b];
-  return (a & b & entered) && !((a | b) & moved_now);
+  constexpr unsigned untouched = entered | still;
+  return (state_[pair.a] & state_[pair.b] & untouched) == untouched;
 }
 
 // Old pairs and found ones are both in order. Of an old pair with a moved proxy only the memory is used.
@@ -201,7 +201,7 @@ void PairCache::merge(PairReport& report) {
 }
 
 void PairCache::settle() {
-  for (const std::uint32_t i : moved_) state_[i] &= static_cast<std::uint8_t>(~(moved_now | fresh));
+  for (const std::uint32_t i : moved_) state_[i] = static_cast<std::uint8_t>((state_[i] | still) & ~fresh);
   someone_left_ = false;
 }
 

@@ -70,7 +70,7 @@ class PairCache {
 
  private:
   enum State : std::uint8_t {
-    moved_now = KdTree::moved,  // its pairs are made anew
+    still = KdTree::still,  // cleared while its pairs are made anew
     moves = KdTree::mobile,
     present = 4,
     entered = 8,  // is in the tree
