@@ -29,6 +29,7 @@ PC_INLINE Index pc_index(const uint* p) { return {p}; }
 
 // pc_transpose_in: four consecutive reals of each lane's row become four Reals; pc_transpose_out reverses it.
 #if !defined(PC_DOUBLE) && PC_LANES == 4
+PC_INLINE uint pc_mask_bits(Mask m) { return uint(_mm_movemask_ps(__m128(m))); }
 PC_INLINE Real pc_sqrt(Real a) { return Real::Vector(_mm_sqrt_ps(a.v)); }
 PC_INLINE void pc_transpose_in(const float* const* p, Real* o) {
   __m128 a = _mm_load_ps(p[0]), b = _mm_load_ps(p[1]), c = _mm_load_ps(p[2]), d = _mm_load_ps(p[3]);
@@ -41,6 +42,7 @@ PC_INLINE void pc_transpose_out(float* const* p, const Real* o) {
   _mm_store_ps(p[0], a); _mm_store_ps(p[1], b); _mm_store_ps(p[2], c); _mm_store_ps(p[3], d);
 }
 #elif !defined(PC_DOUBLE) && PC_LANES == 8
+PC_INLINE uint pc_mask_bits(Mask m) { return uint(_mm256_movemask_ps(__m256(m))); }
 PC_INLINE Real pc_sqrt(Real a) { return Real::Vector(_mm256_sqrt_ps(a.v)); }
 PC_INLINE __m256 pc_pair(const float* low, const float* high) { return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(low)), _mm_load_ps(high), 1); }
 PC_INLINE void pc_unpair(float* low, float* high, __m256 x) { _mm_store_ps(low, _mm256_castps256_ps128(x)); _mm_store_ps(high, _mm256_extractf128_ps(x, 1)); }
@@ -59,6 +61,7 @@ PC_INLINE void pc_transpose_out(float* const* p, const Real* o) {
   pc_unpair(p[0], p[4], a); pc_unpair(p[1], p[5], b); pc_unpair(p[2], p[6], c); pc_unpair(p[3], p[7], d);
 }
 #elif defined(PC_DOUBLE) && PC_LANES == 4
+PC_INLINE uint pc_mask_bits(Mask m) { return uint(_mm256_movemask_pd(__m256d(m))); }
 PC_INLINE Real pc_sqrt(Real a) { return Real::Vector(_mm256_sqrt_pd(a.v)); }
 PC_INLINE void pc_transpose_lanes(__m256d& a, __m256d& b, __m256d& c, __m256d& d) {
   const __m256d t0 = _mm256_unpacklo_pd(a, b), t1 = _mm256_unpackhi_pd(a, b), t2 = _mm256_unpacklo_pd(c, d), t3 = _mm256_unpackhi_pd(c, d);

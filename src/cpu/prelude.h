@@ -84,6 +84,20 @@ PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Qua
 #endif
 }
 
+// The same where the mask is set; other lanes write to a place that nobody reads.
+PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
+#if PC_LANES == 1
+  if (mask) pc_scatter(buffer, i, quads, k, q);
+#else
+  alignas(64) Scalar nowhere[4];
+  const uint bits = pc_mask_bits(mask);
+  Scalar* p[PC_LANES];
+  for (uint l = 0; l < PC_LANES; l++) p[l] = bits >> l & 1u ? buffer + (std::size_t(i.i[l]) * quads + k) * 4 : nowhere;
+  const Real o[4] = {q.v.x, q.v.y, q.v.z, q.s};
+  pc_transpose_out(p, o);
+#endif
+}
+
 }  // namespace PC_NAMESPACE
 }  // namespace pcphys
 
@@ -93,8 +107,7 @@ PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Qua
 #define PC_INFO(field) Real(io.info->field)
 #define PC_GATHER(buffer, i, k) pc_gather(io.buffer, i, quads_##buffer, k)
 #define PC_SCATTER(buffer, i, k, q) pc_scatter(io.buffer, i, quads_##buffer, k, q)
-// A store that other lanes need not see: on the CPU the unchanged value may as well be written.
-#define PC_SCATTER_IF(mask, buffer, i, k, q) pc_scatter(io.buffer, i, quads_##buffer, k, q)
+#define PC_SCATTER_IF(mask, buffer, i, k, q) pc_scatter_if(mask, io.buffer, i, quads_##buffer, k, q)
 #define PC_LD(buffer, slot, f) pc_load(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES)
 #define PC_ST(buffer, slot, f, x) pc_store(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES, x)
 #define PC_ENDS(buffer, slot, side) pc_index(io.buffer + (std::size_t((slot).block) * 2u + (side)) * PC_LANES)

@@ -1,6 +1,9 @@
 #include "glcompute/program_source.h"
 
+#include <bit>
 #include <charconv>
+#include <cmath>
+#include <cstdio>
 #include <string_view>
 
 #include "embedded.h"
@@ -59,8 +62,10 @@ Status Text::line(std::string_view text, std::size_t file, std::uint32_t at) {
   return {};
 }
 
-/// A constant means the same number here as in C++: read as double, rounded to the precision, written
-/// with as many digits as give it back. (GLSL's own reading of decimals may round differently.)
+/// A constant means the same number here as in C++: read as double, rounded to the precision, written so that
+/// every compiler gives it back. Found on an H200 (driver 580): decimals of many digits are read an ulp off as
+/// doubles (pi / 2 in parts), so those go by their bits; with all doubles by their bits, joint_solve was
+/// compiled wrongly, so short ones stay decimals.
 Status Text::constants(std::string_view text, std::string_view file, std::uint32_t at) {
   constexpr std::string_view marker = "PC_REAL(";
   for (std::size_t i = text.find(marker); i != text.npos; i = text.find(marker)) {
@@ -79,12 +84,20 @@ Status Text::constants(std::string_view text, std::string_view file, std::uint32
 
 std::string Text::literal(double value) const {
   char digits[64];
-  const bool single = precision_ == Precision::f32;
-  const auto end = single ? std::to_chars(digits, digits + sizeof digits, static_cast<float>(value)).ptr
-                          : std::to_chars(digits, digits + sizeof digits, value).ptr;
-  std::string text(digits, end);
+  const bool plain = std::ldexp(value, 10) == std::floor(std::ldexp(value, 10)) && std::fabs(value) < 1e15;  // exact in few digits
+  if (precision_ == Precision::f64 && plain) {
+    std::string text(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr);
+    if (text.find('.') == text.npos) text += ".0";
+    return "(" + text + "lf)";
+  }
+  if (precision_ == Precision::f64) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    std::snprintf(digits, sizeof digits, "packDouble2x32(uvec2(0x%08xu, 0x%08xu))", unsigned(bits & 0xffffffffu), unsigned(bits >> 32));
+    return digits;
+  }
+  std::string text(digits, std::to_chars(digits, digits + sizeof digits, static_cast<float>(value)).ptr);
   if (text.find_first_of(".e") == text.npos) text += ".0";
-  text += single ? "f" : "lf";
+  text += "f";
   return text.front() == '-' ? "(" + text + ")" : text;
 }
 
