@@ -40,11 +40,17 @@ PC_KERNEL_TEXT(begin) {
 PC_KERNEL_TEXT(integrate) {
 #include "kernels/integrate.inl"
 }
+PC_KERNEL_TEXT(integrate_drag) {
+#include "kernels/integrate_drag.inl"
+}
 PC_KERNEL_TEXT(remember) {
 #include "kernels/remember.inl"
 }
 PC_KERNEL_TEXT(advance) {
 #include "kernels/advance.inl"
+}
+PC_KERNEL_TEXT(advance_round) {
+#include "kernels/advance_round.inl"
 }
 PC_KERNEL_TEXT(synchronise) {
 #include "kernels/synchronise.inl"

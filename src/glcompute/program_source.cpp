@@ -84,14 +84,15 @@ Status Text::constants(std::string_view text, std::string_view file, std::uint32
 
 std::string Text::literal(double value) const {
   char digits[64];
-  const bool plain = std::ldexp(value, 10) == std::floor(std::ldexp(value, 10)) && std::fabs(value) < 1e15;  // exact in few digits
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const double scaled = std::ldexp(value, 10);
+  const bool plain = (bits >> 52 & 0x7ffu) < 1073u && static_cast<double>(static_cast<std::int64_t>(scaled)) == scaled;  // exact in few digits
   if (precision_ == Precision::f64 && plain) {
     std::string text(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr);
     if (text.find('.') == text.npos) text += ".0";
     return "(" + text + "lf)";
   }
   if (precision_ == Precision::f64) {
-    const auto bits = std::bit_cast<std::uint64_t>(value);
     std::snprintf(digits, sizeof digits, "packDouble2x32(uvec2(0x%08xu, 0x%08xu))", unsigned(bits & 0xffffffffu), unsigned(bits >> 32));
     return digits;
   }

@@ -64,6 +64,8 @@ class Builder {
 void leave_out(const PlanSignature& s, StepPlan& plan) {
   const auto out = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
   if (!s.bodies) out("integrate", "no body moves");
+  if (s.bodies && !s.drag) out("drag", "no body has any");
+  if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
   if (!s.joints) out("joints", "the world has no joints");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
@@ -83,13 +85,13 @@ StepPlan make_plan(const PlanSignature& s) {
   if (s.contacts) b.kernel(Kernel::contact_prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);
-    b.kernel(Kernel::integrate, Phase::biased, k);
+    b.kernel(s.drag ? Kernel::integrate_drag : Kernel::integrate, Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::biased, k);
-    b.kernel(Kernel::advance, Phase::biased, k);
+    b.kernel(s.gyroscopic ? Kernel::advance : Kernel::advance_round, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::relax, k);
   }

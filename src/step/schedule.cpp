@@ -33,8 +33,14 @@ void ColouredSlots::pack(std::uint32_t width) {
 
 void Schedule::update_structure(const WorldState& state) {
   bodies.clear();
-  for (std::uint32_t row = 1; row < state.bodies.size(); row++)
-    if (state.bodies[row].kind != BodyKind::fixed) bodies.push_back(row);
+  drag = gyroscopic = false;
+  for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
+    if (state.bodies[row].kind == BodyKind::fixed) continue;
+    bodies.push_back(row);
+    drag |= state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0;
+    const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4);
+    gyroscopic |= inverse.x != inverse.y || inverse.y != inverse.z;
+  }
   moving = std::uint32_t(bodies.size());
   bodies.resize((bodies.size() + padding - 1) / padding * padding, 0);
   bodies_version++;

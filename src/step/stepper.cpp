@@ -65,7 +65,7 @@ struct Stepper::Inside {
   Detector::Options detection() const { return {settings.narrow, settings.contact_margin, settings.max_pairs}; }
 
   PlanSignature signature(const WorldState& s, bool restitution) const {
-    return {settings.substeps, {settings.integrate, settings.joints, settings.impulses}, schedule.moving > 0, s.joints.size() > 1, detector.possible(), s.contact_rows() > 1, restitution};
+    return {settings.substeps, {settings.integrate, settings.joints, settings.impulses}, schedule.moving > 0, schedule.drag, schedule.gyroscopic, s.joints.size() > 1, detector.possible(), s.contact_rows() > 1, restitution};
   }
 
   const StepPlan& find_plan(const PlanSignature& wanted) {
@@ -178,6 +178,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
   PlanSignature wanted = in.signature(world.state(), true);
   wanted.bodies = schedule.moving > 0;
+  wanted.drag = schedule.drag;
+  wanted.gyroscopic = schedule.gyroscopic;
   wanted.shapes = wanted.contacts = detector.possible();
   wanted.restitution = detector.may_bounce(world.state());
   return make_plan(wanted);

@@ -299,6 +299,7 @@ Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
   if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
   const Vec3 w = s.angular_velocity(row);
   s.set_mass(row, mass);
+  s.structure_version++;
   s.bring_in_phase(row);
   s.set_angular_velocity(row, w);
   return {};
@@ -326,6 +327,7 @@ Status World::set_drag(BodyId body, double linear, double angular) {
   const std::uint32_t row = state_->body_ids.row(body.index);
   state_->tables.set(Buffer::force, row, 3, linear);
   state_->tables.set(Buffer::force, row, 7, angular);
+  state_->structure_version++;  // the plan leaves drag out where there is none
   return {};
 }
 
