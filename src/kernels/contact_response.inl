@@ -7,22 +7,12 @@ PC_FN Vec3 pc_pushed(Vec3 v, Vec3 impulse, Real inverse_mass) { return pc_madd(v
 // The bodies have moved apart by D since the start of the step, so the two frozen arms end D apart, and
 // equal and opposite impulses there would exert a couple D x F. Both arms are therefore drawn to one common
 // point, in inverse proportion to the masses: on a light body the point stays, on a heavy one it travels
-// with the light one; a fixed body takes the whole shift. Where an arm has grown, the frozen effective masses
-// are too large by up to (K + dK) / K, with dK <= growth of arm^2 times trace I^-1: `scale` makes up for it.
-struct Arms { Vec3 a; Vec3 b; Real scale; };
-PC_FN Real pc_arm_growth(Vec3 arm, Vec3 frozen, Sym3 inertia, Real response) {
-  precise Real longer = pc_dot(arm, arm) - pc_dot(frozen, frozen);
-  precise Real growth = pc_max(longer, PC_REAL(0.0)) * (inertia.xx + inertia.yy + inertia.zz) * response; return growth;
-}
-PC_FN Arms pc_arms(PC_IO Slot m, BodyState a, BodyState b, Vec3 moved_a, Vec3 moved_b) {
-  Vec3 frozen_a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 frozen_b = pc_ld3_rows(PC_PASS m, ROW_ARM_B);
+// with the light one; a fixed body takes the whole shift.
+struct Arms { Vec3 a; Vec3 b; };
+PC_FN Arms pc_arms(PC_IO Slot m, Vec3 moved_a, Vec3 moved_b) {
   Vec3 d = pc_sub(moved_b, moved_a);
   Real share = PC_LD(contact_rows, m, ROW_SHARE); precise Real rest = share - PC_REAL(1.0);
-  Arms r; r.a = pc_madd(frozen_a, d, share); r.b = pc_madd(frozen_b, d, rest);
-  Real k = PC_LD(contact_rows, m, ROW_K);
-  precise Real now = k + pc_arm_growth(r.a, frozen_a, a.inertia, a.response) + pc_arm_growth(r.b, frozen_b, b.inertia, b.response);
-  precise Real scale = k * pc_inverse_or_zero(now);
-  r.scale = scale; return r;
+  Arms r; r.a = pc_madd(pc_ld3_rows(PC_PASS m, ROW_ARM_A), d, share); r.b = pc_madd(pc_ld3_rows(PC_PASS m, ROW_ARM_B), d, rest); return r;
 }
 
 PC_FN void pc_apply(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple) {

@@ -31,12 +31,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real shift_n = pc_dot(n, pc_sub(shift_b, shift_a)); Real turn1 = pc_dot(t1, turn); Real turn2 = pc_dot(t2, turn);
 
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
-  Arms arms = pc_arms(PC_PASS m, a, b, moved_a.v, moved_b.v);
+  Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v); Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
   precise Real load = l0 + l1 + l2 + l3;
-  Friction f = pc_friction(PC_PASS m, v, load, arms.scale);
+  Friction f = pc_friction(PC_PASS m, v, load, mass_scale);
   PC_ST(contact_impulses, m, IMPULSE_T, f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, f.next_twist);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
@@ -44,22 +44,22 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift_n + b0 * turn1 - a0 * turn2);
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * arms.scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0); precise Real e0 = k0 - l0;
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0); precise Real e0 = k0 - l0;
   PC_ST(contact_impulses, m, 0u, k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 0u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), k0));
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
   precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift_n + b1 * turn1 - a1 * turn2);
-  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * arms.scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1); precise Real e1 = k1 - l1;
+  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1); precise Real e1 = k1 - l1;
   PC_ST(contact_impulses, m, 1u, k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), k1));
   Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
   precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
   precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift_n + b2 * turn1 - a2 * turn2);
-  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * arms.scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2); precise Real e2 = k2 - l2;
+  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2); precise Real e2 = k2 - l2;
   PC_ST(contact_impulses, m, 2u, k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), k2));
   Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
   precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift_n + b3 * turn1 - a3 * turn2);
-  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * arms.scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3); precise Real e3 = k3 - l3;
+  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3); precise Real e3 = k3 - l3;
   PC_ST(contact_impulses, m, 3u, k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), k3));
 
   precise Real touch = k0 + k1 + k2 + k3;
