@@ -18,8 +18,8 @@ PC_FN Real pc_two_sum_error(Real a, Real b, Real sum) {
 }
 
 #ifdef PC_ROUND
-PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Vec3 inverse, Real middle, Real h) {
-  precise Real world_time = inverse.x * h;
+PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
+  precise Real world_time = inverse.v.x * h;
   return pc_normalise(pc_quaternion_mul(pc_rotation(pc_scale(l, world_time)), q));
 }
 #else
@@ -31,9 +31,10 @@ PC_FN Spin pc_body_turn(Spin s, Vec3 axis, Real rate, Real time) {
   Spin o; o.q = pc_quaternion_mul(s.q, r); o.pi = pc_rotate(pc_conjugate(r), s.pi); return o;
 }
 
-PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Vec3 inverse, Real middle, Real h) {
-  Mask first = middle < PC_REAL(0.5);
-  Mask last = middle > PC_REAL(1.5);
+PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
+  Vec3 inverse = moments.v;
+  Mask first = moments.s < PC_REAL(0.5);
+  Mask last = moments.s > PC_REAL(1.5);
   Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));
   Vec3 y = Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   Vec3 z = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(1.0));
@@ -70,7 +71,7 @@ PC_FN void pc_kernel(PC_IO Index i) {
   place.v = sum;
 
   Quaternion before = pc_quaternion(turned.v, turned.s);
-  Quaternion after = pc_free_rotation(before, angular.v, inverse.v, inverse.s, h);
+  Quaternion after = pc_free_rotation(before, angular.v, inverse, h);
   Quaternion change = pc_quaternion_mul(after, pc_conjugate(before));
   Real two = pc_select(change.w < PC_REAL(0.0), PC_REAL(-2.0), PC_REAL(2.0));
   turned.v = after.v; turned.s = after.w;
