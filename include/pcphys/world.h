@@ -23,6 +23,18 @@ namespace pcphys {
 struct WorldState;
 class World;
 
+/// A manifold between two bodies, as the last step left it. World axes, SI units.
+struct Contact {
+  struct Point {
+    Vec3 position;          // midway between the surfaces: the arm it had when found, from a where a is now [m]
+    double separation = 0;  // negative when the shapes overlap [m]
+    double impulse = 0;     // along the normal, of the last sub-step [N s]
+  };
+  BodyId a, b;
+  Vec3 normal;  // from a to b
+  std::vector<Point> points;
+};
+
 struct WorldDef {
   Precision precision = Precision::f32;
   Vec3 gravity{0, -9.81, 0};  // [m/s^2]; there is no preferred up axis
@@ -58,6 +70,9 @@ class World {
   std::size_t body_count() const;  // the ground excluded
   std::size_t joint_count() const;
   std::size_t contact_count() const;  // manifolds with points, of the last step
+  /// What touched in the last step, in an order that depends on the shapes' ids alone. `view` shows the same
+  /// without copying.
+  std::vector<Contact> contacts() const;
 
   // ---- state -----------------------------------------------------------------------------------------
   Result<Pose> pose(BodyId body) const;

@@ -135,6 +135,7 @@ Status World::destroy(BodyId body) {
     s.free_shapes.push_back(shape);
   }
   std::erase_if(s.no_collide, [&](const auto& pair) { return pair.first >> 32 == body.index || (pair.first & 0xffffffffu) == body.index; });
+  s.drop_contacts(row, last);
   if (row != last) {
     s.tables.copy_row(Table::body, last, row);
     s.bodies[row] = std::move(s.bodies[last]);

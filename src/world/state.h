@@ -68,6 +68,9 @@ struct WorldState {
   std::uint64_t structure_version = 1;  // objects, kinds, filters
   std::uint64_t pose_version = 1;       // poses written by the host, snapshots restored
 
+  /// Removes the contacts of a body and follows the row of another that took its place.
+  void drop_contacts(std::uint32_t row, std::uint32_t last_row);
+
   std::uint32_t contact_rows() const { return tables.rows(Table::contact); }
   static std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a); }
 
