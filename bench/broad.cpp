@@ -61,8 +61,8 @@ void shift(Aabb& box, float by) {
 void report(benchmark::State& state, const PairCache& cache, std::size_t moved) {
   state.counters["pairs"] = static_cast<double>(cache.pairs().size());
   state.counters["moved"] = static_cast<double>(moved);
-  state.counters["ns_per_proxy"] = benchmark::Counter(static_cast<double>(state.range(0)) * 1e-9,
-                                                      benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["ns_per_proxy"] = benchmark::Counter(
+      static_cast<double>(state.range(0)) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.SetComplexityN(state.range(0));
 }
 
@@ -130,7 +130,9 @@ void refit(benchmark::State& state) {
 void sizes(benchmark::internal::Benchmark* bench) {
   bench->RangeMultiplier(10)->Range(100, 100000)->Unit(benchmark::kMicrosecond)->Complexity();
 }
-void small_sizes(benchmark::internal::Benchmark* bench) { bench->Arg(100)->Arg(300)->Arg(1000)->Arg(3000)->Unit(benchmark::kMicrosecond)->Complexity(); }
+void small_sizes(benchmark::internal::Benchmark* bench) {
+  bench->Arg(100)->Arg(300)->Arg(1000)->Arg(3000)->Unit(benchmark::kMicrosecond)->Complexity();
+}
 
 BENCHMARK_CAPTURE(update, pile_all_move, pile, 1000)->Apply(sizes);
 BENCHMARK_CAPTURE(update, pile_5_percent_move, pile, 50)->Apply(sizes);

@@ -35,7 +35,9 @@ struct Watched {
   int next = 0;
 
   std::uint32_t add(std::uint32_t proxy, const Aabb& box, bool mobile) {
-    if (proxy >= tight.size()) tight.resize(proxy + 1, cube(not_a_number, not_a_number, not_a_number, not_a_number)), here.resize(proxy + 1, 0), moves.resize(proxy + 1, 0);
+    if (proxy >= tight.size())
+      tight.resize(proxy + 1, cube(not_a_number, not_a_number, not_a_number, not_a_number)), here.resize(proxy + 1, 0),
+          moves.resize(proxy + 1, 0);
     cache.add(proxy, mobile);
     tight[proxy] = box, here[proxy] = 1, moves[proxy] = mobile;
     forget(proxy);

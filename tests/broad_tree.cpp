@@ -1,8 +1,8 @@
 // The KD-tree's contract: what it answers is what brute force answers, on any arrangement of boxes; its
-// depth is bounded; equal input gives equal nodes; boxes that are none never enter.
+// depth is bounded; equal input gives equal blocks; boxes that are none never enter.
 #include <doctest/doctest.h>
 
-#include <cstring>
+#include <algorithm>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -76,14 +76,23 @@ std::vector<Arrangement> arrangements() {
   Boxes many_large = cloud(400, 6, 5, 5, 5, 0.1f);
   for (int i = 0; i < 100; ++i) many_large.push_back(cube(0.1f * static_cast<float>(i), 0, 0, 4));
   Boxes grid;
-  for (int i = 0; i < 512; ++i) grid.push_back(cube(static_cast<float>(i % 8), static_cast<float>(i / 8 % 8), static_cast<float>(i / 64), 0.5f));
+  for (int i = 0; i < 512; ++i)
+    grid.push_back(cube(static_cast<float>(i % 8), static_cast<float>(i / 8 % 8), static_cast<float>(i / 64), 0.5f));
   return {{"none", {}},
           {"one", {cube(0, 0, 0, 1)}},
           {"two", {cube(0, 0, 0, 1), cube(1, 0, 0, 1)}},
           {"three", {cube(0, 0, 0, 1), cube(1, 0, 0, 1), cube(9, 0, 0, 1)}},
           {"cloud", cloud(1000, 1, 10, 10, 10, 0.7f)},
           {"line", cloud(1000, 2, 100, 0, 0, 0.2f)},
-          {"slanted line", [] { Boxes b; for (int i = 0; i < 1000; ++i) { const float t = 0.1f * static_cast<float>(i); b.push_back(cube(t, -t, 2 * t, 0.2f)); } return b; }()},
+          {"slanted line",
+           [] {
+             Boxes b;
+             for (int i = 0; i < 1000; ++i) {
+               const float t = 0.1f * static_cast<float>(i);
+               b.push_back(cube(t, -t, 2 * t, 0.2f));
+             }
+             return b;
+           }()},
           {"plane", cloud(1000, 3, 20, 0, 20, 0.5f)},
           {"equal", equal},
           {"points", points},
@@ -113,50 +122,67 @@ PairSet pairs_of(const KdTree& tree) {
   return pairs;
 }
 
-// Depth by a sweep from the root; also checks that every node holds its children.
-std::uint32_t checked_depth(const KdTree& tree) {
-  const auto nodes = tree.nodes();
-  std::vector<std::uint32_t> depth(nodes.size(), 0);
+// Depth by a sweep from the root; also checks that every block holds what is below it, and every object once.
+std::uint32_t checked_depth(const KdTree& tree, std::size_t objects) {
+  const auto blocks = tree.blocks();
+  std::vector<std::uint32_t> depth(blocks.size(), 0), parents(blocks.size(), 0);
   std::uint32_t deepest = 0;
-  bool precede = true, hold = true;
-  for (std::size_t i = nodes.size(); i-- > 0;) {
+  bool precede = true, hold = true, filled = true;
+  std::set<std::uint32_t> seen;
+  std::size_t leaves = 0;
+  for (std::size_t i = blocks.size(); i-- > 0;) {
     deepest = std::max(deepest, depth[i]);
-    if (nodes[i].leaf()) {
-      const BoxBlock& block = tree.blocks()[nodes[i].link];
-      for (std::uint32_t l = 0; l < block.count; ++l)
-        for (int k = 0; k < 3; ++k) hold &= nodes[i].min[k] <= block.min[k][l] && nodes[i].max[k] >= block.max[k][l];
-      continue;
-    }
-    for (const std::size_t child : {i - 1, std::size_t{nodes[i].link}}) {
-      precede &= child < i;
+    filled &= blocks[i].count >= 1 && blocks[i].count <= BoxBlock::lanes && (blocks[i].leaf || blocks[i].count >= 2);
+    for (std::uint32_t l = 0; l < blocks[i].count; ++l) {
+      const std::uint32_t child = blocks[i].index[l];
+      hold &= contains(tree.bounds(i), blocks[i].box(l));
+      if (blocks[i].leaf) {
+        seen.insert(child), ++leaves;
+        continue;
+      }
+      precede &= child < i && child >= tree.large().size();
+      hold &= contains(blocks[i].box(l), tree.bounds(child));
       depth[child] = depth[i] + 1;
-      for (int k = 0; k < 3; ++k) hold &= nodes[i].min[k] <= nodes[child].min[k] && nodes[i].max[k] >= nodes[child].max[k];
+      ++parents[child];
     }
   }
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    filled &= parents[i] == (i < tree.large().size() || i + 1 == blocks.size() ? 0 : 1);
   CHECK(precede);
   CHECK(hold);
+  CHECK(filled);
+  CHECK(seen.size() == leaves);
+  CHECK(leaves == objects);
   return deepest;
+}
+
+std::size_t large_count(const KdTree& tree) {
+  std::size_t count = 0;
+  for (const BoxBlock& block : tree.large()) count += block.count;
+  return count;
 }
 
 }  // namespace
 
 TEST_CASE("tree: pairs are those of brute force") {
   KdTree tree;  // one for all: buffers of one scene must not leak into the next
-  for (const auto& [name, boxes] : arrangements()) {
-    CAPTURE(name);
+  for (const Arrangement& arrangement : arrangements()) {
+    const Boxes& boxes = arrangement.boxes;
+    CAPTURE(arrangement.name);
     tree.build(boxes, everyone(boxes.size()));
     const PairSet expected = brute_force(boxes);
     CHECK(pairs_of(tree) == expected);
     CHECK(tree.count_pairs() == expected.size());
-    CHECK(tree.large().size() <= KdTree::max_large + 3);
-    CHECK(checked_depth(tree) <= KdTree::max_depth);
+    CHECK(large_count(tree) <= KdTree::max_large + 3);
+    CHECK(checked_depth(tree, boxes.size()) <= KdTree::max_depth);
   }
 }
 
 TEST_CASE("tree: queries are those of brute force") {
   Random random(21);
-  for (const auto& [name, boxes] : arrangements()) {
-    CAPTURE(name);
+  for (const Arrangement& arrangement : arrangements()) {
+    const Boxes& boxes = arrangement.boxes;
+    CAPTURE(arrangement.name);
     KdTree tree;
     tree.build(boxes, everyone(boxes.size()));
     for (int n = 0; n < 50; ++n) {
@@ -174,22 +200,23 @@ TEST_CASE("tree: no pairs of two still objects, nor of two immobile ones") {
   Boxes boxes = cloud(600, 31, 6, 6, 6, 0.6f);
   for (int i = 0; i < 10; ++i) boxes[60 * i] = {{-50, static_cast<float>(-i), -50}, {50, 0, i < 5 ? 50 : infinity}};  // large
   for (const float moved_share : {0.0f, 0.05f, 0.3f, 1.0f}) {  // few and many are answered in different ways
-  CAPTURE(moved_share);
-  std::vector<std::uint8_t> flags;
-  Random random(32);
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    flags.push_back(static_cast<std::uint8_t>((random(0, 1) < moved_share ? 0u : std::uint32_t{KdTree::still}) | (random(0, 1) < 0.6f ? std::uint32_t{KdTree::mobile} : 0u)));
-  KdTree tree;
-  tree.build(boxes, everyone(boxes.size()), flags);
-  PairSet expected;
-  std::size_t mobile = 0;
-  for (const auto& [a, b] : brute_force(boxes)) {
-    const bool known = flags[a] & flags[b] & KdTree::still;
-    if (!known && ((flags[a] | flags[b]) & KdTree::mobile)) expected.insert({a, b});
-    mobile += ((flags[a] | flags[b]) & KdTree::mobile) != 0;
-  }
-  CHECK(pairs_of(tree) == expected);
-  CHECK(tree.count_pairs() == mobile);
+    CAPTURE(moved_share);
+    std::vector<std::uint8_t> flags;
+    Random random(32);
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+      flags.push_back(static_cast<std::uint8_t>((random(0, 1) < moved_share ? 0u : std::uint32_t{KdTree::still}) |
+                                                (random(0, 1) < 0.6f ? std::uint32_t{KdTree::mobile} : 0u)));
+    KdTree tree;
+    tree.build(boxes, everyone(boxes.size()), flags);
+    PairSet expected;
+    std::size_t mobile = 0;
+    for (const auto& [a, b] : brute_force(boxes)) {
+      const bool known = flags[a] & flags[b] & KdTree::still;
+      if (!known && ((flags[a] | flags[b]) & KdTree::mobile)) expected.insert({a, b});
+      mobile += ((flags[a] | flags[b]) & KdTree::mobile) != 0;
+    }
+    CHECK(pairs_of(tree) == expected);
+    CHECK(tree.count_pairs() == mobile);
   }
 }
 
@@ -198,7 +225,7 @@ TEST_CASE("tree: a refit answers for the new boxes") {
   boxes.push_back({{-100, -1, -100}, {100, 0, 100}});
   KdTree tree;
   tree.build(boxes, everyone(boxes.size()));
-  CHECK(tree.large().size() == 1);
+  CHECK(large_count(tree) == 1);
   Random random(42);
   for (int step = 0; step < 10; ++step) {
     for (Aabb& box : boxes) {
@@ -207,19 +234,25 @@ TEST_CASE("tree: a refit answers for the new boxes") {
     }
     tree.refit(boxes);
     CHECK(pairs_of(tree) == brute_force(boxes));
-    checked_depth(tree);
+    checked_depth(tree, boxes.size());
   }
   CHECK(tree.growth() > 1);
 }
 
-TEST_CASE("tree: equal input gives equal nodes, whatever was built before") {
+TEST_CASE("tree: equal input gives equal blocks, whatever was built before") {
   const Boxes boxes = cloud(3000, 51, 30, 3, 30, 0.5f);
   KdTree first, second;
   second.build(cloud(5000, 52, 1, 1, 1, 0.1f), everyone(5000));
   first.build(boxes, everyone(boxes.size()));
   second.build(boxes, everyone(boxes.size()));
-  REQUIRE(first.nodes().size() == second.nodes().size());
-  CHECK(std::memcmp(first.nodes().data(), second.nodes().data(), first.nodes().size_bytes()) == 0);
+  REQUIRE(first.blocks().size() == second.blocks().size());
+  bool same = true;
+  for (std::size_t i = 0; i < first.blocks().size(); ++i) {
+    const BoxBlock &a = first.blocks()[i], &b = second.blocks()[i];
+    same &= a.count == b.count && a.leaf == b.leaf && std::equal(a.index, a.index + a.count, b.index);
+    for (std::uint32_t l = 0; l < a.count; ++l) same &= contains(a.box(l), b.box(l)) && contains(b.box(l), a.box(l));
+  }
+  CHECK(same);
 }
 
 TEST_CASE("tree: depth is logarithmic where codes cannot tell objects apart") {
@@ -228,7 +261,8 @@ TEST_CASE("tree: depth is logarithmic where codes cannot tell objects apart") {
     KdTree tree;
     tree.build(boxes, everyone(count));
     CHECK(tree.wide_codes());
-    CHECK(checked_depth(tree) <= static_cast<std::uint32_t>(std::ceil(std::log2(static_cast<double>(count)))));
+    CHECK(checked_depth(tree, boxes.size()) <=
+          static_cast<std::uint32_t>(std::ceil(0.5 * std::log2(static_cast<double>(count)))));
   }
 }
 
@@ -244,7 +278,7 @@ TEST_CASE("tree: the deepest codes stay within the bound") {
       }
   KdTree tree;
   tree.build(boxes, everyone(boxes.size()));
-  CHECK(checked_depth(tree) <= KdTree::max_depth);
+  CHECK(checked_depth(tree, boxes.size()) <= KdTree::max_depth);
   CHECK(pairs_of(tree) == brute_force(boxes));
 }
 
@@ -253,10 +287,10 @@ TEST_CASE("tree: outliers do not flatten the rest") {
   Boxes boxes = cloud(count, 61, 10, 10, 10, 0.2f);
   KdTree tree;
   tree.build(boxes, everyone(count));
-  const std::uint32_t before = checked_depth(tree);
+  const std::uint32_t before = checked_depth(tree, boxes.size());
   for (std::size_t i = 0; i < count; i += 200) boxes[i] = cube(1e20f, static_cast<float>(i), -1e25f, 1);
   tree.build(boxes, everyone(count));
-  CHECK(checked_depth(tree) <= before + 4);
+  CHECK(checked_depth(tree, boxes.size()) <= before + 4);
   CHECK_FALSE(tree.wide_codes());
 }
 

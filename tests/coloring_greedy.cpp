@@ -29,7 +29,8 @@ Graph random_graph(std::uint32_t unit_count, std::uint32_t constraints, float fi
   std::uniform_real_distribution<float> unit(0, 1);
   Graph graph{unit_count, {}, {}};
   for (std::uint32_t i = 0; i < constraints; ++i) {
-    const auto a = static_cast<std::uint32_t>(engine() % unit_count), b = (a + 1 + static_cast<std::uint32_t>(engine() % (unit_count - 1))) % unit_count;
+    const auto a = static_cast<std::uint32_t>(engine() % unit_count),
+               b = (a + 1 + static_cast<std::uint32_t>(engine() % (unit_count - 1))) % unit_count;
     graph.add(a, unit(engine) < fixed_share ? fixed_unit : b, i % 3);
   }
   return graph;
@@ -94,9 +95,14 @@ void check_valid(const Graph& graph, const Colouring& colouring) {
 }  // namespace
 
 TEST_CASE("colouring: sequential greedy in order of priority, without conflicts") {
-  for (const auto& [bodies, constraints, fixed_share] : std::vector<std::tuple<std::uint32_t, std::uint32_t, float>>{
-           {2, 1, 0.0f}, {2, 70, 0.0f}, {10, 40, 0.3f}, {1000, 4000, 0.2f}, {50, 3000, 0.1f}, {5000, 20000, 0.0f}, {30, 500, 1.0f}}) {
-    CAPTURE(bodies);
+  for (const auto& [bodies, constraints, fixed_share] :
+       std::vector<std::tuple<std::uint32_t, std::uint32_t, float>>{{2, 1, 0.0f},
+                                                                    {2, 70, 0.0f},
+                                                                    {10, 40, 0.3f},
+                                                                    {1000, 4000, 0.2f},
+                                                                    {50, 3000, 0.1f},
+                                                                    {5000, 20000, 0.0f},
+                                                                    {30, 500, 1.0f}}) {
     const Graph graph = random_graph(bodies, constraints, fixed_share, bodies + constraints);
     const Colouring colouring = coloured(graph);
     check_valid(graph, colouring);
@@ -119,7 +125,8 @@ TEST_CASE("colouring: nothing to colour, and after it something") {
 TEST_CASE("colouring: the order of input does not matter") {
   Graph graph = random_graph(400, 2000, 0.1f, 8);
   std::mt19937 engine(5);
-  for (std::size_t i = 0; i < graph.priorities.size(); ++i) graph.priorities[i] = mixed(static_cast<std::uint32_t>(i));  // no two alike
+  for (std::size_t i = 0; i < graph.priorities.size(); ++i)
+    graph.priorities[i] = mixed(static_cast<std::uint32_t>(i));  // no two alike
   const Colouring straight = coloured(graph);
   std::vector<std::uint32_t> order(graph.priorities.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -189,7 +196,8 @@ TEST_CASE("colouring: slots are padded per colour, sides apart, padding is row 0
   const Colouring colouring = coloured(graph);
   std::vector<std::uint32_t> ends, rows;
   for (std::uint32_t i = 0; i < 321; ++i) {
-    for (int side = 0; side < 2; ++side) ends.push_back(graph.units[2 * i + side] == fixed_unit ? 0 : graph.units[2 * i + side] + 1);
+    for (int side = 0; side < 2; ++side)
+      ends.push_back(graph.units[2 * i + side] == fixed_unit ? 0 : graph.units[2 * i + side] + 1);
     rows.push_back(1000 + i);
   }
   for (const std::uint32_t width : {1u, 4u, 8u, 32u}) {

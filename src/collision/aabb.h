@@ -27,9 +27,7 @@ inline float round_up(double x) {
 }
 
 /// False for NaN and for inverted boxes.
-inline bool valid(const Aabb& box) {
-  return box.min[0] <= box.max[0] && box.min[1] <= box.max[1] && box.min[2] <= box.max[2];
-}
+inline bool valid(const Aabb& box) { return box.min[0] <= box.max[0] && box.min[1] <= box.max[1] && box.min[2] <= box.max[2]; }
 
 inline bool bounded(const Aabb& box) {
   constexpr float largest = std::numeric_limits<float>::max();
@@ -40,8 +38,8 @@ inline bool bounded(const Aabb& box) {
 
 /// Boxes that only touch do overlap.
 inline bool overlap(const Aabb& a, const Aabb& b) {
-  return a.min[0] <= b.max[0] && b.min[0] <= a.max[0] && a.min[1] <= b.max[1] && b.min[1] <= a.max[1] &&
-         a.min[2] <= b.max[2] && b.min[2] <= a.max[2];
+  return a.min[0] <= b.max[0] && b.min[0] <= a.max[0] && a.min[1] <= b.max[1] && b.min[1] <= a.max[1] && a.min[2] <= b.max[2] &&
+         b.min[2] <= a.max[2];
 }
 
 /// False when either is no box.

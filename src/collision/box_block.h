@@ -1,8 +1,8 @@
-// Up to four boxes side by side, so that one box is tested against all of them at once.
+// Up to four boxes side by side, so that one box is tested against all of them at once. The boxes are those
+// of objects, or of subtrees that other blocks hold.
 #pragma once
 #include <cstdint>
 #include <limits>
-#include <span>
 
 #include "collision/aabb.h"
 
@@ -12,18 +12,21 @@ struct alignas(16) BoxBlock {
   static constexpr std::uint32_t lanes = 4, all = 15;
 
   float min[3][lanes], max[3][lanes];  // NaN in unused lanes: they overlap nothing, not even infinite boxes
-  std::uint32_t index[lanes];
-  std::uint32_t count;
-  std::uint32_t still, mobile;  // a bit per lane, see KdTree::Flag
+  std::uint32_t index[lanes];          // of the object in a leaf, of a block otherwise
+  std::uint8_t count, leaf;
+  std::uint8_t still, moved, mobile;  // a bit per lane, see KdTree::Flag; a subtree may have all of them
 
   Aabb box(std::uint32_t lane) const {
     return {{min[0][lane], min[1][lane], min[2][lane]}, {max[0][lane], max[1][lane], max[2][lane]}};
   }
-  std::uint32_t used() const { return (1u << count) - 1; }
-  std::uint32_t moved() const { return ~still & used(); }
-
-  /// Copies the boxes of index[0] ... index[count - 1] and returns the box around them.
-  Aabb load(std::span<const Aabb> boxes);
+  bool moved_at(std::uint32_t lane) const { return moved >> lane & 1; }
+  bool mobile_at(std::uint32_t lane) const { return mobile >> lane & 1; }
+  /// Lanes that may pair with something of these flags: one of the two has moved, one is mobile.
+  std::uint32_t allowed(bool with_moved, bool with_mobile) const {
+    return (with_moved ? all : moved) & (with_mobile ? all : mobile);
+  }
+  /// Copies the `count` boxes boxes[index[lane]] and returns the box around them.
+  Aabb load(const Aabb* boxes);
 };
 static_assert(sizeof(BoxBlock) == 128);
 
@@ -40,13 +43,14 @@ inline std::uint32_t overlapping_lanes(const BoxBlock& block, float x0, float y0
   std::uint32_t bits = 0;
   for (std::uint32_t l = 0; l < BoxBlock::lanes; ++l)
     bits |= static_cast<std::uint32_t>(block.min[0][l] <= x1 && block.max[0][l] >= x0 && block.min[1][l] <= y1 &&
-                                       block.max[1][l] >= y0 && block.min[2][l] <= z1 && block.max[2][l] >= z0) << l;
+                                       block.max[1][l] >= y0 && block.min[2][l] <= z1 && block.max[2][l] >= z0)
+            << l;
   return bits;
 #endif
 }
 
-inline std::uint32_t overlapping_lanes(const BoxBlock& block, const float* min, const float* max) {
-  return overlapping_lanes(block, min[0], min[1], min[2], max[0], max[1], max[2]);
+inline std::uint32_t overlapping_lanes(const BoxBlock& block, const Aabb& box) {
+  return overlapping_lanes(block, box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]);
 }
 
 /// The same for one lane of another block.
@@ -55,7 +59,7 @@ inline std::uint32_t overlapping_lanes(const BoxBlock& block, const BoxBlock& ot
                            other.max[1][lane], other.max[2][lane]);
 }
 
-inline Aabb BoxBlock::load(std::span<const Aabb> boxes) {
+inline Aabb BoxBlock::load(const Aabb* boxes) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   static constexpr Aabb nothing{{nan, nan, nan}, {nan, nan, nan}};
   const Aabb* source[lanes];

@@ -46,58 +46,26 @@ constexpr unsigned top_level = 128;  // above every split
 
 }  // namespace
 
-KdTree::Node KdTree::object_node(const Aabb& box, std::uint32_t index, std::span<const std::uint8_t> flags) {
-  const std::uint32_t flag = flags.empty() ? std::uint32_t{mobile} : flags[index] & both;
-  const std::uint32_t info = flag | ((flag & still) ? 0 : moved_bit) | leaf_bit | normal_bit;
-  return {{box.min[0], box.min[1], box.min[2]}, info, {box.max[0], box.max[1], box.max[2]}, index};
-}
-
-KdTree::Node KdTree::inner_node(const Node& left, const Node& right, std::uint32_t left_index) {
-  Node node;
-#if defined(__SSE2__)
-  // Built in registers: a store of one lane would stall the next read of all four.
-  const __m128 sides = _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1));
-  const __m128 kept = _mm_castsi128_ps(_mm_set_epi32(both | moved_bit | normal_bit, 0, 0, 0));
-  const __m128 a = _mm_load_ps(left.min), b = _mm_load_ps(right.min);
-  const __m128 low = _mm_or_ps(_mm_and_ps(_mm_min_ps(a, b), sides), _mm_and_ps(_mm_or_ps(a, b), kept));
-  const __m128 high = _mm_and_ps(_mm_max_ps(_mm_load_ps(left.max), _mm_load_ps(right.max)), sides);
-  const __m128 link = _mm_castsi128_ps(_mm_slli_si128(_mm_cvtsi32_si128(static_cast<int>(left_index)), 12));
-  _mm_store_ps(node.min, low);
-  _mm_store_ps(node.max, _mm_or_ps(high, link));
-#else
-  for (int i = 0; i < 3; ++i) node.min[i] = std::min(left.min[i], right.min[i]);
-  for (int i = 0; i < 3; ++i) node.max[i] = std::max(left.max[i], right.max[i]);
-  node.info = (left.info | right.info) & (both | moved_bit | normal_bit);
-  node.link = left_index;
-#endif
-  return node;
-}
-
 void KdTree::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> active, std::span<const std::uint8_t> flags) {
   bounded_.clear();
   large_.clear();
   refused_.clear();
-  for (const std::uint32_t i : active) {
-    if (!valid(boxes[i]))
-      refused_.push_back(i);
-    else if (bounded(boxes[i]))
-      bounded_.push_back(i);
-    else
-      large_.push_back(object_node(boxes[i], i, flags));
-  }
+  for (const std::uint32_t i : active) (!valid(boxes[i]) ? refused_ : bounded(boxes[i]) ? bounded_ : large_).push_back(i);
   const Scene scene = measure(boxes);
-  set_aside_large(boxes, scene, flags);
+  set_aside_large(boxes, scene);
   sort_codes(boxes, scene.frame);
   wide_ = many_ties();
   if (wide_) {
     sort_wide_codes(boxes, scene.frame);
     const WideCode* codes = wide_codes_.data();
-    cut_into_blocks([=](std::size_t i) { return split_level(codes[i].code ^ codes[i + 1].code, i); });
-    emit(boxes, flags, [=](std::size_t i) { return codes[i].index; });
+    emit(
+        boxes, flags, [=](std::size_t i) { return codes[i].index; },
+        [=](std::size_t i) { return split_level(codes[i].code ^ codes[i + 1].code, i); });
   } else {
     const std::uint64_t* codes = codes_.data();
-    cut_into_blocks([=](std::size_t i) { return split_level(codes[i] >> 32 ^ codes[i + 1] >> 32, i); });
-    emit(boxes, flags, [=](std::size_t i) { return static_cast<std::uint32_t>(codes[i]); });
+    emit(
+        boxes, flags, [=](std::size_t i) { return static_cast<std::uint32_t>(codes[i]); },
+        [=](std::size_t i) { return split_level(codes[i] >> 32 ^ codes[i + 1] >> 32, i); });
   }
   built_cost_ = cost_;
 }
@@ -138,12 +106,12 @@ KdTree::Scene KdTree::measure(std::span<const Aabb> boxes) {
   return scene;
 }
 
-void KdTree::set_aside_large(std::span<const Aabb> boxes, const Scene& scene, std::span<const std::uint8_t> flags) {
+void KdTree::set_aside_large(std::span<const Aabb> boxes, const Scene& scene) {
   float limit = std::max(0.25f * scene.side, 8 * scene.typical_side);
   const auto is_large = [&](std::uint32_t i) { return largest_side(boxes[i]) > limit; };
   while (std::count_if(bounded_.begin(), bounded_.end(), is_large) > static_cast<std::ptrdiff_t>(max_large)) limit *= 2;
   for (const std::uint32_t i : bounded_)
-    if (is_large(i)) large_.push_back(object_node(boxes[i], i, flags));
+    if (is_large(i)) large_.push_back(i);
   std::erase_if(bounded_, is_large);
 }
 
@@ -180,89 +148,98 @@ void KdTree::sort_wide_codes(std::span<const Aabb> boxes, const Frame& frame) {
     wide_codes_.swap(wide_scratch_);
 }
 
-// One pass over the objects in Morton order finds every node of the radix tree: left subtrees whose right side
-// is still open wait on a stack, in falling order of level, and a split ends all waiting ones that are deeper.
-// Here only the sizes of nodes are wanted: those of up to four objects are not divided.
-template <class Level> void KdTree::cut_into_blocks(Level level) {
+// One pass over the objects in Morton order. Left subtrees whose right side is still open wait on a stack, in
+// falling order of level, and a split ends all waiting ones that are deeper.
+template <class Index, class Level>
+void KdTree::emit(std::span<const Aabb> boxes, std::span<const std::uint8_t> flags, Index index, Level level) {
   struct Open {
-    std::uint32_t begin, split;
-  };
-  std::array<Open, max_depth + 1> open;
-  std::uint32_t height = 0;
-  const auto count = static_cast<std::uint32_t>(bounded_.size());
-  cuts_.resize(count);
-  std::uint8_t* cuts = cuts_.data();
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const unsigned here = i + 1 < count ? level(i) : top_level;
-    std::uint32_t begin = i;
-    while (height > 0 && cuts[open[height - 1].split] < here) {
-      const Open& node = open[--height];
-      begin = node.begin;
-      if (i + 1 - begin <= BoxBlock::lanes) cuts[node.split] = 0;
-    }
-    cuts[i] = static_cast<std::uint8_t>(here);
-    open[height++] = {begin, i};
-  }
-}
-
-// The same pass over blocks. Nodes come out in post-order, so every inner node finds its children's boxes ready.
-template <class Index>
-void KdTree::emit(std::span<const Aabb> boxes, std::span<const std::uint8_t> flags, Index index) {
-  struct Open {
-    std::uint32_t node;
+    Bundle bundle;
     unsigned level;
   };
   std::array<Open, max_depth + 1> open;
   std::uint32_t height = 0;
-  nodes_.clear();
   blocks_.clear();
-  cost_ = 0;
-  moved_count_ = 0;
-  for (std::size_t i = 0; i < bounded_.size(); ++i) {
-    BoxBlock& block = blocks_.emplace_back();
-    block.count = 0;
-    while (cuts_[i] == 0) block.index[block.count++] = index(i++);
-    block.index[block.count++] = index(i);
-    nodes_.push_back(load_block(static_cast<std::uint32_t>(blocks_.size()) - 1, boxes, flags));
-    while (height > 0 && open[height - 1].level < cuts_[i]) {
-      const std::uint32_t left = open[--height].node;
-      nodes_.push_back(inner_node(nodes_[left], nodes_.back(), left));
-      add_cost(nodes_.back());
-    }
-    open[height++] = {static_cast<std::uint32_t>(nodes_.size()) - 1, cuts_[i]};
+  bounds_.clear();
+  reset_sums();
+  for (std::size_t i = 0; i < large_.size(); i += BoxBlock::lanes) {
+    Bundle bundle{{}, 0, true};
+    while (bundle.count < BoxBlock::lanes && i + bundle.count < large_.size())
+      bundle.index[bundle.count] = large_[i + bundle.count], ++bundle.count;
+    closed(bundle, boxes, flags);
   }
+  large_blocks_ = blocks_.size();
+  const std::size_t count = bounded_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    Bundle bundle{{index(i)}, 1, true};
+    const unsigned split = i + 1 < count ? level(i) : top_level;
+    while (height > 0 && open[height - 1].level < split) bundle = joined(open[--height].bundle, bundle, boxes, flags);
+    open[height++] = {bundle, split};
+  }
+  if (height > 0) closed(open[0].bundle, boxes, flags);
 }
 
-KdTree::Node KdTree::load_block(std::uint32_t at, std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
+// Both sides into one bundle; what does not fit becomes blocks, the fuller side first.
+KdTree::Bundle KdTree::joined(Bundle left, Bundle right, std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
+  const auto fits = [&] { return left.count + right.count <= BoxBlock::lanes; };
+  if (!(left.leaf && right.leaf && fits())) {
+    if (left.leaf) left = closed(left, boxes, flags);
+    if (right.leaf) right = closed(right, boxes, flags);
+  }
+  while (!fits()) {
+    Bundle& fuller = left.count >= right.count ? left : right;
+    fuller = closed(fuller, boxes, flags);
+  }
+  for (std::uint32_t i = 0; i < right.count; ++i) left.index[left.count++] = right.index[i];
+  return left;
+}
+
+KdTree::Bundle KdTree::closed(const Bundle& bundle, std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
+  const std::size_t at = blocks_.size();
+  BoxBlock& block = blocks_.emplace_back();
+  bounds_.emplace_back();
+  for (std::uint32_t l = 0; l < BoxBlock::lanes; ++l) block.index[l] = l < bundle.count ? bundle.index[l] : 0;
+  block.count = static_cast<std::uint8_t>(bundle.count);
+  block.leaf = bundle.leaf;
+  load(at, boxes, flags);
+  return {{static_cast<std::uint32_t>(at)}, 1, false};
+}
+
+// Boxes and flags of a block, from its objects or from the blocks below it.
+void KdTree::load(std::size_t at, std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
   BoxBlock& block = blocks_[at];
-  const Aabb around = block.load(boxes);
-  block.still = 0;
-  block.mobile = 0;
+  const Aabb around = block.load(block.leaf ? boxes.data() : bounds_.data());
+  bounds_[at] = around;
+  std::uint32_t stills = 0, moveds = 0, mobiles = 0;
   for (std::uint32_t l = 0; l < block.count; ++l) {
-    const std::uint32_t flag = flags.empty() ? std::uint32_t{mobile} : flags[block.index[l]];
-    block.still |= (flag & still) << l;
-    block.mobile |= (flag / mobile & 1) << l;
+    const std::uint32_t i = block.index[l];
+    if (block.leaf) {
+      const std::uint32_t flag = flags.empty() ? std::uint32_t{mobile} : flags[i];
+      stills |= (flag & still) << l;
+      moveds |= (~flag & still) << l;
+      mobiles |= (flag / mobile & 1) << l;
+    } else {
+      stills |= std::uint32_t{blocks_[i].still != 0} << l;
+      moveds |= std::uint32_t{blocks_[i].moved != 0} << l;
+      mobiles |= std::uint32_t{blocks_[i].mobile != 0} << l;
+    }
   }
-  const std::uint32_t moved = block.moved();
-  moved_count_ += static_cast<std::size_t>(std::popcount(moved));
-  const std::uint32_t info = (block.still ? std::uint32_t{still} : 0u) | (block.mobile ? std::uint32_t{mobile} : 0u) | (moved ? moved_bit : 0u);
-  return {{around.min[0], around.min[1], around.min[2]}, info | leaf_bit | normal_bit, {around.max[0], around.max[1], around.max[2]}, at};
+  block.still = static_cast<std::uint8_t>(stills);
+  block.moved = static_cast<std::uint8_t>(moveds);
+  block.mobile = static_cast<std::uint8_t>(mobiles);
+  if (block.leaf)
+    objects_ += block.count, moved_ += static_cast<std::size_t>(std::popcount(moveds));
+  else
+    for (int k = 0; k < 3; ++k) cost_ += around.max[k] - around.min[k];
 }
 
-void KdTree::add_cost(const Node& node) {
-  for (int k = 0; k < 3; ++k) cost_ += node.max[k] - node.min[k];
+void KdTree::reset_sums() {
+  cost_ = 0;
+  objects_ = moved_ = 0;
 }
 
 void KdTree::refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
-  for (Node& node : large_) node = object_node(boxes[node.link], node.link, flags);
-  cost_ = 0;
-  moved_count_ = 0;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const std::uint32_t link = nodes_[i].link;
-    const bool leaf = nodes_[i].leaf();
-    nodes_[i] = leaf ? load_block(link, boxes, flags) : inner_node(nodes_[link], nodes_[i - 1], link);
-    if (!leaf) add_cost(nodes_[i]);
-  }
+  reset_sums();
+  for (std::size_t i = 0; i < blocks_.size(); ++i) load(i, boxes, flags);
 }
 
 namespace {
@@ -278,7 +255,7 @@ Crowd crowd_of(const Aabb& box, bool mobile) {
   return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}, 1, mobile ? 0u : 1u};
 }
 
-Crowd joined(const Crowd& a, const Crowd& b) {
+Crowd joined_crowd(const Crowd& a, const Crowd& b) {
   Crowd crowd{{}, {}, a.count + b.count, a.fixed + b.fixed};
   for (int k = 0; k < 3; ++k) crowd.start[k] = std::max(a.start[k], b.start[k]);
   for (int k = 0; k < 3; ++k) crowd.end[k] = std::min(a.end[k], b.end[k]);
@@ -297,7 +274,7 @@ std::uint64_t crowd_pairs(const Crowd& a) { return (a.count * (a.count - 1) - a.
 // Lanes of a block as a crowd of its own.
 Crowd crowd_of(const BoxBlock& block) {
   Crowd crowd = crowd_of(block.box(0), block.mobile & 1);
-  for (std::uint32_t l = 1; l < block.count; ++l) crowd = joined(crowd, crowd_of(block.box(l), block.mobile >> l & 1));
+  for (std::uint32_t l = 1; l < block.count; ++l) crowd = joined_crowd(crowd, crowd_of(block.box(l), block.mobile >> l & 1));
   return crowd;
 }
 
@@ -315,48 +292,48 @@ std::uint64_t count_within(const BoxBlock& a) {  // each twice, and each mobile 
 }  // namespace
 
 std::uint64_t KdTree::count_pairs() const {
-  std::vector<Node> nodes(nodes_);
-  std::vector<BoxBlock> blocks(blocks_);
-  std::vector<Crowd> crowds(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    crowds[i] = nodes[i].leaf() ? crowd_of(blocks[nodes[i].link]) : joined(crowds[nodes[i].link], crowds[i - 1]);
-
+  std::vector<Crowd> crowds(blocks_.size());
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    crowds[i] = blocks_[i].leaf ? crowd_of(blocks_[i]) : crowds[blocks_[i].index[0]];
+    for (std::uint32_t l = 1; l < blocks_[i].count && !blocks_[i].leaf; ++l)
+      crowds[i] = joined_crowd(crowds[i], crowds[blocks_[i].index[l]]);
+  }
   std::uint64_t count = 0;
   std::vector<std::array<std::uint32_t, 2>> tasks;
   const auto within = [&](std::uint32_t a) {
-    if (all_overlap(crowds[a], crowds[a])) count += crowd_pairs(crowds[a]);
-    else if (nodes[a].leaf()) count += count_within(blocks[nodes[a].link]);
-    else tasks.push_back({a, a});
+    if (all_overlap(crowds[a], crowds[a]))
+      count += crowd_pairs(crowds[a]);
+    else if (blocks_[a].leaf)
+      count += count_within(blocks_[a]);
+    else
+      tasks.push_back({a, a});
   };
   const auto between = [&](std::uint32_t a, std::uint32_t b) {
-    if (!overlap(nodes[a], nodes[b])) return;
-    if (all_overlap(crowds[a], crowds[b])) count += crowd_pairs(crowds[a], crowds[b]);
-    else if (nodes[a].leaf() && nodes[b].leaf()) count += count_between(blocks[nodes[a].link], blocks[nodes[b].link]);
-    else tasks.push_back({a, b});
+    if (!overlap(bounds_[a], bounds_[b])) return;
+    if (all_overlap(crowds[a], crowds[b]))
+      count += crowd_pairs(crowds[a], crowds[b]);
+    else if (blocks_[a].leaf && blocks_[b].leaf)
+      count += count_between(blocks_[a], blocks_[b]);
+    else
+      tasks.push_back({a, b});
   };
-  const auto tree = static_cast<std::uint32_t>(nodes.size());
-  if (tree > 0) within(tree - 1);
-  for (std::uint32_t i = 0; i < large_.size(); ++i) {
-    const Node& object = large_[i];
-    const Aabb box{{object.min[0], object.min[1], object.min[2]}, {object.max[0], object.max[1], object.max[2]}};
-    crowds.push_back(crowd_of(box, object.info & mobile));
-    BoxBlock& block = blocks.emplace_back();
-    block.count = 1, block.index[0] = 0, block.still = 0, block.mobile = object.info / mobile & 1;
-    block.load({&box, 1});
-    nodes.push_back(object);
-    nodes.back().link = static_cast<std::uint32_t>(blocks.size()) - 1;
-    for (std::uint32_t j = 0; j < i; ++j) between(tree + j, tree + i);
-    if (tree > 0) between(tree - 1, tree + i);
+  for (std::uint32_t i = 0; i < large_blocks_; ++i) {
+    within(i);
+    for (std::uint32_t j = 0; j < i; ++j) between(i, j);
+    if (has_tree()) between(i, root());
   }
+  if (has_tree()) within(root());
   while (!tasks.empty()) {
     const auto [a, b] = tasks.back();
     tasks.pop_back();
-    if (a == b) {
-      within(a - 1), within(nodes[a].link), between(a - 1, nodes[a].link);
-    } else if (!nodes[a].leaf() && (nodes[b].leaf() || crowds[a].count >= crowds[b].count)) {
-      between(a - 1, b), between(nodes[a].link, b);
-    } else {
-      between(a, b - 1), between(a, nodes[b].link);
+    const bool into_a = a == b || (!blocks_[a].leaf && (blocks_[b].leaf || crowds[a].count >= crowds[b].count));
+    const BoxBlock& block = blocks_[into_a ? a : b];
+    for (std::uint32_t l = 0; l < block.count; ++l) {
+      if (a != b)
+        between(into_a ? b : a, block.index[l]);
+      else
+        within(block.index[l]);
+      for (std::uint32_t m = 0; m < l && a == b; ++m) between(block.index[l], block.index[m]);
     }
   }
   return count;

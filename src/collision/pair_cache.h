@@ -20,10 +20,10 @@ struct Pair {
 
 /// What an update did.
 struct PairReport {
-  bool changed = false;       // false: pairs() is what it was
-  bool rebuilt = false;       // the tree was built anew, not refitted
-  std::uint32_t moved = 0;    // proxies that got a new fat box
-  std::uint32_t added = 0, removed = 0;  // pairs
+  bool changed = false;                          // false: pairs() is what it was
+  bool rebuilt = false;                          // the tree was built anew, not refitted
+  std::uint32_t moved = 0;                       // proxies that got a new fat box
+  std::uint32_t added = 0, removed = 0;          // pairs
   std::uint32_t refused = 0, first_refused = 0;  // proxies whose tight box is none (NaN, inverted): they have no pairs
   // The pairs would be more than the capacity. Everything is as before the call; raise the capacity to
   // `pairs_needed` and update again.
@@ -97,7 +97,7 @@ class PairCache {
   KdTree tree_;
   bool tree_stale_ = false, someone_left_ = false, identity_ = true;
   unsigned index_bits_ = 0;
-  std::vector<Aabb> fat_, fat_before_;   // fat_before_: of moved_, in case of overflow
+  std::vector<Aabb> fat_, fat_before_;  // fat_before_: of moved_, in case of overflow
   std::vector<std::uint8_t> state_;
   std::vector<std::uint32_t> moved_, active_, previous_, next_previous_;
   std::vector<Pair> pairs_, next_pairs_;

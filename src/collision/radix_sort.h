@@ -47,14 +47,13 @@ T* sort(T* items, T* scratch, std::size_t count, unsigned begin, unsigned end, K
 
 /// Sorts by key(item), an unsigned integer below 2^end of which the lowest `begin` bits are in order already.
 /// `scratch` has room for `count` items. Returns whichever of the two arrays holds the result.
-template <class T, class Key>
-T* radix_sort(T* items, T* scratch, std::size_t count, unsigned begin, unsigned end, Key key) {
+template <class T, class Key> T* radix_sort(T* items, T* scratch, std::size_t count, unsigned begin, unsigned end, Key key) {
   if (count < 64) {
     insertion_sort(items, count, [&](const T& item) { return key(item) >> begin; });
     return items;
   }
-  return count < 1500 ? radix::sort<8>(items, scratch, count, begin, end, key)
-                      : radix::sort<11>(items, scratch, count, begin, end, key);
+  return count < 300 ? radix::sort<8>(items, scratch, count, begin, end, key)
+                     : radix::sort<10>(items, scratch, count, begin, end, key);
 }
 
 }  // namespace pcphys

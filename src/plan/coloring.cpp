@@ -32,7 +32,8 @@ void Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> 
   std::uint64_t* taken = taken_.data();
   for (const std::uint64_t item : order_) {
     const auto i = static_cast<std::uint32_t>(item);
-    const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count), b = std::min(units[2 * std::size_t{i} + 1], unit_count);
+    const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count),
+                        b = std::min(units[2 * std::size_t{i} + 1], unit_count);
     const std::uint64_t free = ~(taken[a] | taken[b]);
     if (free == 0) {
       colour_of_[i] = choose_above(a, b, unit_count);
