@@ -37,7 +37,7 @@ float bounding_radius(const ShapeDef& d) {
 
 void Detector::rebuild(const WorldState& s) {
   structure_ = s.structure_version;
-  world_ = &s;
+  serial_ = s.serial;
   pairs_ = PairCache();
   pairs_.set_margin(float(constants::broad_margin), 0.125f);
   pairs_.set_filter(may_touch, &s);
@@ -66,7 +66,7 @@ bool Detector::may_bounce(const WorldState& s) {
 }
 
 Status Detector::find_pairs(const WorldState& s, double dt, const Options& options) {
-  if (structure_ != s.structure_version || world_ != &s) rebuild(s);
+  if (structure_ != s.structure_version || serial_ != s.serial) rebuild(s);
   if (!possible_) return {};
   if (s.tables.precision() == Precision::f32) bound<float>(s, dt, options.contact_margin, scratch_f_.shapes);
   else bound<double>(s, dt, options.contact_margin, scratch_d_.shapes);
@@ -138,10 +138,10 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   for (std::size_t i = 0; i < pairs.size(); i++) {
     const auto [a, b] = pairs[i];
     if (!overlap(tight_[a], tight_[b])) continue;
-    // body a of the contact is the one that moves, so that arms are short
-    const bool swap = s.bodies[proxies_[a].body].kind != BodyKind::dynamic;
+    const ContactKey key{a, b};
+    const auto [row_a, row_b] = s.ends_of(key);
+    const bool swap = row_a != proxies_[a].body;
     const std::uint32_t first = swap ? b : a, second = swap ? a : b;
-    const std::uint32_t row_a = proxies_[first].body, row_b = proxies_[second].body;
     ShapeView<Scalar> there = scratch.shapes[second];
     bodies.shift(row_a, row_b, there.p);
     Manifold<Scalar> manifold;
@@ -154,7 +154,6 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     if (manifold.count == 0) continue;
 
     const std::uint32_t row = std::uint32_t(next_.keys.size());
-    const ContactKey key{a, b};
     next_.keys.push_back(key);
     next_.ends.push_back({row_a, row_b});
     next_.features.push_back({});

@@ -54,8 +54,7 @@ class Detector {
   template <class Scalar> Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
   template <class Scalar> Scratch<Scalar>& scratch();
 
-  std::uint64_t structure_ = 0;
-  const WorldState* world_ = nullptr;
+  std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   bool possible_ = false;
   std::vector<Proxy> proxies_;
   std::vector<Aabb> tight_;

@@ -49,8 +49,7 @@ struct Stepper::Inside {
   StepReport report;
   std::vector<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few
   const StepPlan* plan = nullptr;
-  std::uint64_t structure = 0;
-  const WorldState* world = nullptr;
+  std::uint64_t serial = 0, structure = 0, contacts_version = 0;  // of the world of the last step
   InfoOf<float> infos_f[phase_count];
   InfoOf<double> infos_d[phase_count];
   StepPlan no_plan;
@@ -111,13 +110,14 @@ struct Stepper::Inside {
     lap(Timer::forces);
 
     const FlushSubnormals flush;
-    if (world_changed(s)) schedule.update_structure(s);
+    const bool other = serial != s.serial || structure != s.structure_version;
+    if (other) schedule.update_structure(s);
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
     lap(Timer::broad);
     Detector::Found found;
     if (ok = detector.find_contacts(s, detection(), found); !ok) return ok;
     lap(Timer::narrow);
-    if (found.changed || structure != s.structure_version) schedule.update_contacts(s);
+    if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
     remember(s);
     plan = &find_plan(signature(s, found.restitution));
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return ok;
@@ -132,10 +132,10 @@ struct Stepper::Inside {
     return {};
   }
 
-  bool world_changed(const WorldState& s) const { return world != &s || structure != s.structure_version; }
   void remember(const WorldState& s) {
-    world = &s;
+    serial = s.serial;
     structure = s.structure_version;
+    contacts_version = s.contacts_version;
   }
 };
 

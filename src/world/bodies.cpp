@@ -187,7 +187,6 @@ Status World::set_pose(BodyId body, const Pose& pose) {
     s.bring_in_phase(row);
     s.set_angular_velocity(row, w);
   }
-  s.pose_version++;
   return {};
 }
 

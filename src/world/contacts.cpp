@@ -3,6 +3,12 @@
 
 namespace pcphys {
 
+std::array<std::uint32_t, 2> WorldState::ends_of(const ContactKey& key) const {
+  const std::uint32_t a = body_ids.row(shapes[key.shape_a].body), b = body_ids.row(shapes[key.shape_b].body);
+  if (bodies[a].kind == BodyKind::dynamic) return {a, b};
+  return {b, a};
+}
+
 void WorldState::drop_contacts(std::uint32_t row, std::uint32_t last_row) {
   std::uint32_t kept = 1;
   for (std::uint32_t i = 1; i < contact_rows(); i++) {

@@ -233,11 +233,12 @@ Status World::restore(std::span<const std::byte> snapshot) {
   s.contacts.features.resize(contacts);
   for (std::uint32_t row = 1; row < contacts; row++) {
     (void)r.get(s.contacts.keys[row]);
+    s.contacts.ends[row] = s.ends_of(s.contacts.keys[row]);
     (void)r.get(s.contacts.features[row]);
     (void)read_table(r, s.tables, Table::contact, row);
   }
   for (std::size_t b = 0; b < table_buffer_count; b++) s.tables.touch(Buffer(b));
-  s.pose_version++;
+  s.contacts_version++;
   return {};
 }
 

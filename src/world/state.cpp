@@ -1,10 +1,15 @@
 #include "world/state.h"
 
 #include <algorithm>
+#include <atomic>
 
 namespace pcphys {
 
-WorldState::WorldState(const WorldDef& def) : tables(def.precision), gravity(def.gravity) {
+namespace {
+std::atomic<std::uint64_t> worlds_made{0};
+}
+
+WorldState::WorldState(const WorldDef& def) : serial(++worlds_made), tables(def.precision), gravity(def.gravity) {
   // the ground: id index 0, row 0
   body_ids.allocate(0);
   bodies.push_back({0, BodyKind::fixed, {}});

@@ -50,6 +50,7 @@ struct ContactColumns {
 struct WorldState {
   explicit WorldState(const WorldDef& def);
 
+  std::uint64_t serial;  // another for each world of the process: what a stepper remembers is of one of them
   Tables tables;
   Vec3 gravity;
   double last_substep = 0;  // h of the last step [s]; 0 before the first
@@ -66,8 +67,10 @@ struct WorldState {
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;  // objects, kinds, filters
-  std::uint64_t pose_version = 1;       // poses written by the host, snapshots restored
+  std::uint64_t contacts_version = 1;   // contacts that no step made: a snapshot was restored
 
+  /// Body rows of a contact: the first is the one that moves, so that arms are short.
+  std::array<std::uint32_t, 2> ends_of(const ContactKey& key) const;
   /// Removes the contacts of a body and follows the row of another that took its place.
   void drop_contacts(std::uint32_t row, std::uint32_t last_row);
 
