@@ -66,6 +66,11 @@ Status Runner::prepare(const StepSettings& s, Precision precision) {
   return {};
 }
 
+void Runner::forget() {
+  for (Device& d : devices_)
+    for (Copy& copy : d.copies) copy.version = 0;
+}
+
 Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes) {
   Device& d = at(place);
   Copy& copy = d.copies[std::size_t(buffer)];

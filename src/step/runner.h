@@ -20,6 +20,8 @@ class Runner {
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
   Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos, StepReport& report);
 
+  /// Another world comes: what the device holds is not its data.
+  void forget();
   std::string device(Place place) const;
 
  private:

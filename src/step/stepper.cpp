@@ -110,6 +110,7 @@ struct Stepper::Inside {
     lap(Timer::forces);
 
     const FlushSubnormals flush;
+    if (serial != s.serial) runner.forget();
     const bool other = serial != s.serial || structure != s.structure_version;
     if (other) schedule.update_structure(s);
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
