@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <type_traits>
+#include <utility>
 
 #ifdef PCPHYS_HAVE_FCL
 #include "collision/fcl_narrow.h"
@@ -28,10 +28,36 @@ bool may_touch(const void* context, std::uint32_t a, std::uint32_t b) {
   return s.no_collide.empty() || !s.no_collide.contains(WorldState::pair_key(x.body, y.body));
 }
 
-float bounding_radius(const ShapeDef& d) {
-  const double own = d.kind == ShapeKind::box ? length(d.size) : d.kind == ShapeKind::sphere ? d.size.x : d.size.x + d.size.y;
-  return float(own + length(d.local.position));
+/// See Proxy. A shape that is not centred turns with its whole distance.
+std::pair<float, float> levers(const ShapeDef& d) {
+  const float off = float(length(d.local.position)), radius = float(d.size.x), half = float(d.size.y);
+  const bool upright = d.local == Pose{};
+  switch (d.kind) {
+    case ShapeKind::sphere: return {0.0f, off};
+    case ShapeKind::box: return {0.0f, float(length(d.size)) + off};
+    case ShapeKind::capsule: return upright ? std::pair(half, 0.0f) : std::pair(0.0f, half + off);
+    case ShapeKind::cylinder: return upright ? std::pair(half + radius, 0.0f) : std::pair(0.0f, half + radius + off);
+    case ShapeKind::plane: break;
+  }
+  return {0.0f, 0.0f};
 }
+
+/// Whether some point is within the margin, or would close within the step as the bodies move now.
+template <class Scalar>
+bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const BodyReader<Scalar>& bodies, std::uint32_t row_a, std::uint32_t row_b, double margin, double dt, double fall) {
+  const float n[3] = {float(m.normal[0]), float(m.normal[1]), float(m.normal[2])};
+  Scalar apart[3] = {};
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    if (m.points[i].separation <= Scalar(margin)) return true;
+    if (apart[0] == 0 && apart[1] == 0 && apart[2] == 0) bodies.shift(row_a, row_b, apart);
+    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])}, d[3] = {float(apart[0]), float(apart[1]), float(apart[2])};
+    const double closing = std::max(0.0, double(closing_speed(a, b, n, r, d)));
+    if (double(m.points[i].separation) <= margin + fall + closing * dt) return true;
+  }
+  return false;
+}
+
+constexpr float largest_turn = 2.0f;  // beyond it a turning surface comes no further outward [rad]
 
 }  // namespace
 
@@ -51,7 +77,8 @@ void Detector::rebuild(const WorldState& s) {
     const ShapeRecord& shape = s.shapes[i];
     if (!shape.alive || (shape.filter.mask == 0 && shape.filter.group <= 0)) continue;
     const std::uint32_t row = s.body_ids.row(shape.body);
-    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{}, row, bounding_radius(shape.def)};
+    const auto [across, any] = levers(shape.def);
+    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{}, row, across, any};
     pairs_.add(i, s.bodies[row].kind != BodyKind::fixed);
     some_dynamic |= s.bodies[row].kind == BodyKind::dynamic;
     solid++;
@@ -96,15 +123,17 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
   shapes.resize(s.shapes.size());
   const BodyReader<Scalar> bodies(s.tables);
   const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
-  const double fall = length(s.gravity) * dt * dt;
+  const float fall = float(length(s.gravity) * dt * dt), step = float(dt);
+  twists_.resize(s.bodies.size());
+  for (std::uint32_t row = 0; row < s.bodies.size(); row++) twists_[row] = s.bodies[row].kind == BodyKind::fixed ? Twist() : twist_of<Scalar>(s.tables, row);
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
     ShapeView<Scalar>& view = shapes[i];
     place_shape(table + std::size_t(i + 1) * 12, proxy.kind, proxy.centred, bodies.orientation(proxy.body), view);
-    const bool moves = s.bodies[proxy.body].kind != BodyKind::fixed;
-    const float turn = std::min(float(dt) * bodies.angular_speed(proxy.body), 2.0f) * proxy.radius;
-    reach_[i] = moves ? float(dt) * bodies.speed(proxy.body) + turn + float(fall) : 0.0f;
+    const Twist& twist = twists_[proxy.body];
+    const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across + std::min(step * twist.turn, largest_turn) * proxy.lever_any;
+    reach_[i] = s.bodies[proxy.body].kind == BodyKind::fixed ? 0.0f : step * twist.speed + turned + fall;
     tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
   }
 }
@@ -112,16 +141,16 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
 template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }
 template <> Detector::Scratch<double>& Detector::scratch() { return scratch_d_; }
 
-Status Detector::find_contacts(WorldState& s, const Options& options, Found& found) {
+Status Detector::find_contacts(WorldState& s, double dt, const Options& options, Found& found) {
   if (!possible_) {
     if (s.contact_rows() > 1) s.tables.resize(Table::contact, 1);
     return {};
   }
-  return s.tables.precision() == Precision::f32 ? narrow_all(s, options, scratch<float>(), found) : narrow_all(s, options, scratch<double>(), found);
+  return s.tables.precision() == Precision::f32 ? narrow_all(s, dt, options, scratch<float>(), found) : narrow_all(s, dt, options, scratch<double>(), found);
 }
 
 template <class Scalar>
-Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scalar>& scratch, Found& found) {
+Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   const auto pairs = pairs_.pairs();
   const BodyReader<Scalar> bodies(s.tables);
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
@@ -131,6 +160,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   next_.keys.resize(1);
   next_.ends.resize(1);
   next_.features.resize(1);
+  const double fall = length(s.gravity) * dt * dt;
   std::uint32_t old = 1;
   hints_.resize(pairs.size());
   found = {};
@@ -151,7 +181,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     else
 #endif
       narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
-    if (manifold.count == 0) continue;
+    if (!closes(manifold, twists_[row_a], twists_[row_b], bodies, row_a, row_b, options.contact_margin, dt, fall)) continue;
 
     const std::uint32_t row = std::uint32_t(next_.keys.size());
     next_.keys.push_back(key);

@@ -8,6 +8,7 @@
 #include "collision/aabb.h"
 #include "collision/narrow.h"
 #include "collision/pair_cache.h"
+#include "collision/twist.h"
 #include "pcphys/step.h"
 #include "world/state.h"
 
@@ -29,7 +30,7 @@ class Detector {
   /// Broad phase. Errors (too many pairs, a pose that is not finite) leave the world as it was.
   Status find_pairs(const WorldState& state, double dt, const Options& options);
   /// Narrow phase: replaces the world's contacts.
-  Status find_contacts(WorldState& state, const Options& options, Found& found);
+  Status find_contacts(WorldState& state, double dt, const Options& options, Found& found);
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
   /// Whether some body's restitution is above zero.
@@ -41,7 +42,8 @@ class Detector {
     ShapeKind kind = ShapeKind::sphere;
     bool alive = false, centred = true;  // centred: its frame is the body's
     std::uint32_t body = 0;              // row
-    float radius = 0;                    // of the sphere about the body's centre that holds it
+    // how far a turn of one radian moves its surface outward: a turn across its axis (the body's y), any turn
+    float lever_across = 0, lever_any = 0;
   };
 
   template <class Scalar> struct Scratch {
@@ -51,14 +53,15 @@ class Detector {
 
   void rebuild(const WorldState& state);
   template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
-  template <class Scalar> Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  template <class Scalar> Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
   template <class Scalar> Scratch<Scalar>& scratch();
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   bool possible_ = false;
   std::vector<Proxy> proxies_;
   std::vector<Aabb> tight_;
-  std::vector<float> reach_;  // how far a shape may come this step [m]
+  std::vector<float> reach_;   // how far a shape may come this step [m]
+  std::vector<Twist> twists_;  // of bodies, by row
   PairCache pairs_;
   std::vector<std::uint32_t> hints_, next_hints_;
   ContactColumns next_;

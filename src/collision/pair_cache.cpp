@@ -84,7 +84,7 @@ PairReport PairCache::update(std::span<const Aabb> tight) {
 void PairCache::find_moved(std::span<const Aabb> tight, PairReport& report) {
   moved_.clear();
   for (std::uint32_t i = 0; i < state_.size(); ++i) {
-    if (contains(fat_[i], tight[i]) || !(state_[i] & present)) continue;
+    if (!(state_[i] & present) || (contains(fat_[i], tight[i]) && !outgrown(i, tight[i]))) continue;
     if (valid(tight[i])) {
       moved_.push_back(i);
       continue;
@@ -96,13 +96,22 @@ void PairCache::find_moved(std::span<const Aabb> tight, PairReport& report) {
   }
 }
 
+float PairCache::margin_of(std::uint32_t proxy, const Aabb& tight) const {
+  return state_[proxy] & moves ? std::min(margin_, margin_fraction_ * largest_side(tight)) : 0.0f;
+}
+
+// A box that was fast had a large tight box, and its fat box stays large when it slows down: such a box would
+// keep pairs with everything it once flew past.
+bool PairCache::outgrown(std::uint32_t proxy, const Aabb& tight) const {
+  return (state_[proxy] & moves) && !contains(grown(tight, 3 * margin_of(proxy, tight)), fat_[proxy]);
+}
+
 void PairCache::renew_fat_boxes(std::span<const Aabb> tight) {
   fat_before_.resize(moved_.size());
   for (std::size_t n = 0; n < moved_.size(); ++n) {
     const std::uint32_t i = moved_[n];
     fat_before_[n] = fat_[i];
-    const float margin = state_[i] & moves ? std::min(margin_, margin_fraction_ * largest_side(tight[i])) : 0.0f;
-    fat_[i] = grown(tight[i], margin);
+    fat_[i] = grown(tight[i], margin_of(i, tight[i]));
     if (!(state_[i] & entered)) tree_stale_ = true;
     state_[i] = static_cast<std::uint8_t>((state_[i] | entered) & ~still);
   }

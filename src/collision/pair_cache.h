@@ -77,6 +77,8 @@ class PairCache {
     fresh = 16    // came since the last update: pairs of an earlier proxy of this index are not its own
   };
 
+  float margin_of(std::uint32_t proxy, const Aabb& tight) const;
+  bool outgrown(std::uint32_t proxy, const Aabb& tight) const;
   void find_moved(std::span<const Aabb> tight, PairReport& report);
   void renew_fat_boxes(std::span<const Aabb> tight);
   bool renew_tree();

@@ -13,8 +13,7 @@ namespace pcphys {
 /// What the narrow phase reads of a body, straight from the tables' rows.
 template <class Scalar> class BodyReader {
  public:
-  explicit BodyReader(const Tables& t)
-      : pose_(t.data<Scalar>(Buffer::pose)), motion_(t.data<Scalar>(Buffer::motion)), mass_(t.data<Scalar>(Buffer::mass)) {}
+  explicit BodyReader(const Tables& t) : pose_(t.data<Scalar>(Buffer::pose)) {}
 
   const Scalar* orientation(std::uint32_t row) const { return pose_ + std::size_t(row) * 12 + 4; }
   Vec3 position(std::uint32_t row) const {
@@ -26,16 +25,9 @@ template <class Scalar> class BodyReader {
     const Scalar *x = pose_ + std::size_t(a) * 12, *y = pose_ + std::size_t(b) * 12;
     for (int k = 0; k < 3; k++) p[k] += (y[k] - x[k]) + (y[8 + k] - x[8 + k]);
   }
-  float speed(std::uint32_t row) const { return norm(motion_ + std::size_t(row) * 8); }
-  /// An upper bound: momentum over the smallest moment.
-  float angular_speed(std::uint32_t row) const {
-    const Scalar* i = mass_ + std::size_t(row) * 8 + 4;
-    return norm(motion_ + std::size_t(row) * 8 + 4) * float(std::fmax(i[0], std::fmax(i[1], i[2])));
-  }
 
  private:
-  static float norm(const Scalar* v) { return std::sqrt(float(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])); }
-  const Scalar *pose_, *motion_, *mass_;
+  const Scalar* pose_;
 };
 
 template <class Scalar> void rotate_by(const Scalar* q, const Scalar* v, Scalar* out) {

@@ -116,7 +116,7 @@ struct Stepper::Inside {
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
     lap(Timer::broad);
     Detector::Found found;
-    if (ok = detector.find_contacts(s, detection(), found); !ok) return ok;
+    if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return ok;
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
     remember(s);

@@ -1,0 +1,47 @@
+// How a body moves, for bounds: float in both precisions, since nothing but which contacts are listed comes of it.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "world/tables.h"
+
+namespace pcphys {
+
+struct Twist {
+  float v[3] = {}, w[3] = {};          // velocity of the centre [m/s], angular velocity [rad/s], world axes
+  float speed = 0, turn = 0, across = 0;  // |v|, |w|, and the part of w across the body's y axis
+};
+
+template <class Scalar> Twist twist_of(const Tables& t, std::uint32_t row) {
+  const Scalar *m = t.data<Scalar>(Buffer::motion) + std::size_t(row) * 8, *i = t.data<Scalar>(Buffer::mass) + std::size_t(row) * 8 + 4;
+  const Scalar* q = t.data<Scalar>(Buffer::pose) + std::size_t(row) * 12 + 4;
+  const float x = float(q[0]), y = float(q[1]), z = float(q[2]), w = float(q[3]);
+  const float r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
+                      2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+  const float l[3] = {float(m[4]), float(m[5]), float(m[6])};
+  float local[3];
+  for (int k = 0; k < 3; k++) local[k] = float(i[k]) * (r[k] * l[0] + r[3 + k] * l[1] + r[6 + k] * l[2]);
+  Twist out;
+  for (int k = 0; k < 3; k++) {
+    out.v[k] = float(m[k]);
+    out.w[k] = r[3 * k] * local[0] + r[3 * k + 1] * local[1] + r[3 * k + 2] * local[2];
+  }
+  out.speed = std::sqrt(out.v[0] * out.v[0] + out.v[1] * out.v[1] + out.v[2] * out.v[2]);
+  out.across = std::sqrt(local[0] * local[0] + local[2] * local[2]);
+  out.turn = std::sqrt(local[0] * local[0] + local[1] * local[1] + local[2] * local[2]);
+  return out;
+}
+
+/// Rate at which the gap along `n` (from a to b) closes at arm r of a, whose centre stands `d` from b's [m/s].
+inline float closing_speed(const Twist& a, const Twist& b, const float* n, const float* r, const float* d) {
+  float rate = 0;
+  for (int k = 0; k < 3; k++) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const float at_a = a.v[k] + a.w[i] * r[j] - a.w[j] * r[i];
+    const float at_b = b.v[k] + b.w[i] * (r[j] - d[j]) - b.w[j] * (r[i] - d[i]);
+    rate += n[k] * (at_a - at_b);
+  }
+  return rate;
+}
+
+}  // namespace pcphys
