@@ -55,8 +55,9 @@ class Stepper {
   Stepper(Stepper&&) noexcept;
   Stepper& operator=(Stepper&&) noexcept;
 
-  /// Takes effect at the next step. Errors (no such device, lanes, threads) are reported here and leave the
-  /// settings as they were. The constructor's settings are checked at the first step.
+  /// Takes effect at the next step. Values out of their range are refused here and leave the settings as they
+  /// were; what the machine lacks (a GL device, a lane width of the world's precision) is reported by the step.
+  /// The constructor's settings are checked at the first step.
   Status configure(const StepSettings& settings);
   const StepSettings& settings() const;
 
