@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "output.h"
+#include "pcphys/fcl.h"
 #include "pcphys/version.h"
 
 using namespace pcphys::command;
@@ -40,6 +41,8 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", "pcphys " PCPHYS_VERSION);
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Help of every sub-command");
+
+  (void)pcphys::use_fcl();  // for --narrow fcl; a build without it says so when it is asked for
 
   RunOptions run_options;
   OutputOptions output_options;

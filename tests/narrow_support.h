@@ -8,7 +8,7 @@
 #include <random>
 #include <string>
 
-#include "collision/fcl_narrow.h"
+#include "fcl/fcl_narrow.h"
 #include "collision/narrow.h"
 
 namespace narrow_test {

@@ -7,6 +7,11 @@ namespace pcphys::constants {
 inline constexpr double smallest_extent = 1e-5, largest_extent = 1e6;
 /// Coordinates, velocities and other inputs beyond this are refused: their squares leave float32's range.
 inline constexpr double largest_input = 1e15;
+/// Masses [kg] and moments of inertia [kg m^2] outside this interval are refused: float32 must hold them, their
+/// inverses and the products of both.
+inline constexpr double smallest_mass = 1e-30, largest_mass = 1e30;
+/// Time steps outside this interval are refused: their inverses or what falls within them leave float32's range [s].
+inline constexpr double shortest_step = 1e-15, longest_step = 1e3;
 /// How far an orientation may be from unit length; closer ones are normalised.
 inline constexpr double unit_tolerance = 1e-3;
 /// An angle limit further out than this does not exist [rad].

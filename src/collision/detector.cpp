@@ -5,9 +5,7 @@
 #include <string>
 #include <utility>
 
-#ifdef PCPHYS_HAVE_FCL
-#include "collision/fcl_narrow.h"
-#endif
+#include "collision/hook.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
 
@@ -141,6 +139,11 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
 template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }
 template <> Detector::Scratch<double>& Detector::scratch() { return scratch_d_; }
 
+NarrowHook& fcl_hook() {
+  static NarrowHook hook;
+  return hook;
+}
+
 Status Detector::find_contacts(WorldState& s, double dt, const Options& options, Found& found) {
   if (!possible_) {
     if (s.contact_rows() > 1) s.tables.resize(Table::contact, 1);
@@ -176,11 +179,8 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     bodies.shift(row_a, row_b, there.p);
     Manifold<Scalar> manifold;
     const Scalar margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
-#ifdef PCPHYS_HAVE_FCL
-    if (options.narrow == NarrowPhase::fcl) narrow_fcl(scratch.shapes[first], there, margin, manifold);
-    else
-#endif
-      narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
+    if (options.narrow == NarrowPhase::fcl) fcl_hook()(scratch.shapes[first], there, margin, manifold);
+    else narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
     if (!closes(manifold, twists_[row_a], twists_[row_b], bodies, row_a, row_b, options.contact_margin, dt, fall)) continue;
 
     const std::uint32_t row = std::uint32_t(next_.keys.size());

@@ -1,9 +1,12 @@
 // One step, readable on a screen: forces, contacts, schedule, plan, run.
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "collision/detector.h"
+#include "collision/hook.h"
+#include "pcphys/constants.h"
 #include "pcphys/step.h"
 #include "plan/infos.h"
 #include "plan/plan.h"
@@ -23,14 +26,19 @@ Status check_settings(const StepSettings& s) {
   if (s.threads != 1) return Error{ErrorCode::unavailable, "More than one thread is not there yet; set threads to 1."};
   for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
     if (!std::isfinite(x) || x < 0) return Error{ErrorCode::bad_argument, "Push speed, restitution threshold and contact margin must be finite and not below zero."};
-#ifndef PCPHYS_HAVE_FCL
-  if (s.narrow == NarrowPhase::fcl) return Error{ErrorCode::unavailable, "This build has no FCL; install libfcl-dev and build again, or use the native narrow phase."};
-#endif
+  if (s.narrow == NarrowPhase::fcl && !fcl_hook()) return Error{ErrorCode::unavailable, "FCL is not in use: link pcphys::fcl and call pcphys::use_fcl() (libfcl-dev, a build with it), or use the native narrow phase."};
   return {};
 }
 
+std::string scientific(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
+}
+
 Status check_dt(double dt) {
-  if (std::isfinite(dt) && dt > 0) return {};
+  if (dt >= constants::shortest_step && dt <= constants::longest_step) return {};
+  if (std::isfinite(dt) && dt > 0) return Error{ErrorCode::bad_time_step, "The time step is " + scientific(dt) + " s; it must lie between " + scientific(constants::shortest_step) + " and " + scientific(constants::longest_step) + " s. The world is as it was."};
   return Error{ErrorCode::bad_time_step, "The time step is " + std::to_string(dt) + " s; it must be finite and above zero. The world is as it was."};
 }
 

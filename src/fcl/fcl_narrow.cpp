@@ -1,5 +1,5 @@
 // FCL's types stay in this file: its headers are large, and Eigen's flags must not reach ours.
-#include "collision/fcl_narrow.h"
+#include "fcl/fcl_narrow.h"
 
 #ifdef PCPHYS_HAVE_FCL
 #include <fcl/narrowphase/collision.h>
