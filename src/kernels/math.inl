@@ -151,8 +151,10 @@ PC_FN Quaternion pc_axis_rotation(Vec3 axis, Real angle) {
   precise Real half_angle = angle * PC_REAL(0.5); SinCos t = pc_sincos(half_angle);
   return pc_quaternion(pc_scale(axis, t.sine), t.cosine);
 }
-// exp of a rotation vector.
-PC_FN Quaternion pc_rotation(Vec3 phi) {
+// exp of a rotation vector. One whose square would be subnormal is none: some devices flush that square, others
+// keep it, and the axis would differ.
+PC_FN Quaternion pc_rotation(Vec3 vector) {
+  Vec3 phi = pc_snap3(vector);
   Real angle = pc_length(phi);
   return pc_axis_rotation(pc_scale(phi, pc_inverse_or_zero(angle)), angle);
 }
