@@ -26,7 +26,7 @@ struct PlanEntry {
   Kernel kernel{};       // of a kernel
   Buffer buffer{};       // of a transfer
   Phase phase = Phase::biased;
-  bool barrier = false;  // reads what a kernel before it wrote on the same device
+  bool barrier = false;  // uses what a kernel before it wrote, or writes what one read, on the same device
   std::uint32_t substep = 0;
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
 };

@@ -107,9 +107,10 @@ Status GlBackend::transferable(Buffer buffer) {
   return Error{ErrorCode::bad_argument, "The buffer `" + std::string(schema(buffer).name) + "` has no memory on the host; attach it before a transfer."};
 }
 
-/// What dispatches wrote becomes visible to transfers.
+/// What dispatches wrote becomes visible to transfers, and to dispatches after them: a plan counts a download
+/// as a barrier.
 void GlBackend::settle() {
-  if (writes_pending_) glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  if (writes_pending_) glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
   writes_pending_ = false;
 }
 

@@ -17,18 +17,14 @@ class Builder {
     const Place place = signature_.places[std::size_t(k.stage)];
     bool barrier = false;
     for (const Access& a : k.accesses) {
-      if (is_rows(a.buffer)) {
-        barrier |= pending_[std::size_t(a.buffer)];
-      } else {
-        bring(a.buffer, place, substep);
-        barrier |= place == Place::gl && pending_[std::size_t(a.buffer)];
-      }
+      if (!is_rows(a.buffer)) bring(a.buffer, place, substep);
+      barrier |= place == Place::gl && (written_[std::size_t(a.buffer)] || (a.write && read_[std::size_t(a.buffer)]));
     }
-    if (place == Place::gl && barrier) pending_.fill(false);
-    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, place == Place::gl && barrier, substep});
+    if (barrier) settle();
+    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep});
     for (const Access& a : k.accesses) {
+      if (place == Place::gl) (a.write ? written_ : read_)[std::size_t(a.buffer)] = true;
       if (!a.write) continue;
-      if (place == Place::gl) pending_[std::size_t(a.buffer)] = true;
       current_[std::size_t(a.buffer)][0] = place == Place::cpu;
       current_[std::size_t(a.buffer)][1] = place == Place::gl;
     }
@@ -52,13 +48,17 @@ class Builder {
     here = true;
     const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
     plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep});
-    if (kind == PlanEntry::Kind::download) pending_.fill(false);
+    if (kind == PlanEntry::Kind::download) settle();
+  }
+  void settle() {
+    written_.fill(false);
+    read_.fill(false);
   }
 
   const PlanSignature& signature_;
   StepPlan& plan_;
   std::array<std::array<bool, 2>, buffer_count> current_{};  // by Place
-  std::array<bool, buffer_count> pending_{};                 // written on GL since the last barrier
+  std::array<bool, buffer_count> written_{}, read_{};        // on GL since the last barrier
 };
 
 void leave_out(const PlanSignature& s, StepPlan& plan) {
