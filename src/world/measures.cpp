@@ -56,7 +56,7 @@ template <class Scalar> std::uint64_t hash_world(const WorldState& s) {
 
 // ---- snapshots -----------------------------------------------------------------------------------------
 
-constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '1'};
+constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '2'};
 
 class Writer {
  public:
@@ -95,6 +95,13 @@ std::uint64_t object_hash(const WorldState& s) {
         hash.index(pool->generation(i));
       }
   hash.index(std::uint32_t(s.shapes.size()));
+  return hash.value();
+}
+
+/// The last bytes of a snapshot, over all before: what was cut or changed is told apart.
+std::uint64_t checksum(std::span<const std::byte> content) {
+  Hash hash;
+  hash.bytes(content.data(), content.size());
   return hash.value();
 }
 
@@ -192,12 +199,19 @@ std::vector<std::byte> World::snapshot() const {
     w.put(s.contacts.features[row]);
     write_table(w, s.tables, Table::contact, row);
   }
+  w.put(checksum(w.out));
   return w.out;
 }
 
 Status World::restore(std::span<const std::byte> snapshot) {
   WorldState& s = *state_;
   const Error cut{ErrorCode::bad_snapshot, "These bytes are no whole snapshot; take them from World::snapshot, unchanged."};
+  std::uint64_t sum = 0;
+  if (snapshot.size() < sizeof sum) return cut;
+  const std::size_t content = snapshot.size() - sizeof sum;
+  std::memcpy(&sum, snapshot.data() + content, sizeof sum);
+  snapshot = snapshot.first(content);
+  if (sum != checksum(snapshot)) return cut;
   Reader r(snapshot);
   char head[8];
   std::uint64_t objects = 0;
