@@ -27,22 +27,6 @@ Result<MassProperties> mass_of(const BodyDef& def) {
   return MassProperties{*def.mass, scale * m->moments};
 }
 
-Status check_body(const BodyDef& def, Quat& orientation) {
-  Status ok = check_finite(def.pose.position, "position of a body");
-  if (ok) ok = check_unit(orientation, "orientation of a body");
-  if (ok) ok = check_finite(def.velocity, "velocity of a body");
-  if (ok) ok = check_finite(def.angular_velocity, "angular velocity of a body");
-  if (ok) ok = check(def.material);
-  if (ok) ok = check_finite(def.linear_drag, "linear drag of a body");
-  if (ok) ok = check_finite(def.angular_drag, "angular drag of a body");
-  if (ok && (def.linear_drag < 0 || def.angular_drag < 0)) ok = Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
-  for (const ShapeDef& shape : def.shapes) {
-    if (ok) ok = check(shape);
-    if (ok && shape.kind == ShapeKind::plane && def.kind != BodyKind::fixed) ok = Error{ErrorCode::degenerate_shape, "A plane is infinite; use it on fixed bodies only."};
-  }
-  return ok;
-}
-
 void write_material(Tables& t, std::uint32_t row, const Material& m) {
   t.set(Buffer::material, row, 0, m.static_friction);
   t.set(Buffer::material, row, 1, m.kinetic_friction);
@@ -70,6 +54,28 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
 
 }  // namespace
 
+Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
+  orientation = def.pose.orientation;
+  Status ok = check_finite(def.pose.position, "position of a body");
+  if (ok) ok = check_unit(orientation, "orientation of a body");
+  if (ok) ok = check_finite(def.velocity, "velocity of a body");
+  if (ok) ok = check_finite(def.angular_velocity, "angular velocity of a body");
+  if (ok) ok = check(def.material);
+  if (ok) ok = check_finite(def.linear_drag, "linear drag of a body");
+  if (ok) ok = check_finite(def.angular_drag, "angular drag of a body");
+  if (ok && (def.linear_drag < 0 || def.angular_drag < 0)) ok = Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
+  for (const ShapeDef& shape : def.shapes) {
+    if (ok) ok = check(shape);
+    if (ok && shape.kind == ShapeKind::plane && def.kind != BodyKind::fixed) ok = Error{ErrorCode::degenerate_shape, "A plane is infinite; use it on fixed bodies only."};
+  }
+  if (!ok) return ok.error();
+  if (def.kind != BodyKind::dynamic) return MassProperties{};
+  Result<MassProperties> mass = mass_of(def);
+  if (mass) ok = check(*mass);
+  if (!ok) return ok.error();
+  return mass;
+}
+
 World::World(const WorldDef& def) : state_(std::make_unique<WorldState>(def)) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
@@ -88,15 +94,9 @@ Status World::set_gravity(Vec3 gravity) {
 }
 
 Result<BodyId> World::create_body(const BodyDef& def) {
-  Quat orientation = def.pose.orientation;
-  if (Status ok = check_body(def, orientation); !ok) return ok.error();
-  MassProperties mass;
-  if (def.kind == BodyKind::dynamic) {
-    Result<MassProperties> m = mass_of(def);
-    if (!m) return m.error();
-    if (Status ok = check(*m); !ok) return ok.error();
-    mass = *m;
-  }
+  Quat orientation;
+  const Result<MassProperties> mass = check(def, orientation);
+  if (!mass) return mass.error();
 
   WorldState& s = *state_;
   const std::uint32_t row = std::uint32_t(s.bodies.size());
@@ -105,7 +105,7 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   s.tables.resize(Table::body, row + 1);
   s.set_position(row, def.pose.position);
   s.tables.set4(Buffer::pose, row, 4, orientation);
-  if (def.kind == BodyKind::dynamic) s.set_mass(row, mass);
+  if (def.kind == BodyKind::dynamic) s.set_mass(row, *mass);
   if (def.kind == BodyKind::kinematic) s.tables.set3(Buffer::mass, row, 4, {1, 1, 1});
   if (def.kind != BodyKind::fixed) {
     s.tables.set3(Buffer::motion, row, 0, def.velocity);
@@ -348,8 +348,9 @@ Status World::set_filter(BodyId body, const Filter& filter) {
 
 Status World::set_collide(BodyId a, BodyId b, bool collide) {
   if (!valid(a) || !valid(b)) return stale("body");
-  if (collide) state_->no_collide.erase(WorldState::pair_key(a.index, b.index));
-  else state_->no_collide[WorldState::pair_key(a.index, b.index)]++;
+  const auto pair = state_->no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
+  pair->second.asked = !collide;
+  if (!pair->second.any()) state_->no_collide.erase(pair);
   state_->structure_version++;
   return {};
 }

@@ -35,6 +35,15 @@ void write_joint(Tables& t, std::uint32_t row, const JointDef& d) {
 
 }  // namespace
 
+Status check(JointDef& def) {
+  Status ok = check_finite(def.frame_a.position, "pin of a joint in body a");
+  if (ok) ok = check_finite(def.frame_b.position, "pin of a joint in body b");
+  if (ok) ok = check_unit(def.frame_a.orientation, "frame of a joint in body a");
+  if (ok) ok = check_unit(def.frame_b.orientation, "frame of a joint in body b");
+  if (ok) ok = check(def.freedom);
+  return ok;
+}
+
 bool World::valid(JointId joint) const { return state_->joint_ids.valid(joint); }
 std::size_t World::joint_count() const { return state_->joint_ids.count(); }
 
@@ -53,18 +62,13 @@ Result<JointId> World::create_joint(const JointDef& given) {
   const std::uint32_t row_a = s.body_ids.row(def.a.index), row_b = s.body_ids.row(def.b.index);
   if (s.bodies[row_a].kind != BodyKind::dynamic && s.bodies[row_b].kind != BodyKind::dynamic)
     return Error{ErrorCode::bad_joint, "Neither body of the joint is dynamic, so it can do nothing; at least one must be."};
-  Status ok = check_finite(def.frame_a.position, "pin of a joint in body a");
-  if (ok) ok = check_finite(def.frame_b.position, "pin of a joint in body b");
-  if (ok) ok = check_unit(def.frame_a.orientation, "frame of a joint in body a");
-  if (ok) ok = check_unit(def.frame_b.orientation, "frame of a joint in body b");
-  if (ok) ok = check(def.freedom);
-  if (!ok) return ok.error();
+  if (Status ok = check(def); !ok) return ok.error();
 
   const std::uint32_t row = std::uint32_t(s.joints.size()), index = s.joint_ids.allocate(row);
   s.joints.push_back({index, def.a.index, def.b.index, def});
   s.tables.resize(Table::joint, row + 1);
   write_joint(s.tables, row, def);
-  if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)]++;
+  if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
   s.structure_version++;
   return s.joint_ids.id<JointId>(index);
 }
@@ -75,7 +79,8 @@ Status World::destroy(JointId joint) {
   const std::uint32_t row = s.joint_ids.row(joint.index), last = std::uint32_t(s.joints.size()) - 1;
   if (!s.joints[row].def.collide) {
     const auto pair = s.no_collide.find(WorldState::pair_key(s.joints[row].body_a, s.joints[row].body_b));
-    if (pair != s.no_collide.end() && --pair->second == 0) s.no_collide.erase(pair);
+    pair->second.joints--;
+    if (!pair->second.any()) s.no_collide.erase(pair);
   }
   if (row != last) {
     s.tables.copy_row(Table::joint, last, row);
@@ -101,37 +106,58 @@ Result<double> World::joint_separation(JointId joint) const {
   return length(transform(a, r.def.frame_a.position) - transform(b, r.def.frame_b.position));
 }
 
-Result<Ragdoll> World::create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity) {
-  Pose frame = pose;
-  if (Status ok = check_unit(frame.orientation, "orientation of a ragdoll"); !ok) return ok.error();
-  Ragdoll made;
-  const auto undo = [&](const Error& error) {
-    for (BodyId bone : made.bones) (void)destroy(bone);
-    return error;
-  };
+namespace {
+BodyDef bone_body(const RagdollDef& def, const BoneDef& bone, const Pose& frame, Vec3 velocity) {
+  BodyDef body;
+  body.pose = {transform(frame, bone.pose.position), frame.orientation * bone.pose.orientation};
+  body.velocity = velocity;
+  body.shapes = {bone.shape};
+  body.density = def.density;
+  body.material = def.material;
+  return body;
+}
+
+/// Without its bodies.
+JointDef bone_joint(const RagdollDef& def, const BoneDef& bone) {
+  const Pose &parent = def.bones[bone.parent].pose, &child = bone.pose;
+  JointDef joint;
+  joint.frame_a = {rotate(conjugate(parent.orientation), bone.joint - parent.position), conjugate(parent.orientation) * bone.joint_axes};
+  joint.frame_b = {rotate(conjugate(child.orientation), bone.joint - child.position), conjugate(child.orientation) * bone.joint_axes};
+  joint.freedom = bone.freedom;
+  return joint;
+}
+
+Status check(const RagdollDef& def, const Pose& frame, Vec3 velocity) {
   for (std::size_t i = 0; i < def.bones.size(); i++) {
     const BoneDef& bone = def.bones[i];
     if (i > 0 && (bone.parent < 0 || std::size_t(bone.parent) >= i))
-      return undo({ErrorCode::bad_joint, "Bone " + std::to_string(i) + " of a ragdoll must have a parent that stands before it."});
-    BodyDef body;
-    body.pose = {transform(frame, bone.pose.position), frame.orientation * bone.pose.orientation};
-    body.velocity = velocity;
-    body.shapes = {bone.shape};
-    body.density = def.density;
-    body.material = def.material;
-    Result<BodyId> id = create_body(body);
-    if (!id) return undo(id.error());
-    made.bones.push_back(*id);
+      return Error{ErrorCode::bad_joint, "Bone " + std::to_string(i) + " of a ragdoll must have a parent that stands before it."};
+    Quat orientation;
+    if (const auto mass = check(bone_body(def, bone, frame, velocity), orientation); !mass) return mass.error();
     if (i == 0) continue;
-    const Pose &parent = def.bones[bone.parent].pose, &child = bone.pose;
-    JointDef joint;
+    JointDef joint = bone_joint(def, bone);
+    if (Status ok = check(joint); !ok) return ok;
+  }
+  return {};
+}
+}  // namespace
+
+Result<Ragdoll> World::create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity) {
+  Pose frame = pose;
+  Status ok = check_unit(frame.orientation, "orientation of a ragdoll");
+  if (ok) ok = check(def, frame, velocity);  // all of it before anything is made: a refused call uses up no id
+  if (!ok) return ok.error();
+  Ragdoll made;
+  for (const BoneDef& bone : def.bones) {
+    Result<BodyId> id = create_body(bone_body(def, bone, frame, velocity));
+    if (!id) return id.error();
+    made.bones.push_back(*id);
+    if (made.bones.size() == 1) continue;
+    JointDef joint = bone_joint(def, bone);
     joint.a = made.bones[bone.parent];
     joint.b = *id;
-    joint.frame_a = {rotate(conjugate(parent.orientation), bone.joint - parent.position), conjugate(parent.orientation) * bone.joint_axes};
-    joint.frame_b = {rotate(conjugate(child.orientation), bone.joint - child.position), conjugate(child.orientation) * bone.joint_axes};
-    joint.freedom = bone.freedom;
     Result<JointId> joint_id = create_joint(joint);
-    if (!joint_id) return undo(joint_id.error());
+    if (!joint_id) return joint_id.error();
     made.joints.push_back(*joint_id);
   }
   return made;

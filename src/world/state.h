@@ -47,6 +47,13 @@ struct ContactColumns {
   std::vector<std::array<std::uint32_t, 4>> features;
 };
 
+/// Why two bodies never touch, besides filters.
+struct NoCollide {
+  std::uint32_t joints = 0;  // between them, that forbid it
+  bool asked = false;        // by set_collide
+  bool any() const { return joints > 0 || asked; }
+};
+
 struct WorldState {
   explicit WorldState(const WorldDef& def);
 
@@ -63,7 +70,7 @@ struct WorldState {
   std::vector<ForceRecord> forces;   // by force index
   std::uint32_t callbacks = 0;       // how many of them are callbacks
   ContactColumns contacts;
-  std::unordered_map<std::uint64_t, int> no_collide;  // pairs of body id indices, with how many reasons
+  std::unordered_map<std::uint64_t, NoCollide> no_collide;  // by pair_key; only pairs with a reason
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;  // objects, kinds, filters

@@ -13,5 +13,9 @@ Status check(const ShapeDef& shape);
 Status check(const Material& material);
 Status check(const MassProperties& mass);
 Status check(AngleFreedom& freedom);
+/// Everything of a body; `orientation` is then the normalised one. Answers its mass, nothing unless it is dynamic.
+Result<MassProperties> check(const BodyDef& def, Quat& orientation);
+/// Frames, which are then normalised, and freedom of a joint; not its bodies.
+Status check(JointDef& def);
 
 }  // namespace pcphys
