@@ -26,6 +26,7 @@ Status check_settings(const StepSettings& s) {
   if (s.threads != 1) return Error{ErrorCode::unavailable, "More than one thread is not there yet; set threads to 1."};
   for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
     if (!std::isfinite(x) || x < 0) return Error{ErrorCode::bad_argument, "Push speed, restitution threshold and contact margin must be finite and not below zero."};
+  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8) return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(s.lanes) + " lanes; use 1, 4, 8 (float only), or 0 for the widest that the processor has."};
   if (s.narrow == NarrowPhase::fcl && !fcl_hook()) return Error{ErrorCode::unavailable, "FCL is not in use: link pcphys::fcl and call pcphys::use_fcl() (libfcl-dev, a build with it), or use the native narrow phase."};
   return {};
 }
@@ -60,6 +61,7 @@ struct Stepper::Inside {
   std::uint64_t serial = 0, structure = 0, contacts_version = 0;  // of the world of the last step
   InfoOf<float> infos_f[phase_count];
   InfoOf<double> infos_d[phase_count];
+  std::vector<Wrench> called;  // what the callbacks answered in this step
   StepPlan no_plan;
   Clock::time_point began;
 
@@ -90,22 +92,33 @@ struct Stepper::Inside {
     return infos_d;
   }
 
-  /// Forces of callbacks on top of the constant ones.
-  Status call_back(World& world) {
-    WorldState& s = world.state();
+  /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
+  Status call_back(const World& world) {
+    const WorldState& s = world.state();
+    called.clear();
     if (s.callbacks == 0) return {};
+    for (const ForceRecord& f : s.forces) {
+      if (!f.callback) continue;
+      called.push_back(f.callback(world, s.body_ids.id<BodyId>(f.body)));
+      if (Status ok = check_finite(called.back().force, "force of a callback"); !ok) return ok;
+      if (Status ok = check_finite(called.back().torque, "torque of a callback"); !ok) return ok;
+    }
+    return {};
+  }
+
+  /// Forces of callbacks on top of the constant ones.
+  void add_called(WorldState& s) {
+    if (called.empty()) return;
     for (const ForceRecord& f : s.forces)
       if (f.callback) s.sum_forces(s.body_ids.row(f.body));
+    std::size_t i = 0;
     for (const ForceRecord& f : s.forces) {
       if (!f.callback) continue;
       const std::uint32_t row = s.body_ids.row(f.body);
-      const Wrench w = f.callback(world, s.body_ids.id<BodyId>(f.body));
-      if (Status ok = check_finite(w.force, "force of a callback"); !ok) return ok;
-      if (Status ok = check_finite(w.torque, "torque of a callback"); !ok) return ok;
+      const Wrench& w = called[i++];
       s.tables.set3(Buffer::force, row, 0, s.tables.get3(Buffer::force, row, 0) + w.force);
       s.tables.set3(Buffer::force, row, 4, s.tables.get3(Buffer::force, row, 4) + w.torque);
     }
-    return {};
   }
 
   Status step(World& world, double dt) {
@@ -123,6 +136,7 @@ struct Stepper::Inside {
     if (other) schedule.update_structure(s);
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
     lap(Timer::broad);
+    add_called(s);
     Detector::Found found;
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return ok;
     lap(Timer::narrow);
