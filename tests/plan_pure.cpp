@@ -1,0 +1,241 @@
+// Pins the plan as data: a pure function of what a world holds and of the settings, with a name and a reason
+// for all that is left out, kept from step to step, and printed whole.
+#include "support_world.h"
+#include "plan/plan.h"
+
+using namespace worldtest;
+
+namespace {
+
+/// Every signature there is, for two numbers of sub-steps.
+template <class Visit> void for_all_signatures(Visit&& visit) {
+  for (const Mix& mix : mixes())
+    for (unsigned bits = 0; bits < 128; bits++)
+      for (std::uint32_t substeps : {1u, 4u}) {
+        PlanSignature s;
+        s.substeps = substeps;
+        s.places = mix.places;
+        s.bodies = bits & 1;
+        s.joints = bits & 2;
+        s.shapes = bits & 4;
+        s.contacts = bits & 8;
+        s.restitution = bits & 16;
+        s.drag = bits & 32;
+        s.gyroscopic = bits & 64;
+        visit(s);
+      }
+}
+
+int runs(const StepPlan& plan, std::string_view kernel) {
+  int n = 0;
+  for (const PlanEntry& e : plan.entries) n += e.kind == PlanEntry::Kind::kernel && kernel_name(e) == kernel;
+  return n;
+}
+std::string reason(const StepPlan& plan, std::string_view what) {
+  for (const LeftOut& l : plan.left_out)
+    if (l.what == what) return l.why;
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("the plan is a pure function of its signature") {
+  for_all_signatures([](const PlanSignature& s) {
+    const StepPlan a = make_plan(s), b = make_plan(s);
+    CHECK(a == b);
+    CHECK(a.substeps == s.substeps);
+  });
+}
+
+TEST_CASE("equal worlds have equal plans, whatever was stepped before") {
+  for (const char* name : {"balls", "ragdolls", "chain", "door"}) {
+    const SceneWorld a = scene_world(name, 2);
+    SceneWorld b = scene_world(name, 2), other = scene_world("stack", 3);
+    Stepper fresh, used;
+    run(other.world, used, 3);
+    const StepPlan planned = must(fresh.plan_for(a.world, frame));
+    CHECK(planned == must(used.plan_for(b.world, frame)));
+    CHECK(must(used.plan_for(b.world, frame)) == must(used.plan_for(b.world, frame)));
+    const auto before = fingerprint(b.world);
+    (void)must(used.plan_for(b.world, frame));
+    CHECK((fingerprint(b.world) == before));
+  }
+}
+
+TEST_CASE("plan_for refuses what a step would") {
+  World world;
+  Stepper stepper;
+  CHECK_REFUSED(world, stepper.plan_for(world, 0), ErrorCode::bad_time_step, "The time step is 0.000000 s");
+  StepSettings none;
+  none.substeps = 0;
+  Stepper bad(none);
+  CHECK_REFUSED(world, bad.plan_for(world, frame), ErrorCode::bad_time_step, "The number of sub-steps is 0");
+}
+
+TEST_CASE("left out: nothing that moves") {
+  World world;
+  (void)must(world.create_body(fixed_box({}, {1, 1, 1})));
+  Stepper stepper;
+  run(world, stepper, 1);
+  CHECK(stepper.plan().entries.empty());
+  CHECK(reason(stepper.plan(), "integrate") == "no body moves");
+  CHECK(reason(stepper.plan(), "joints") == "the world has no joints");
+  CHECK(reason(stepper.plan(), "collision") == "no two shapes could ever touch");
+  CHECK(reason(stepper.plan(), "impulses") == "no two shapes could ever touch");
+}
+
+TEST_CASE("left out: no joints, nothing touching, and what comes when they do") {
+  World world;
+  (void)must(world.create_body(fixed_box({0, -0.5, 0}, {5, 0.5, 5})));
+  const BodyId body = must(world.create_body(ball({0, 1, 0})));
+  Stepper stepper;
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "integrate") == "");
+  CHECK(reason(stepper.plan(), "joints") == "the world has no joints");
+  CHECK(reason(stepper.plan(), "collision") == "");
+  CHECK(reason(stepper.plan(), "impulses") == "nothing touches in this step");
+  CHECK(runs(stepper.plan(), "integrate") == 4);
+  CHECK(runs(stepper.plan(), "contact_solve") == 0);
+  must(world.set_pose(body, {{0, 0.5, 0}, {}}));
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "impulses") == "");
+  CHECK(reason(stepper.plan(), "restitution") == "no contact has a restitution above zero");
+  CHECK(runs(stepper.plan(), "contact_solve") == 8);
+  CHECK(runs(stepper.plan(), "contact_prepare") == 1);
+  CHECK(runs(stepper.plan(), "contact_store") == 1);
+  CHECK(runs(stepper.plan(), "contact_restitution") == 0);
+  CHECK(runs(stepper.plan(), "joint_solve") == 0);
+  must(world.set_material(body, {0.5, 0.5, 0.5}));
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "restitution") == "");
+  CHECK(runs(stepper.plan(), "contact_restitution") == 1);
+  JointDef joint;
+  joint.a = world.ground();
+  joint.b = body;
+  joint.frame_a.position = {0, 0.5, 0};
+  (void)must(world.create_joint(joint));
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "joints") == "");
+  CHECK(runs(stepper.plan(), "joint_prepare") == 4);
+}
+
+TEST_CASE("left out: drag and gyroscopic terms, until a body needs them") {
+  World world;
+  const BodyId body = must(world.create_body(ball({})));
+  Stepper stepper;
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "drag") == "no body has any");
+  CHECK(reason(stepper.plan(), "gyroscopic terms") == "every body has three equal moments of inertia");
+  must(world.set_drag(body, 0, 0.1));
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "drag") == "");
+  must(world.set_mass_properties(body, {1, {1, 1, 1.5}}));
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "gyroscopic terms") == "");
+}
+
+TEST_CASE("left out: shapes that could never touch") {
+  const auto plan_of = [](auto&& build) {
+    World world;
+    build(world);
+    Stepper stepper;
+    run(world, stepper, 1);
+    return stepper.plan();
+  };
+  CHECK(reason(plan_of([](World& w) { (void)must(w.create_body(ball({}))); }), "collision") == "no two shapes could ever touch");
+  CHECK(reason(plan_of([](World& w) {
+          BodyDef def;
+          def.mass = 1;
+          def.moments = Vec3{1, 1, 1};
+          for (int i = 0; i < 3; i++) (void)must(w.create_body(def));
+        }),
+               "collision") == "no two shapes could ever touch");
+  CHECK(reason(plan_of([](World& w) {
+          for (int i = 0; i < 3; i++) must(w.set_filter(must(w.create_body(ball({}))), {1, 0, 0}));
+        }),
+               "collision") == "no two shapes could ever touch");
+  CHECK(reason(plan_of([](World& w) {
+          (void)must(w.create_body(ball({})));
+          (void)must(w.create_body(ball({5, 0, 0})));
+        }),
+               "collision") == "");
+}
+
+TEST_CASE("left out names have a reason, a sentence a reader can use") {
+  for_all_signatures([](const PlanSignature& s) {
+    const StepPlan plan = make_plan(s);
+    CHECK((reason(plan, "integrate") != "") == !s.bodies);
+    CHECK((reason(plan, "joints") != "") == !s.joints);
+    CHECK((reason(plan, "collision") != "") == !s.shapes);
+    CHECK((reason(plan, "impulses") != "") == !s.contacts);
+    CHECK((reason(plan, "restitution") != "") == (s.contacts && !s.restitution));
+    CHECK((reason(plan, "drag") != "") == (s.bodies && !s.drag));
+    CHECK((reason(plan, "gyroscopic terms") != "") == (s.bodies && !s.gyroscopic));
+    if (s.bodies) CHECK(runs(plan, s.drag ? "integrate_drag" : "integrate") == int(s.substeps));
+    if (s.bodies) CHECK(runs(plan, s.gyroscopic ? "advance" : "advance_round") == int(s.substeps));
+    if (!s.joints) CHECK(runs(plan, "joint_prepare") + runs(plan, "joint_solve") == 0);
+    if (!s.contacts) CHECK(runs(plan, "contact_prepare") + runs(plan, "contact_solve") + runs(plan, "contact_store") == 0);
+    if (!s.bodies) CHECK(plan.entries.empty());
+  });
+}
+
+TEST_CASE("the plan is kept: repeated steps run the same one") {
+  SceneWorld s = scene_world("stack", 3);
+  Stepper stepper;
+  run(s.world, stepper, 5);
+  const StepPlan* first = &stepper.plan();
+  const StepPlan copy = *first;
+  for (int i = 0; i < 20; i++) {
+    run(s.world, stepper, 1);
+    CHECK(&stepper.plan() == first);
+  }
+  CHECK(stepper.plan() == copy);
+  // another signature, and back: equal again
+  StepSettings more = stepper.settings();
+  more.substeps = 2;
+  must(stepper.configure(more));
+  run(s.world, stepper, 1);
+  CHECK(stepper.plan().substeps == 2);
+  more.substeps = 4;
+  must(stepper.configure(more));
+  run(s.world, stepper, 1);
+  CHECK(stepper.plan() == copy);
+}
+
+TEST_CASE("before the first step there is no plan") {
+  const Stepper stepper;
+  CHECK(stepper.plan() == StepPlan{});
+}
+
+TEST_CASE("the plan as text: a line an entry, each with its names, and what was left out") {
+  for_all_signatures([](const PlanSignature& s) {
+    const StepPlan plan = make_plan(s);
+    std::vector<std::string> lines;
+    std::string text = to_text(plan);
+    CHECK(text.back() == '\n');
+    for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1) lines.push_back(text.substr(at, end - at));
+    REQUIRE(lines.size() == 2 + plan.entries.size() + plan.left_out.size());
+    CHECK(lines[0] == "sub-steps " + std::to_string(s.substeps));
+    const auto holds = [](const std::string& line, std::string_view word) { return line.find(word) != std::string::npos; };
+    for (std::size_t i = 0; i < plan.entries.size(); i++) {
+      const PlanEntry& e = plan.entries[i];
+      const std::string& line = lines[i + 2];
+      bool all = holds(line, name(e.place)) && holds(line, stage_name(e)) && line.starts_with(std::to_string(e.substep));
+      if (e.kind == PlanEntry::Kind::kernel) {
+        all &= holds(line, kernel_name(e)) && holds(line, phase_name(e));
+        for (const auto& list : {reads(e), writes(e)})
+          for (std::string_view buffer : list) all &= holds(line, buffer);
+      } else {
+        all &= holds(line, e.kind == PlanEntry::Kind::upload ? "upload " : "download ") && holds(line, buffer_name(e));
+      }
+      all &= line.ends_with("  B") == e.barrier;
+      CHECK_MESSAGE(all, line);
+    }
+    for (std::size_t i = 0; i < plan.left_out.size(); i++) CHECK(lines[2 + plan.entries.size() + i] == "left out: " + plan.left_out[i].what + ", since " + plan.left_out[i].why);
+  });
+}
+
+TEST_CASE("names of places") {
+  CHECK(std::string(name(Place::cpu)) == "cpu");
+  CHECK(std::string(name(Place::gl)) == "gl");
+}

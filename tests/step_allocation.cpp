@@ -1,0 +1,134 @@
+// Pins: a warmed-up step allocates nothing. Every allocation of the program is counted here: operator new in
+// its forms, and aligned_alloc, which the tables use. A scene is run to its end, put back to its start with a
+// snapshot, run again, and put back once more: the third run, in which nothing is larger than before, may not
+// allocate. (The second one may: putting all bodies back at once is more for the broad phase than any step was.)
+#include <cstdlib>
+#include <new>
+
+#include "support_world.h"
+
+namespace {
+
+bool counting = false;
+std::size_t allocations = 0;
+
+void* counted(std::size_t size, std::size_t alignment) {
+  if (counting) allocations++;
+  void* p = nullptr;
+  if (alignment <= alignof(std::max_align_t)) p = std::malloc(size ? size : 1);
+  else if (posix_memalign(&p, alignment, size ? size : 1) != 0) p = nullptr;
+  return p;
+}
+void* counted_or_throw(std::size_t size, std::size_t alignment = 1) {
+  if (void* p = counted(size, alignment)) return p;
+  throw std::bad_alloc();
+}
+
+}  // namespace
+
+void* operator new(std::size_t n) { return counted_or_throw(n); }
+void* operator new[](std::size_t n) { return counted_or_throw(n); }
+void* operator new(std::size_t n, std::align_val_t a) { return counted_or_throw(n, std::size_t(a)); }
+void* operator new[](std::size_t n, std::align_val_t a) { return counted_or_throw(n, std::size_t(a)); }
+void* operator new(std::size_t n, const std::nothrow_t&) noexcept { return counted(n, 1); }
+void* operator new[](std::size_t n, const std::nothrow_t&) noexcept { return counted(n, 1); }
+void operator delete(void* p) noexcept { std::free(p); }
+void operator delete[](void* p) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
+void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
+void operator delete[](void* p, const std::nothrow_t&) noexcept { std::free(p); }
+extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept { return counted(size, alignment); }
+
+using namespace worldtest;
+
+namespace {
+
+/// How often the last of three equal runs allocated, and in which step first.
+struct Count {
+  std::size_t allocations = 0;
+  int first = -1;
+  std::uint64_t memory_growth = 0;
+};
+
+Count last_run(const char* name, int count, Precision precision, std::uint32_t width, int settle, int steps) {
+  SceneWorld s = scene_world(name, count, precision);
+  StepSettings settings = lanes(width);
+  Stepper stepper(settings);
+  run(s.world, stepper, settle);
+  const std::vector<std::byte> start = s.world.snapshot();
+  run(s.world, stepper, steps);
+  const std::uint64_t hash = s.world.hash();
+  must(s.world.restore(start));
+  run(s.world, stepper, steps);
+  must(s.world.restore(start));
+  const std::size_t memory = s.world.memory_bytes();
+  Count c;
+  for (int i = 0; i < steps; i++) {
+    allocations = 0;
+    counting = true;
+    const StepReport& report = stepper.step(s.world, frame);
+    counting = false;
+    if (!report) FAIL(report.error.message);
+    if (allocations > 0 && c.first < 0) c.first = i;
+    c.allocations += allocations;
+  }
+  CHECK(s.world.hash() == hash);
+  c.memory_growth = s.world.memory_bytes() - memory;
+  return c;
+}
+
+void check_none(const char* name, int count, Precision precision, std::uint32_t width, int settle, int steps) {
+  INFO(std::string(name) << " " << count << ", " << std::string(precision == Precision::f32 ? "float" : "double") << ", lanes " << width << ", after " << settle << " steps");
+  const Count c = last_run(name, count, precision, width, settle, steps);
+  CHECK_MESSAGE(c.allocations == 0, c.allocations << " allocations, the first in step " << c.first);
+  CHECK(c.memory_growth == 0);
+}
+
+}  // namespace
+
+TEST_CASE("the counter counts") {
+  allocations = 0;
+  counting = true;
+  delete new int;
+  std::free(aligned_alloc(64, 128));
+  { World world; }
+  counting = false;
+  CHECK(allocations > 3);
+}
+
+TEST_CASE("no allocation in 100 steps of scenes that have settled") {
+  check_none("balls", 200, Precision::f32, 0, 400, 100);
+  check_none("ragdolls", 4, Precision::f32, 0, 300, 100);
+  check_none("stack", 10, Precision::f64, 0, 120, 100);
+}
+
+TEST_CASE("no allocation in 100 steps of scenes that move") {
+  check_none("balls", 200, Precision::f32, 0, 60, 100);
+  check_none("balls", 60, Precision::f64, 0, 60, 100);
+  check_none("ragdolls", 4, Precision::f32, 0, 60, 100);
+  check_none("ragdolls", 4, Precision::f32, 1, 60, 100);
+  check_none("dominoes", 20, Precision::f32, 0, 30, 100);
+  check_none("door", 1, Precision::f32, 0, 10, 100);
+  check_none("chain", 20, Precision::f32, 0, 10, 100);
+}
+
+TEST_CASE("no allocation for forces and callbacks") {
+  World world;
+  for (int i = 0; i < 10; i++) {
+    const BodyId body = must(world.create_body(ball({2.0 * i, 0, 0})));
+    (void)must(world.add_force(body, Wrench{{1, 0, 0}, {}}));
+    (void)must(world.add_force(body, [](const World& w, BodyId id) { return Wrench{-1.0 * w.pose(id)->position, {}}; }));
+  }
+  Stepper stepper(lanes(0));
+  run(world, stepper, 20);
+  allocations = 0;
+  counting = true;
+  for (int i = 0; i < 100; i++) (void)stepper.step(world, frame);
+  counting = false;
+  CHECK(allocations == 0);
+}

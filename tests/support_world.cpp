@@ -1,0 +1,105 @@
+#include "support_world.h"
+
+#include <cstring>
+
+#include "world/state.h"
+
+namespace worldtest {
+
+SceneWorld scene_world(std::string_view name, int count, Precision precision) {
+  WorldDef def;
+  def.precision = precision;
+  World world(def);
+  scenes::SceneOptions options;
+  options.count = count;
+  Result<scenes::Scene> scene = scenes::make(name, options, world);
+  if (!scene) FAIL("no scene: " << scene.error().message);
+  return {std::move(world), std::move(*scene)};
+}
+
+StepSettings Mix::settings() const {
+  StepSettings s;
+  s.integrate = places[0];
+  s.joints = places[1];
+  s.impulses = places[2];
+  s.timings = false;
+  return s;
+}
+
+std::string Mix::text() const {
+  return std::string("integrate ") + name(places[0]) + ", joints " + name(places[1]) + ", impulses " + name(places[2]);
+}
+
+std::vector<Mix> mixes() {
+  std::vector<Mix> all;
+  for (unsigned bits = 0; bits < 8; bits++) {
+    Mix mix;
+    for (unsigned k = 0; k < 3; k++) mix.places[k] = bits >> k & 1 ? Place::gl : Place::cpu;
+    all.push_back(mix);
+  }
+  return all;
+}
+
+StepSettings lanes(std::uint32_t lanes) {
+  StepSettings s;
+  s.lanes = lanes;
+  s.timings = false;
+  return s;
+}
+
+void run(World& world, Stepper& stepper, int steps, double dt) {
+  for (int i = 0; i < steps; i++) {
+    const StepReport& report = stepper.step(world, dt);
+    if (!report) FAIL("step " << i << " was refused: " << report.error.message);
+  }
+}
+
+void require_gl() {
+  const GlReport report = probe_gl(-1);
+  if (!report.usable) FAIL("The GL backend is needed by this test (scripts/install-dependencies brings llvmpipe): " << report.problem);
+  REQUIRE_MESSAGE(report.f32.parity(), "this device promises no parity in float");
+  REQUIRE_MESSAGE(report.f64.parity(), "this device promises no parity in double");
+}
+
+BodyDef ball(Vec3 position, double radius) {
+  BodyDef def;
+  def.pose.position = position;
+  def.shapes = {ShapeDef::sphere(radius)};
+  return def;
+}
+
+BodyDef fixed_box(Vec3 position, Vec3 half_extents) {
+  BodyDef def;
+  def.kind = BodyKind::fixed;
+  def.pose.position = position;
+  def.shapes = {ShapeDef::box(half_extents)};
+  return def;
+}
+
+Fingerprint fingerprint(const World& world) {
+  Fingerprint f{world.hash(), world.bodies(), world.joints(), world.snapshot(), {}, world.gravity()};
+  const Tables& tables = world.state().tables;
+  for (std::size_t b = 0; b < table_buffer_count; b++) {
+    const AlignedBytes& bytes = tables.bytes(Buffer(b));
+    f.tables.insert(f.tables.end(), bytes.data(), bytes.data() + bytes.size());
+  }
+  return f;
+}
+
+void check_refused(bool went_through, const Error& error, ErrorCode code, std::string_view words) {
+  INFO("message: " << error.message);
+  INFO("wanted: " << std::string(words));
+  REQUIRE_FALSE(went_through);
+  CHECK(std::string(name(error.code)) == name(code));
+  CHECK(error.message.find(words) != std::string::npos);
+  CHECK(error.message.size() > 20);
+  CHECK(error.message.back() == '.');
+}
+
+std::vector<BodyState> states(const World& world, const std::vector<BodyId>& bodies) {
+  std::vector<BodyState> all;
+  for (BodyId body : bodies) all.push_back({must(world.pose(body)), must(world.velocity(body)), must(world.angular_velocity(body))});
+  return all;
+}
+
+}  // namespace worldtest

@@ -1,0 +1,82 @@
+// What the tests of world, plan, step, parity and golden hashes share: scenes, runs, mixes of places.
+#pragma once
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcphys/pcphys.h"
+#include "scenes/scene.h"
+
+namespace worldtest {
+using namespace pcphys;
+
+inline constexpr double frame = 1.0 / 60;  // [s]
+
+/// A world with a scene in it.
+struct SceneWorld {
+  World world;
+  scenes::Scene scene;
+};
+SceneWorld scene_world(std::string_view name, int count, Precision precision = Precision::f32);
+
+/// All eight ways to put the three stages on two places, the one that is all cpu first.
+struct Mix {
+  std::array<Place, 3> places;  // integrate, joints, impulses
+  StepSettings settings() const;
+  std::string text() const;
+};
+std::vector<Mix> mixes();
+
+StepSettings lanes(std::uint32_t lanes);
+
+/// Takes the steps; a refused one fails the test with its sentence.
+void run(World& world, Stepper& stepper, int steps, double dt = frame);
+/// A test must not pass because there was nothing to test: llvmpipe comes with the scripts.
+void require_gl();
+
+/// A ball at a place.
+BodyDef ball(Vec3 position, double radius = 0.5);
+BodyDef fixed_box(Vec3 position, Vec3 half_extents);
+template <class T> T must(Result<T> result) {
+  if (!result) FAIL("refused: " << result.error().message);
+  return std::move(*result);
+}
+inline void must(const Status& status) {
+  if (!status) FAIL("refused: " << status.error().message);
+}
+
+/// What a refused call must leave alone: hash, counts, ids, snapshot, and the bytes of every property.
+struct Fingerprint {
+  std::uint64_t hash = 0;
+  std::vector<BodyId> bodies;
+  std::vector<JointId> joints;
+  std::vector<std::byte> snapshot, tables;
+  Vec3 gravity;
+  friend bool operator==(const Fingerprint&, const Fingerprint&) = default;
+};
+Fingerprint fingerprint(const World& world);
+
+/// Checks the error's code and message, and that the world is what it was.
+#define CHECK_REFUSED(world, call, expected_code, words)               \
+  do {                                                                 \
+    const auto before_call = worldtest::fingerprint(world);            \
+    const auto answer = (call);                                        \
+    worldtest::check_refused(bool(answer), answer ? Error{} : answer.error(), expected_code, words); \
+    CHECK_MESSAGE((worldtest::fingerprint(world) == before_call), "the refused call changed the world: " #call); \
+  } while (false)
+void check_refused(bool went_through, const Error& error, ErrorCode code, std::string_view words);
+
+/// Pose and velocities of one body, to compare bit by bit.
+struct BodyState {
+  Pose pose;
+  Vec3 velocity, angular_velocity;
+  friend bool operator==(const BodyState&, const BodyState&) = default;
+};
+std::vector<BodyState> states(const World& world, const std::vector<BodyId>& bodies);
+
+}  // namespace worldtest
