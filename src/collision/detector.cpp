@@ -144,7 +144,16 @@ NarrowHook& fcl_hook() {
   return hook;
 }
 
+void Detector::put_back(WorldState& s) {
+  if (!replaced_) return;
+  replaced_ = false;
+  AlignedBytes& before = s.tables.precision() == Precision::f32 ? scratch_f_.contacts : scratch_d_.contacts;
+  s.tables.exchange(Table::contact, Buffer::contact, before, std::uint32_t(next_.keys.size()));
+  std::swap(s.contacts, next_);
+}
+
 Status Detector::find_contacts(WorldState& s, double dt, const Options& options, Found& found) {
+  replaced_ = false;
   if (!possible_) {
     if (s.contact_rows() > 1) s.tables.resize(Table::contact, 1);
     return {};
@@ -200,6 +209,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));
   s.tables.exchange(Table::contact, Buffer::contact, scratch.contacts, std::uint32_t(next_.keys.size()));
   std::swap(s.contacts, next_);
+  replaced_ = true;
   return {};
 }
 

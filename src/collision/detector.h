@@ -31,6 +31,8 @@ class Detector {
   Status find_pairs(const WorldState& state, double dt, const Options& options);
   /// Narrow phase: replaces the world's contacts.
   Status find_contacts(WorldState& state, double dt, const Options& options, Found& found);
+  /// Takes that back, once, when the step could not be made.
+  void put_back(WorldState& state);
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
   /// Whether some body's restitution is above zero.
@@ -64,7 +66,8 @@ class Detector {
   std::vector<Twist> twists_;  // of bodies, by row
   PairCache pairs_;
   std::vector<std::uint32_t> hints_, next_hints_;
-  ContactColumns next_;
+  ContactColumns next_;  // of the next step, or of the last one
+  bool replaced_ = false;
   Scratch<float> scratch_f_;
   Scratch<double> scratch_d_;
 };

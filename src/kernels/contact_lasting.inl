@@ -1,4 +1,4 @@
-// What of a manifold's impulses lasts: as much as brings its load to no more than twice that of the sub-step
+// What of a manifold's impulses lasts: as much as brings its load to no more than four times that of the sub-step
 // before. A resting contact repeats itself and loses nothing. An impact came from nothing: repeating it would
 // throw the body at its neighbours before its own row takes it back, and in a pile of bouncing bodies that
 // feeds energy in. Where nothing bounces the rows' own losses take care of it, and the guess is worth more.

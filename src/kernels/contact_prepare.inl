@@ -1,5 +1,5 @@
 // Once a step: the rows of a manifold. Effective masses and responses between its rows, from the inertia at
-// the start of the step (kernel-study of the project's docs: the solver touches each body once per visit).
+// the start of the step (so the solver touches each body once per visit; docs/impulses.md).
 #include "body_state.inl"
 #include "contact_rows.inl"
 

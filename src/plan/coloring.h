@@ -42,7 +42,7 @@ class Colouring {
 
   std::uint32_t colours() const { return static_cast<std::uint32_t>(offsets_.size()) - 1; }
   std::uint32_t constraints() const { return static_cast<std::uint32_t>(list_.size()); }
-  /// The constraints of a colour in ascending index order, which is that of space.
+  /// The constraints of a colour in ascending index order: that of the caller's table.
   std::span<const std::uint32_t> of_colour(std::uint32_t colour) const {
     return std::span(list_).subspan(offsets_[colour], offsets_[colour + 1] - offsets_[colour]);
   }

@@ -34,6 +34,12 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     default: return nullptr;
   }
 }
+/// Slots whose kernel writes no body are independent of each other: no colours, no barriers between them.
+bool needs_colours(const KernelSchema& k) {
+  for (const Access& a : k.accesses)
+    if (a.write && a.buffer < Buffer::table_buffers && schema(a.buffer).table == Table::body) return true;
+  return false;
+}
 std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule& schedule) {
   if (buffer < Buffer::table_buffers) return state.tables.version(buffer) + 1;
   if (buffer == Buffer::bodies) return schedule.bodies_version + 1;
@@ -127,6 +133,8 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
   std::span<const Range> ranges(&moving, 1);
   if (k.domain == Domain::joint) ranges = schedule.joints.ranges();
   if (k.domain == Domain::contact) ranges = schedule.contacts.ranges();
+  const Range all{0, ranges.back().end};
+  if (k.domain != Domain::body && !needs_colours(k)) ranges = std::span<const Range>(&all, 1);
   Status ok = at(entry.place).backend->run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
   if (entry.place == Place::cpu)
     for (const Access& a : k.accesses)

@@ -143,16 +143,23 @@ struct Stepper::Inside {
     if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
     remember(s);
     plan = &find_plan(signature(s, found.restitution));
-    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return ok;
+    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
-    if (ok = runner.run(settings, *plan, s, schedule, fill(s, dt), report); !ok) return ok;
+    if (ok = runner.run(settings, *plan, s, schedule, fill(s, dt), report); !ok) return undo(s, ok);
     s.last_substep = substep_length(settings, dt);
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
     return {};
+  }
+
+  /// The world as it was: what a device computed is on the device, the contacts are the last step's again.
+  Status undo(WorldState& s, const Status& failed) {
+    detector.put_back(s);
+    s.contacts_version++;
+    return failed;
   }
 
   void remember(const WorldState& s) {
