@@ -183,7 +183,7 @@ def picture(runs, folder):
 def bars(axes, group):
     """Median time of each stage, one bar a backend, and the figures that matter beside it."""
     stages = list(dict.fromkeys(s for r in group for s in r["stages"]))
-    colours = dict(zip(stages, ["#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#999933", "#bbbbbb"] * 4))
+    colours = dict(zip(stages, ["#4477aa", "#ee6677", "#228833", "#ccbb44", "#66ccee", "#aa3377", "#999933", "#bbbbbb", "#332288"] * 4))
     for place, run in enumerate(group):
         start = 0
         for stage in stages:
