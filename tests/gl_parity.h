@@ -40,7 +40,7 @@ struct Mood {
 };
 inline constexpr Mood moods[] = {
     {"plausible", 3, 2, 5, 1, 0.5},
-    {"many turns and far away", 50, 4000, 5000, 0.05, 20},
+    {"many turns and far away", 50, 4000, 5000, 0.05, 1},
     {"small", 1e-6, 1e-7, 0.01, 1e-3, 1e-8},
     {"heavy", 20, 300, 50, 1e6, 1e5},
 };

@@ -3,7 +3,9 @@
 // Rotation under constant world angular momentum L, by splitting the free rigid body
 //   H = |L|^2 / (2 I_m) + (1/I_a - 1/I_m) Pi_a^2 / 2 + (1/I_c - 1/I_m) Pi_c^2 / 2,   Pi = q* L,
 // with m the axis of the middle moment: the first term is one world rotation about L and commutes with the
-// rest; the other two are rotations about body axes, composed as half a, c, half a (Strang). L is exact.
+// rest; the other two are rotations about body axes, composed as half a, c, half a (Strang), c the axis of the
+// smallest moment: of the six splittings that keep symmetric bodies exact this is the best all round on the flips
+// and the tumble of the tests, eight times better on the flips than the other order. L is exact.
 // Two equal moments: the middle one is among them, one term vanishes and the motion is exact; three equal
 // moments: one rotation. (McLachlan and Quispel, Splitting methods, Acta Numerica 11, 2002, section 3.)
 // Where every body has three equal moments (PC_ROUND) only that rotation is left: the same bits, less work.
@@ -38,8 +40,11 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));
   Vec3 y = Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   Vec3 z = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(1.0));
-  Vec3 a = pc_select3(first, y, x);
-  Vec3 c = pc_select3(last, y, z);
+  Vec3 before = pc_select3(first, y, x);
+  Vec3 behind = pc_select3(last, y, z);
+  Mask lighter = pc_dot(before, inverse) > pc_dot(behind, inverse);
+  Vec3 a = pc_select3(lighter, behind, before);
+  Vec3 c = pc_select3(lighter, before, behind);
   Real im = pc_select(first, inverse.x, pc_select(last, inverse.z, inverse.y));
   precise Real rate_a = pc_dot(a, inverse) - im;
   precise Real rate_c = pc_dot(c, inverse) - im;

@@ -56,5 +56,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Friction f = pc_friction(PC_PASS m, after, load, mass_scale);
   Real zero = PC_REAL(0.0);
   Real c1 = pc_select(bounced, f.change1, zero); Real c2 = pc_select(bounced, f.change2, zero); Real ct = pc_select(bounced, f.change_twist, zero);
+  // a bounce is an impact: the velocity it leaves is the one to be read, whole (see synchronise)
+  Real touch = pc_select(bounced, push.n, zero);
+  a.phase = pc_select(a.inverse_mass > zero, pc_max(a.phase, touch), a.phase); b.phase = pc_select(b.inverse_mass > zero, pc_max(b.phase, touch), b.phase);
   pc_apply(PC_PASS ia, ib, a, b, arms, pc_combine(t1, c1, t2, c2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, ct));
 }

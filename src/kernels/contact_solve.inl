@@ -62,7 +62,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3); precise Real e3 = k3 - l3;
   PC_ST(contact_impulses, m, 3u, k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), k3));
 
-  precise Real touch = k0 + k1 + k2 + k3;
+  precise Real pressed = k0 + k1 + k2 + k3; Real touch = pc_max(load, pressed);
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, touch), b.phase);
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);

@@ -31,6 +31,7 @@ PC_FN AngleStep pc_angle_step(PC_IO Slot m, uint row, Vec3 w, Real remembered, S
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(joint_ends, m, 0u); Index ib = PC_ENDS(joint_ends, m, 1u); Index joint = PC_ORDER(joint_order, m);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Quad place_a = PC_GATHER(pose, ia, 0u); Quad low_a = PC_GATHER(pose, ia, 2u); Quad place_b = PC_GATHER(pose, ib, 0u); Quad low_b = PC_GATHER(pose, ib, 2u);
   Quad pin = PC_GATHER(joint_impulse, joint, 0u); Quad angle = PC_GATHER(joint_impulse, joint, 1u);
 
   // angles
@@ -48,7 +49,13 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // pin, with the angles' couple already acting
   precise Real minus_response = -a.response;
   Vec3 la = pc_madd(a.l, couple, minus_response); Vec3 lb = pc_madd(b.l, couple, b.response);
-  Vec3 arm_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A); Vec3 arm_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B); Vec3 gap = pc_ld3_joint(PC_PASS m, JOINT_GAP);
+  Vec3 gap = pc_ld3_joint(PC_PASS m, JOINT_GAP); Vec3 frozen_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A); Vec3 frozen_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B);
+  // in the relax pass the bodies have moved: both arms are drawn to one common point, or the pin's impulses would exert a couple
+  Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
+  // (not where they fly apart further than about a sixth of the arms: the block is of the frozen ones)
+  Vec3 moved_all = pc_sub(apart, pc_sub(frozen_a, frozen_b));
+  precise Real reach = pc_dot(frozen_a, frozen_a) + pc_dot(frozen_b, frozen_b); precise Real way = pc_dot(moved_all, moved_all) * PC_REAL(32.0);
+  Vec3 moved = pc_select3(way < reach, moved_all, pc_zero3()); Vec3 arm_a = pc_madd(frozen_a, moved, PC_REAL(0.5)); Vec3 arm_b = pc_madd(frozen_b, moved, PC_REAL(-0.5));
   Vec3 va = pc_add(a.v, pc_cross(pc_sym_mul(ja, la), arm_a)); Vec3 vb = pc_add(b.v, pc_cross(pc_sym_mul(jb, lb), arm_b));
   precise Vec3 wanted = (vb - va) + gap * PC_INFO(joint_rate);
   Sym3 k; k.xx = PC_LD(joint_rows, m, JOINT_K); k.xy = PC_LD(joint_rows, m, JOINT_K + 1u); k.xz = PC_LD(joint_rows, m, JOINT_K + 2u);

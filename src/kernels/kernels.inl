@@ -26,7 +26,7 @@ PC_KERNEL(advance, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass
 PC_KERNEL(advance_round, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_WRITE(pose) PC_WRITE(delta))
 PC_KERNEL(synchronise, body, integrate, PC_READ(bodies) PC_READ(motion) PC_WRITE(half_change))
 PC_KERNEL(joint_prepare, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_frame) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(joint_rows))
-PC_KERNEL(joint_solve, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
+PC_KERNEL(joint_solve, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
 PC_KERNEL(contact_warm, contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))

@@ -89,6 +89,7 @@ Vec3 World::gravity() const { return state_->gravity; }
 
 Status World::set_gravity(Vec3 gravity) {
   if (Status ok = check_finite(gravity, "gravity"); !ok) return ok;
+  for (std::uint32_t row = 1; row < state_->bodies.size(); row++) state_->kick(row, gravity - state_->gravity, {});
   state_->gravity = gravity;
   return {};
 }
@@ -325,6 +326,7 @@ Status World::set_drag(BodyId body, double linear, double angular) {
   if (Status ok = check_finite(angular, "angular drag of a body"); !ok) return ok;
   if (linear < 0 || angular < 0) return Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
   const std::uint32_t row = state_->body_ids.row(body.index);
+  state_->bring_in_phase(row);
   state_->tables.set(Buffer::force, row, 3, linear);
   state_->tables.set(Buffer::force, row, 7, angular);
   state_->structure_version++;  // the plan leaves drag out where there is none

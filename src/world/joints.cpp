@@ -170,8 +170,9 @@ ForceId new_force(WorldState& s, ForceRecord record) {
   const std::uint32_t index = s.force_ids.allocate(0);
   if (index == s.forces.size()) s.forces.emplace_back();
   if (record.callback) s.callbacks++;
+  if (record.callback) s.bring_in_phase(s.body_ids.row(record.body));  // what it will answer is not known yet
   s.forces[index] = std::move(record);
-  s.sum_forces(s.body_ids.row(s.forces[index].body));
+  s.change_forces(s.body_ids.row(s.forces[index].body));
   return s.force_ids.id<ForceId>(index);
 }
 }  // namespace
@@ -194,7 +195,7 @@ Status World::remove(ForceId force) {
   if (!s.force_ids.valid(force)) return stale("force");
   if (s.forces[force.index].callback) s.callbacks--;
   s.force_ids.release(force.index);
-  s.sum_forces(s.body_ids.row(s.forces[force.index].body));
+  s.change_forces(s.body_ids.row(s.forces[force.index].body));
   s.forces[force.index] = {};
   return {};
 }

@@ -2,12 +2,29 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 namespace pcphys {
 
 namespace {
 std::atomic<std::uint64_t> worlds_made{0};
+
+/// What an acceleration of 1 shifts the stored velocity by, with linear drag: h (phi2 - phi) / e of
+/// kernels/begin.inl, -h / 2 without.
+double half_kick(double drag, double h) {
+  const double x = drag * h, e = std::exp(-x);
+  if (x > 0.1) {
+    const double phi = (1 - e) / x, phi2 = (1 - phi) / x;
+    return h * (phi2 - phi) / e;
+  }
+  double sum = 0, term = 1;  // (-x)^k / k!
+  for (int k = 0; k < 12; k++) {
+    sum -= term / (k + 2);
+    term *= -x / (k + 1);
+  }
+  return h * sum / e;
 }
+}  // namespace
 
 WorldState::WorldState(const WorldDef& def) : serial(++worlds_made), tables(def.precision), gravity(def.gravity) {
   // the ground: id index 0, row 0
@@ -86,6 +103,24 @@ void WorldState::sum_forces(std::uint32_t row) {
   }
   tables.set3(Buffer::force, row, 0, force);
   tables.set3(Buffer::force, row, 4, torque);
+}
+
+void WorldState::change_forces(std::uint32_t row) {
+  const Vec3 force = tables.get3(Buffer::force, row, 0), torque = tables.get3(Buffer::force, row, 4);
+  sum_forces(row);
+  kick(row, tables.get(Buffer::motion, row, 3) * (tables.get3(Buffer::force, row, 0) - force), tables.get3(Buffer::force, row, 4) - torque);
+}
+
+void WorldState::kick(std::uint32_t row, Vec3 acceleration, Vec3 torque) {
+  if (bodies[row].kind != BodyKind::dynamic || tables.get(Buffer::motion, row, 7) < 0 || last_substep == 0) return;
+  const auto shift = [&](std::uint32_t offset, Vec3 change, double drag) {
+    if (change == Vec3{}) return;
+    const Vec3 by = half_kick(drag, last_substep) * change;
+    tables.set3(Buffer::motion, row, offset, tables.get3(Buffer::motion, row, offset) + by);
+    tables.set3(Buffer::half_change, row, offset, tables.get3(Buffer::half_change, row, offset) - by);
+  };
+  shift(0, acceleration, tables.get(Buffer::force, row, 3));
+  shift(4, torque, tables.get(Buffer::force, row, 7));
 }
 
 }  // namespace pcphys

@@ -94,8 +94,13 @@ struct WorldState {
   void bring_in_phase(std::uint32_t row);
   void set_angular_velocity(std::uint32_t row, Vec3 w);
   void set_mass(std::uint32_t row, const MassProperties& mass);
-  /// Writes the sum of a body's forces into the table; `world` is what callbacks are given.
+  /// Writes the sum of a body's constant forces into the table.
   void sum_forces(std::uint32_t row);
+  /// The same when the host has changed them: they act from now on.
+  void change_forces(std::uint32_t row);
+  /// Acceleration and torque change by so much from now on. The stored velocities lag half a sub-step, which the
+  /// old ones would have filled: they move by half a kick, what is read stays.
+  void kick(std::uint32_t row, Vec3 acceleration, Vec3 torque);
 };
 
 }  // namespace pcphys

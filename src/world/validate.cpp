@@ -76,6 +76,9 @@ Status check(const MassProperties& m) {
   if (!(m.mass > 0)) return Error{ErrorCode::bad_mass, "The mass is " + number(m.mass) + " kg; a dynamic body's must be above zero. Use BodyKind::fixed for a body that never moves."};
   const Vec3 i = m.moments;
   if (!(i.x > 0 && i.y > 0 && i.z > 0)) return Error{ErrorCode::bad_mass, "A moment of inertia is not above zero; all three must be."};
+  const double low = constants::smallest_mass, high = constants::largest_mass;
+  for (double x : {m.mass, i.x, i.y, i.z})
+    if (x < low || x > high) return Error{ErrorCode::bad_mass, "A mass or moment of inertia is " + number(x) + "; it must lie between " + number(low) + " and " + number(high) + " (kg, kg m^2)."};
   const double slack = 1 + constants::moment_tolerance;
   if (i.x > (i.y + i.z) * slack || i.y > (i.x + i.z) * slack || i.z > (i.x + i.y) * slack)
     return Error{ErrorCode::bad_mass, "The moments of inertia (" + number(i.x) + ", " + number(i.y) + ", " + number(i.z) + ") belong to no body: none may exceed the sum of the other two."};
