@@ -179,7 +179,7 @@ TEST_CASE("the cache is filled, used, and survives corruption") {
     flipped[flipped.size() - 3] = char(flipped[flipped.size() - 3] ^ 4);
     std::ofstream(file, std::ios::binary) << flipped;
     { const auto gl = parity::require_gl(Precision::f32); CHECK(remember_works(*gl)); }
-    rewritten += text_of(file) == whole;
+    rewritten += text_of(file) != flipped;  // made anew; some drivers add a time to a program
   }
   CHECK(rewritten >= 2);  // all but the probe's program, which nobody needs while its answer is whole
 }

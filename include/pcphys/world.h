@@ -116,8 +116,11 @@ class World {
   double kinetic_energy() const;
   /// In the uniform gravity field, zero at the origin [J].
   double potential_energy() const;
-  Vec3 momentum() const;                  // [kg m/s]
-  Vec3 angular_momentum() const;          // about the origin [kg m^2/s]
+  /// Of the velocities as they are stored, half a sub-step behind the positions: what impulses between bodies
+  /// leave unchanged to rounding. Gravity's share of that half sub-step is not in it [kg m/s].
+  Vec3 momentum() const;
+  /// The same about the origin [kg m^2/s].
+  Vec3 angular_momentum() const;
   /// Distance between the two pins of a joint [m].
   Result<double> joint_separation(JointId joint) const;
 

@@ -146,7 +146,7 @@ double World::potential_energy() const {
 Vec3 World::momentum() const {
   const WorldState& s = *state_;
   Vec3 sum;
-  for (std::uint32_t row = 1; row < s.bodies.size(); row++) sum = sum + s.tables.get(Buffer::mass, row, 3) * s.velocity(row);
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++) sum = sum + s.tables.get(Buffer::mass, row, 3) * s.tables.get3(Buffer::motion, row, 0);
   return sum;
 }
 
@@ -155,7 +155,7 @@ Vec3 World::angular_momentum() const {
   Vec3 sum;
   for (std::uint32_t row = 1; row < s.bodies.size(); row++)
     if (s.bodies[row].kind == BodyKind::dynamic)
-      sum = sum + s.momentum_of_rotation(row) + s.tables.get(Buffer::mass, row, 3) * cross(s.pose(row).position, s.velocity(row));
+      sum = sum + s.tables.get3(Buffer::motion, row, 4) + s.tables.get(Buffer::mass, row, 3) * cross(s.pose(row).position, s.tables.get3(Buffer::motion, row, 0));
   return sum;
 }
 
