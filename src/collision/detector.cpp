@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -40,19 +41,33 @@ std::pair<float, float> levers(const ShapeDef& d) {
   return {0.0f, 0.0f};
 }
 
-/// Whether some point is within the margin, or would close within the step as the bodies move now.
+/// Whether some point is within the margin, or would close within the step as the bodies move now. A gap between
+/// bodies that slide past each other by more than `extent` before it closes is none: they would meet only if their
+/// contact plane had no end.
 template <class Scalar>
-bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const BodyReader<Scalar>& bodies, std::uint32_t row_a, std::uint32_t row_b, double margin, double dt, double fall) {
+bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt, double fall, double extent) {
   const float n[3] = {float(m.normal[0]), float(m.normal[1]), float(m.normal[2])};
-  Scalar apart[3] = {};
   for (std::uint32_t i = 0; i < m.count; i++) {
-    if (m.points[i].separation <= Scalar(margin)) return true;
-    if (apart[0] == 0 && apart[1] == 0 && apart[2] == 0) bodies.shift(row_a, row_b, apart);
-    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])}, d[3] = {float(apart[0]), float(apart[1]), float(apart[2])};
-    const double closing = std::max(0.0, double(closing_speed(a, b, n, r, d)));
-    if (double(m.points[i].separation) <= margin + fall + closing * dt) return true;
+    const double gap = double(m.points[i].separation) - margin;
+    if (gap <= 0) return true;
+    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
+    const Passing p = passing(a, b, n, r, apart);
+    const double closing = std::max(0.0, double(p.closing));
+    if (gap > fall + closing * dt) continue;
+    const double until = closing * dt > gap ? gap / closing : dt;
+    if (double(p.sliding) * until <= extent) return true;
   }
   return false;
+}
+
+/// Of the sphere about the shape's centre that holds it [m].
+double bounding_radius(const ShapeDef& d) {
+  switch (d.kind) {
+    case ShapeKind::sphere: return d.size.x;
+    case ShapeKind::box: return length(d.size);
+    case ShapeKind::plane: return std::numeric_limits<double>::infinity();
+    default: return d.size.x + d.size.y;
+  }
 }
 
 constexpr float largest_turn = 2.0f;  // beyond it a turning surface comes no further outward [rad]
@@ -76,7 +91,7 @@ void Detector::rebuild(const WorldState& s) {
     if (!shape.alive || (shape.filter.mask == 0 && shape.filter.group <= 0)) continue;
     const std::uint32_t row = s.body_ids.row(shape.body);
     const auto [across, any] = levers(shape.def);
-    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{}, row, across, any};
+    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{}, row, across, any, bounding_radius(shape.def)};
     pairs_.add(i, s.bodies[row].kind != BodyKind::fixed);
     some_dynamic |= s.bodies[row].kind == BodyKind::dynamic;
     solid++;
@@ -190,7 +205,10 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     const Scalar margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
     if (options.narrow == NarrowPhase::fcl) fcl_hook()(scratch.shapes[first], there, margin, manifold);
     else narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
-    if (!closes(manifold, twists_[row_a], twists_[row_b], bodies, row_a, row_b, options.contact_margin, dt, fall)) continue;
+    Scalar apart[3] = {};
+    bodies.shift(row_a, row_b, apart);
+    const float apart_f[3] = {float(apart[0]), float(apart[1]), float(apart[2])};
+    if (!closes(manifold, twists_[row_a], twists_[row_b], apart_f, options.contact_margin, dt, fall, proxies_[a].radius + proxies_[b].radius)) continue;
 
     const std::uint32_t row = std::uint32_t(next_.keys.size());
     next_.keys.push_back(key);

@@ -46,6 +46,7 @@ class Detector {
     std::uint32_t body = 0;              // row
     // how far a turn of one radian moves its surface outward: a turn across its axis (the body's y), any turn
     float lever_across = 0, lever_any = 0;
+    double radius = 0;                   // of the sphere about its centre that holds it
   };
 
   template <class Scalar> struct Scratch {

@@ -32,16 +32,25 @@ template <class Scalar> Twist twist_of(const Tables& t, std::uint32_t row) {
   return out;
 }
 
-/// Rate at which the gap along `n` (from a to b) closes at arm r of a, whose centre stands `d` from b's [m/s].
-inline float closing_speed(const Twist& a, const Twist& b, const float* n, const float* r, const float* d) {
-  float rate = 0;
+/// How two bodies pass each other at a point.
+struct Passing {
+  float closing = 0;  // rate at which the gap along the normal closes [m/s]
+  float sliding = 0;  // speed across the normal [m/s]
+};
+
+/// n: from a to b; r: the point as seen from a's centre, which stands `d` from b's.
+inline Passing passing(const Twist& a, const Twist& b, const float* n, const float* r, const float* d) {
+  float v[3], squared = 0;
+  Passing p;
   for (int k = 0; k < 3; k++) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    const float at_a = a.v[k] + a.w[i] * r[j] - a.w[j] * r[i];
-    const float at_b = b.v[k] + b.w[i] * (r[j] - d[j]) - b.w[j] * (r[i] - d[i]);
-    rate += n[k] * (at_a - at_b);
+    v[k] = a.v[k] + a.w[i] * r[j] - a.w[j] * r[i] - (b.v[k] + b.w[i] * (r[j] - d[j]) - b.w[j] * (r[i] - d[i]));
+    p.closing += n[k] * v[k];
+    squared += v[k] * v[k];
   }
-  return rate;
+  const float across = squared - p.closing * p.closing;
+  p.sliding = across > 0 ? std::sqrt(across) : 0;
+  return p;
 }
 
 }  // namespace pcphys

@@ -114,7 +114,9 @@ PC_FN Real pc_round(Real x) { precise Real a = x + PC_ROUNDER; precise Real b = 
 struct SinCos { Real sine; Real cosine; };
 // Cody-Waite reduction by pi/2 in three parts, then minimax polynomials on [-pi/4, pi/4] (the coefficients
 // of the Cephes library, S. Moshier; single and double). |x| up to 1e4.
-PC_FN SinCos pc_sincos(Real x) {
+// Beyond 3e4 the angle is cut off: the reduction has no digits left there, and the result must stay finite.
+PC_FN SinCos pc_sincos(Real angle) {
+  Real x = pc_clamp(angle, PC_REAL(-30000.0), PC_REAL(30000.0));
   precise Real turns = x * PC_REAL(0.63661977236758134308);
   Real k = pc_round(turns);
 #ifdef PC_DOUBLE
