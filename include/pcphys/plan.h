@@ -43,7 +43,7 @@ struct StepPlan {
   friend bool operator==(const StepPlan&, const StepPlan&) = default;
 };
 
-/// A line an entry: where, what, its phase, what it reads and writes, and the bytes a row of it costs.
+/// A line an entry: where, what, its phase, what it reads and writes; then what was left out.
 std::string to_text(const StepPlan& plan);
 std::string_view kernel_name(const PlanEntry& entry);
 std::string_view buffer_name(const PlanEntry& entry);

@@ -125,6 +125,7 @@ struct Stepper::Inside {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
     if (ok) ok = check_settings(settings);
+    if (ok) ok = check_finite(s.gravity, "gravity of the world");
     if (ok) ok = runner.prepare(settings, s.tables.precision());
     if (ok) ok = call_back(world);
     if (!ok) return ok;
