@@ -56,7 +56,9 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
 
 Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
   orientation = def.pose.orientation;
-  Status ok = check_finite(def.pose.position, "position of a body");
+  Status ok;
+  if (def.kind > BodyKind::dynamic) ok = Error{ErrorCode::bad_argument, "A body is of no known kind; use BodyKind::fixed, kinematic or dynamic."};
+  if (ok) ok = check_finite(def.pose.position, "position of a body");
   if (ok) ok = check_unit(orientation, "orientation of a body");
   if (ok) ok = check_finite(def.velocity, "velocity of a body");
   if (ok) ok = check_finite(def.angular_velocity, "angular velocity of a body");

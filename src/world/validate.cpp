@@ -86,6 +86,7 @@ Status check(const MassProperties& m) {
 }
 
 Status check(AngleFreedom& f) {
+  if (f.kind > AngleFreedom::Kind::pitch_yaw_roll) return Error{ErrorCode::bad_joint, "A joint's freedom is of no known kind; use AngleFreedom::cone_and_twist, between, hinge or locked."};
   if (f.kind == AngleFreedom::Kind::cone_twist) {
     if (!(f.cone >= 0) || !(f.twist >= 0)) return Error{ErrorCode::bad_joint, "The cone and twist of a joint must be zero or above [rad]."};
   } else if (f.kind == AngleFreedom::Kind::pitch_yaw_roll) {
