@@ -8,10 +8,6 @@
 namespace pcphys {
 namespace {
 
-Error stale(const char* what) {
-  return {ErrorCode::stale_id, std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
-}
-
 /// Mass and moments of a dynamic body: as given, or from its one shape.
 Result<MassProperties> mass_of(const BodyDef& def) {
   if (def.moments) {
@@ -139,15 +135,7 @@ Status World::destroy(BodyId body) {
   }
   std::erase_if(s.no_collide, [&](const auto& pair) { return pair.first >> 32 == body.index || (pair.first & 0xffffffffu) == body.index; });
   s.drop_contacts(row, last);
-  if (row != last) {
-    s.tables.copy_row(Table::body, last, row);
-    s.bodies[row] = std::move(s.bodies[last]);
-    s.body_ids.set_row(s.bodies[row].index, row);
-  }
-  s.bodies.pop_back();
-  s.tables.resize(Table::body, last);
-  s.body_ids.release(body.index);
-  s.structure_version++;
+  s.remove_row(Table::body, s.bodies, s.body_ids, row);
   return {};
 }
 

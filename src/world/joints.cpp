@@ -11,10 +11,6 @@
 namespace pcphys {
 namespace {
 
-Error stale(const char* what) {
-  return {ErrorCode::stale_id, std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
-}
-
 double bounded(double angle) { return std::clamp(angle, -constants::free_angle, constants::free_angle); }
 
 void write_joint(Tables& t, std::uint32_t row, const JointDef& d) {
@@ -76,21 +72,13 @@ Result<JointId> World::create_joint(const JointDef& given) {
 Status World::destroy(JointId joint) {
   WorldState& s = *state_;
   if (!valid(joint)) return stale("joint");
-  const std::uint32_t row = s.joint_ids.row(joint.index), last = std::uint32_t(s.joints.size()) - 1;
+  const std::uint32_t row = s.joint_ids.row(joint.index);
   if (!s.joints[row].def.collide) {
     const auto pair = s.no_collide.find(WorldState::pair_key(s.joints[row].body_a, s.joints[row].body_b));
     pair->second.joints--;
     if (!pair->second.any()) s.no_collide.erase(pair);
   }
-  if (row != last) {
-    s.tables.copy_row(Table::joint, last, row);
-    s.joints[row] = std::move(s.joints[last]);
-    s.joint_ids.set_row(s.joints[row].index, row);
-  }
-  s.joints.pop_back();
-  s.tables.resize(Table::joint, last);
-  s.joint_ids.release(joint.index);
-  s.structure_version++;
+  s.remove_row(Table::joint, s.joints, s.joint_ids, row);
   return {};
 }
 

@@ -78,6 +78,19 @@ struct WorldState {
 
   /// Body rows of a contact: the first is the one that moves, so that arms are short.
   std::array<std::uint32_t, 2> ends_of(const ContactKey& key) const;
+  /// Removes an object's row; the last row of the table takes its place.
+  template <class Record> void remove_row(Table table, std::vector<Record>& records, IdPool& ids, std::uint32_t row) {
+    const std::uint32_t index = records[row].index, last = std::uint32_t(records.size()) - 1;
+    if (row != last) {
+      tables.copy_row(table, last, row);
+      records[row] = std::move(records[last]);
+      ids.set_row(records[row].index, row);
+    }
+    records.pop_back();
+    tables.resize(table, last);
+    ids.release(index);
+    structure_version++;
+  }
   /// Removes the contacts of a body and follows the row of another that took its place.
   void drop_contacts(std::uint32_t row, std::uint32_t last_row);
 

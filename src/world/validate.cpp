@@ -31,6 +31,10 @@ const char* name(ErrorCode code) {
   return names[int(code)];
 }
 
+Error stale(const char* what) {
+  return {ErrorCode::stale_id, std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
+}
+
 Status check_finite(double value, const char* what) {
   if (!sane(value)) return Error{ErrorCode::not_finite, std::string("The ") + what + " is " + number(value) + "; it must be finite and no larger than " + number(constants::largest_input) + "."};
   return {};

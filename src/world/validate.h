@@ -5,6 +5,8 @@
 
 namespace pcphys {
 
+/// Of an id that names nothing; `what` is "body", "joint", "force".
+Error stale(const char* what);
 Status check_finite(double value, const char* what);
 Status check_finite(Vec3 value, const char* what);
 /// Finite and of unit length within the tolerance; then normalised in place.
