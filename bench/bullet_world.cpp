@@ -122,6 +122,5 @@ std::vector<Pose> BulletWorld::poses() const {
   return result;
 }
 
-
 }  // namespace pcphys::bench
 #endif

@@ -11,31 +11,35 @@
 namespace {
 using namespace pcphys;
 
-template <class S>
-struct Pair { ShapeView<S> a, b; std::uint32_t hint = 0; };
+template <class S> struct Pair {
+  ShapeView<S> a, b;
+  std::uint32_t hint = 0;
+};
 
-template <class S>
-ShapeView<S> shape(ShapeKind kind, double x, double y, double z, Vec3 p, Quat q) {
+template <class S> ShapeView<S> shape(ShapeKind kind, double x, double y, double z, Vec3 p, Quat q) {
   return {kind, {S(x), S(y), S(z)}, {S(p.x), S(p.y), S(p.z)}, {S(q.x), S(q.y), S(q.z), S(q.w)}};
 }
 
 struct Case {
   ShapeKind a, b;
   Vec3 size_a, size_b, offset;
-  double turn;    // random yaw [rad] of b
-  double tilt;    // random rotation of a [rad]
+  double turn;  // random yaw [rad] of b
+  double tilt;  // random rotation of a [rad]
 };
 
-template <class S>
-void run(benchmark::State& state, Case c) {
+template <class S> void run(benchmark::State& state, Case c) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> one(-1, 1);
   auto small = [&](double s) { return Vec3{s * one(random), s * one(random), s * one(random)}; };
-  auto rotation = [&](Vec3 r) { const double l = length(r); return l > 0 ? axis_angle(1 / l * r, l) : Quat{}; };
+  auto rotation = [&](Vec3 r) {
+    const double l = length(r);
+    return l > 0 ? axis_angle(1 / l * r, l) : Quat{};
+  };
   std::vector<Pair<S>> pairs;
   for (int i = 0; i < 256; i++)
-    pairs.push_back({shape<S>(c.a, c.size_a.x, c.size_a.y, c.size_a.z, {}, rotation(small(c.tilt))),
-                     shape<S>(c.b, c.size_b.x, c.size_b.y, c.size_b.z, c.offset + small(1e-3), axis_angle({0, 1, 0}, c.turn * one(random)))});
+    pairs.push_back(
+        {shape<S>(c.a, c.size_a.x, c.size_a.y, c.size_a.z, {}, rotation(small(c.tilt))),
+         shape<S>(c.b, c.size_b.x, c.size_b.y, c.size_b.z, c.offset + small(1e-3), axis_angle({0, 1, 0}, c.turn * one(random)))});
   Manifold<S> m;
   std::size_t points = 0, calls = 0;
   for (auto _ : state) {
@@ -47,12 +51,16 @@ void run(benchmark::State& state, Case c) {
     calls += pairs.size();
   }
   state.counters["points"] = double(points) / double(calls);
-  state.counters["ns_per_pair"] = benchmark::Counter(double(calls) * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["ns_per_pair"] =
+      benchmark::Counter(double(calls) * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 const Vec3 unit{0.5, 0.5, 0.5};
 const ShapeKind S = ShapeKind::sphere, K = ShapeKind::capsule, B = ShapeKind::box, C = ShapeKind::cylinder, P = ShapeKind::plane;
-struct Named { const char* name; Case c; };
+struct Named {
+  const char* name;
+  Case c;
+};
 const Named cases[] = {
     {"sphere_sphere", {S, S, {0.5, 0, 0}, {0.5, 0, 0}, {0, -1, 0}, 0, 0}},
     {"sphere_capsule", {S, K, {0.5, 0, 0}, {0.3, 0.5, 0}, {0, 0, 0.8}, 0, 0}},

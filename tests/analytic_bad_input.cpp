@@ -54,7 +54,8 @@ struct Neighbours {
   /// All stored state of the neighbours, bit for bit.
   std::vector<double> state() const {
     std::vector<double> out;
-    for (const char* name : {"displacement_rate", "angular_momentum", "phase", "position", "orientation", "position_low", "velocity_half_change", "momentum_half_change"}) {
+    for (const char* name : {"displacement_rate", "angular_momentum", "phase", "position", "orientation", "position_low",
+                             "velocity_half_change", "momentum_half_change"}) {
       const PropertyView view = *run.world.view(name);
       for (std::size_t i = 0; i < count; i++)
         for (std::uint32_t c = 0; c < view.components; c++) out.push_back(view.at(*run.world.row_of(bodies[i]), c));
@@ -75,7 +76,9 @@ std::vector<double> untouched(const Mode& mode, long steps) {
 }
 
 template <class R> ErrorCode code(const R& result) { return result ? ErrorCode::none : result.error().code; }
-template <class R> bool has_sentence(const R& result) { return !result && result.error().message.size() > 20 && result.error().message.back() == '.'; }
+template <class R> bool has_sentence(const R& result) {
+  return !result && result.error().message.size() > 20 && result.error().message.back() == '.';
+}
 
 struct BadBody {
   const char* what;
@@ -88,18 +91,38 @@ const BadBody bad_bodies[] = {
     {"sphere of negative radius", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::sphere(-1)}; }},
     {"sphere of radius NaN", ErrorCode::not_finite, [](BodyDef& d) { d.shapes = {ShapeDef::sphere(not_a_number)}; }},
     {"sphere of infinite radius", ErrorCode::not_finite, [](BodyDef& d) { d.shapes = {ShapeDef::sphere(infinite)}; }},
-    {"sphere too small for single precision", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::sphere(1e-30)}; }},
+    {"sphere too small for single precision", ErrorCode::degenerate_shape,
+     [](BodyDef& d) { d.shapes = {ShapeDef::sphere(1e-30)}; }},
     {"sphere too large", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::sphere(1e30)}; }},
-    {"box of zero edge", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::box({0.5, 0, 0.5})}; }},
-    {"flat box", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::box({0.5, 0.5, 1e-9})}; }},
-    {"box of negative edge", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::box({-0.5, 0.5, 0.5})}; }},
+    {"box of zero edge", ErrorCode::degenerate_shape,
+     [](BodyDef& d) {
+       d.shapes = {ShapeDef::box({0.5, 0, 0.5})};
+     }},
+    {"flat box", ErrorCode::degenerate_shape,
+     [](BodyDef& d) {
+       d.shapes = {ShapeDef::box({0.5, 0.5, 1e-9})};
+     }},
+    {"box of negative edge", ErrorCode::degenerate_shape,
+     [](BodyDef& d) {
+       d.shapes = {ShapeDef::box({-0.5, 0.5, 0.5})};
+     }},
     {"capsule of length 0", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::capsule(0.1, 0)}; }},
     {"capsule of radius 0", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::capsule(0, 0.1)}; }},
     {"cylinder of height 0", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::cylinder(0.1, 0)}; }},
     {"cylinder of radius 0", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::cylinder(0, 0.1)}; }},
     {"plane that moves", ErrorCode::degenerate_shape, [](BodyDef& d) { d.shapes = {ShapeDef::plane()}; }},
-    {"shape at NaN in its body", ErrorCode::not_finite, [](BodyDef& d) { d.shapes[0].local.position.x = not_a_number; d.mass = 1; d.moments = Vec3{1, 1, 1}; }},
-    {"shape turned by no rotation", ErrorCode::not_unit_quaternion, [](BodyDef& d) { d.shapes[0].local.orientation = {0, 0, 0, 0}; d.mass = 1; d.moments = Vec3{1, 1, 1}; }},
+    {"shape at NaN in its body", ErrorCode::not_finite,
+     [](BodyDef& d) {
+       d.shapes[0].local.position.x = not_a_number;
+       d.mass = 1;
+       d.moments = Vec3{1, 1, 1};
+     }},
+    {"shape turned by no rotation", ErrorCode::not_unit_quaternion,
+     [](BodyDef& d) {
+       d.shapes[0].local.orientation = {0, 0, 0, 0};
+       d.mass = 1;
+       d.moments = Vec3{1, 1, 1};
+     }},
     {"mass 0", ErrorCode::bad_mass, [](BodyDef& d) { d.mass = 0; }},
     {"negative mass", ErrorCode::bad_mass, [](BodyDef& d) { d.mass = -1; }},
     {"mass NaN", ErrorCode::not_finite, [](BodyDef& d) { d.mass = not_a_number; }},
@@ -107,11 +130,31 @@ const BadBody bad_bodies[] = {
     {"density 0", ErrorCode::bad_mass, [](BodyDef& d) { d.density = 0; }},
     {"negative density", ErrorCode::bad_mass, [](BodyDef& d) { d.density = -1; }},
     {"density NaN", ErrorCode::bad_mass, [](BodyDef& d) { d.density = not_a_number; }},
-    {"zero inertia", ErrorCode::bad_mass, [](BodyDef& d) { d.mass = 1; d.moments = Vec3{0, 0, 0}; }},
-    {"one moment zero", ErrorCode::bad_mass, [](BodyDef& d) { d.mass = 1; d.moments = Vec3{1, 1, 0}; }},
-    {"negative moment", ErrorCode::bad_mass, [](BodyDef& d) { d.mass = 1; d.moments = Vec3{1, -1, 1}; }},
-    {"moments of no body", ErrorCode::bad_mass, [](BodyDef& d) { d.mass = 1; d.moments = Vec3{1, 1, 3}; }},
-    {"moment NaN", ErrorCode::not_finite, [](BodyDef& d) { d.mass = 1; d.moments = Vec3{1, not_a_number, 1}; }},
+    {"zero inertia", ErrorCode::bad_mass,
+     [](BodyDef& d) {
+       d.mass = 1;
+       d.moments = Vec3{0, 0, 0};
+     }},
+    {"one moment zero", ErrorCode::bad_mass,
+     [](BodyDef& d) {
+       d.mass = 1;
+       d.moments = Vec3{1, 1, 0};
+     }},
+    {"negative moment", ErrorCode::bad_mass,
+     [](BodyDef& d) {
+       d.mass = 1;
+       d.moments = Vec3{1, -1, 1};
+     }},
+    {"moments of no body", ErrorCode::bad_mass,
+     [](BodyDef& d) {
+       d.mass = 1;
+       d.moments = Vec3{1, 1, 3};
+     }},
+    {"moment NaN", ErrorCode::not_finite,
+     [](BodyDef& d) {
+       d.mass = 1;
+       d.moments = Vec3{1, not_a_number, 1};
+     }},
     {"position NaN", ErrorCode::not_finite, [](BodyDef& d) { d.pose.position.y = not_a_number; }},
     {"position infinite", ErrorCode::not_finite, [](BodyDef& d) { d.pose.position.y = -infinite; }},
     {"position 1e30", ErrorCode::not_finite, [](BodyDef& d) { d.pose.position.y = 1e30; }},
@@ -119,8 +162,14 @@ const BadBody bad_bodies[] = {
     {"velocity 1e30", ErrorCode::not_finite, [](BodyDef& d) { d.velocity.x = 1e30; }},
     {"spin infinite", ErrorCode::not_finite, [](BodyDef& d) { d.angular_velocity.z = infinite; }},
     {"orientation NaN", ErrorCode::not_finite, [](BodyDef& d) { d.pose.orientation.w = not_a_number; }},
-    {"orientation zero", ErrorCode::not_unit_quaternion, [](BodyDef& d) { d.pose.orientation = {0, 0, 0, 0}; }},
-    {"orientation of length 2", ErrorCode::not_unit_quaternion, [](BodyDef& d) { d.pose.orientation = {0, 0, 0, 2}; }},
+    {"orientation zero", ErrorCode::not_unit_quaternion,
+     [](BodyDef& d) {
+       d.pose.orientation = {0, 0, 0, 0};
+     }},
+    {"orientation of length 2", ErrorCode::not_unit_quaternion,
+     [](BodyDef& d) {
+       d.pose.orientation = {0, 0, 0, 2};
+     }},
     {"restitution above 1", ErrorCode::bad_argument, [](BodyDef& d) { d.material.restitution = 1.1; }},
     {"restitution NaN", ErrorCode::not_finite, [](BodyDef& d) { d.material.restitution = not_a_number; }},
     {"negative friction", ErrorCode::bad_argument, [](BodyDef& d) { d.material.static_friction = -0.1; }},
@@ -155,7 +204,8 @@ TEST_CASE("C11: degenerate shapes and impossible masses are refused, and nobody 
     CHECK(n.world().snapshot() == snapshot);
     CHECK(n.world().body_count() == n.count);
     // mass properties that are set later are held to the same
-    for (const MassProperties& m : {MassProperties{0, {1, 1, 1}}, MassProperties{-1, {1, 1, 1}}, MassProperties{1, {0, 1, 1}}, MassProperties{1, {1, 1, 2.1}}})
+    for (const MassProperties& m : {MassProperties{0, {1, 1, 1}}, MassProperties{-1, {1, 1, 1}}, MassProperties{1, {0, 1, 1}},
+                                    MassProperties{1, {1, 1, 2.1}}})
       CHECK(code(n.world().set_mass_properties(n.bodies[1], m)) == ErrorCode::bad_mass);
     CHECK(code(n.world().set_mass_properties(n.bodies[1], {not_a_number, {1, 1, 1}})) == ErrorCode::not_finite);
     CHECK(n.world().hash() == hash);
@@ -252,7 +302,9 @@ TEST_CASE("C12: a callback's NaN refuses the step, which leaves the state") {
     CAPTURE(mode.name());
     Neighbours n(mode);
     bool bad = true;
-    const auto force = n.world().add_force(n.bodies[1], [&bad](const World&, BodyId) { return Wrench{{bad ? not_a_number : 0.0, 0, 0}, {}}; });
+    const auto force = n.world().add_force(n.bodies[1], [&bad](const World&, BodyId) {
+      return Wrench{{bad ? not_a_number : 0.0, 0, 0}, {}};
+    });
     REQUIRE(force);
     const std::vector<std::byte> snapshot = n.world().snapshot();
     CHECK(n.run.stepper.step(n.world(), dt).error.code == ErrorCode::not_finite);
@@ -277,21 +329,63 @@ Status status(const Result<ForceId>& r) { return r ? Status() : Status(r.error()
 
 /// Inputs that are accepted, however strange, since they are finite.
 const Extreme extremes[] = {
-    {"denormal velocity", [](World& w, BodyId b) { return w.set_velocity(b, {1e-310, -1e-310, 1e-40}); }},
-    {"denormal spin", [](World& w, BodyId b) { return w.set_angular_velocity(b, {1e-310, 0, 1e-40}); }},
-    {"denormal position", [](World& w, BodyId b) { return w.set_pose(b, {{1e-310, 50, 1e-40}, {}}); }},
-    {"denormal in a quaternion", [](World& w, BodyId b) { return w.set_pose(b, {{0, 50, 0}, {1e-310, 1e-40, 0, 1}}); }},
-    {"denormal force", [](World& w, BodyId b) { return status(w.add_force(b, Wrench{{1e-310, 0, 1e-40}, {0, 1e-310, 0}})); }},
-    {"velocity 1e15 upwards", [](World& w, BodyId b) { return w.set_velocity(b, {0, 1e15, 0}); }},
-    {"spin 1e15", [](World& w, BodyId b) { return w.set_angular_velocity(b, {0, 1e15, 1e15}); }},
-    {"position 1e15", [](World& w, BodyId b) { return w.set_pose(b, {{1e15, 1e15, -1e15}, {}}); }},
-    {"force 1e15", [](World& w, BodyId b) { return status(w.add_force(b, Wrench{{0, 1e15, 0}, {}})); }},
-    {"torque 1e15", [](World& w, BodyId b) { return status(w.add_force(b, Wrench{{}, {0, 1e15, 1e15}})); }},
+    {"denormal velocity",
+     [](World& w, BodyId b) {
+       return w.set_velocity(b, {1e-310, -1e-310, 1e-40});
+     }},
+    {"denormal spin",
+     [](World& w, BodyId b) {
+       return w.set_angular_velocity(b, {1e-310, 0, 1e-40});
+     }},
+    {"denormal position",
+     [](World& w, BodyId b) {
+       return w.set_pose(b, {{1e-310, 50, 1e-40}, {}});
+     }},
+    {"denormal in a quaternion",
+     [](World& w, BodyId b) {
+       return w.set_pose(b, {{0, 50, 0}, {1e-310, 1e-40, 0, 1}});
+     }},
+    {"denormal force",
+     [](World& w, BodyId b) {
+       return status(w.add_force(b, Wrench{{1e-310, 0, 1e-40}, {0, 1e-310, 0}}));
+     }},
+    {"velocity 1e15 upwards",
+     [](World& w, BodyId b) {
+       return w.set_velocity(b, {0, 1e15, 0});
+     }},
+    {"spin 1e15",
+     [](World& w, BodyId b) {
+       return w.set_angular_velocity(b, {0, 1e15, 1e15});
+     }},
+    {"position 1e15",
+     [](World& w, BodyId b) {
+       return w.set_pose(b, {{1e15, 1e15, -1e15}, {}});
+     }},
+    {"force 1e15",
+     [](World& w, BodyId b) {
+       return status(w.add_force(b, Wrench{{0, 1e15, 0}, {}}));
+     }},
+    {"torque 1e15",
+     [](World& w, BodyId b) {
+       return status(w.add_force(b, Wrench{{}, {0, 1e15, 1e15}}));
+     }},
     {"drag 1e15", [](World& w, BodyId b) { return w.set_drag(b, 1e15, 1e15); }},
-    {"mass 1e-30", [](World& w, BodyId b) { return w.set_mass_properties(b, {1e-30, {1e-30, 1e-30, 1e-30}}); }},
-    {"mass 1e30", [](World& w, BodyId b) { return w.set_mass_properties(b, {1e30, {1e30, 1e30, 1e30}}); }},
-    {"mass 1e-300", [](World& w, BodyId b) { return w.set_mass_properties(b, {1e-300, {1e-300, 1e-300, 1e-300}}); }},
-    {"mass 1e300", [](World& w, BodyId b) { return w.set_mass_properties(b, {1e300, {1e300, 1e300, 1e300}}); }},
+    {"mass 1e-30",
+     [](World& w, BodyId b) {
+       return w.set_mass_properties(b, {1e-30, {1e-30, 1e-30, 1e-30}});
+     }},
+    {"mass 1e30",
+     [](World& w, BodyId b) {
+       return w.set_mass_properties(b, {1e30, {1e30, 1e30, 1e30}});
+     }},
+    {"mass 1e-300",
+     [](World& w, BodyId b) {
+       return w.set_mass_properties(b, {1e-300, {1e-300, 1e-300, 1e-300}});
+     }},
+    {"mass 1e300",
+     [](World& w, BodyId b) {
+       return w.set_mass_properties(b, {1e300, {1e300, 1e300, 1e300}});
+     }},
 };
 
 }  // namespace
@@ -303,7 +397,8 @@ bool step_beside(Neighbours& n, const Mode& mode, const char* what) {
   Neighbours alone(mode);
   for (int i = 0; i < 30; i++) {
     if (!n.run.stepper.step(n.world(), dt)) {
-      MESSAGE(std::string(what) << ", " << mode.name() << ", step " << i << ": " << n.run.stepper.step(n.world(), dt).error.message);
+      MESSAGE(std::string(what) << ", " << mode.name() << ", step " << i << ": "
+                                << n.run.stepper.step(n.world(), dt).error.message);
       CHECK(same_bits(n.state(), alone.state()));
       return false;
     }
@@ -351,7 +446,8 @@ TEST_CASE("C12: an extreme body stays finite itself") {
       for (int i = 0; i < 30; i++)
         if (!n.run.stepper.step(n.world(), dt)) break;
       const Pose pose = *n.world().pose(odd);
-      CHECK((finite(pose.position) && finite(pose.orientation) && finite(*n.world().velocity(odd)) && finite(*n.world().angular_velocity(odd))));
+      CHECK((finite(pose.position) && finite(pose.orientation) && finite(*n.world().velocity(odd)) &&
+             finite(*n.world().angular_velocity(odd))));
     }
 }
 

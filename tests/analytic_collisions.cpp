@@ -38,8 +38,10 @@ std::vector<Row> collisions() {
 /// Largest error of a component, relative to the largest speed (or spin times radius) of the row.
 double error_of(const Row& row, const SphereContact& after) {
   const double linear = std::max({2.0, length(row.v1), length(row.v2)});
-  const double spin = std::max({linear / row.before.radius2, length(row.before.w1), length(row.before.w2), length(row.w1), length(row.w2)});
-  return std::max({length(after.v1 - row.v1) / linear, length(after.v2 - row.v2) / linear, length(after.w1 - row.w1) / spin, length(after.w2 - row.w2) / spin});
+  const double spin =
+      std::max({linear / row.before.radius2, length(row.before.w1), length(row.before.w2), length(row.w1), length(row.w2)});
+  return std::max({length(after.v1 - row.v1) / linear, length(after.v2 - row.v2) / linear, length(after.w1 - row.w1) / spin,
+                   length(after.w2 - row.w2) / spin});
 }
 
 }  // namespace
@@ -139,10 +141,11 @@ double worst_slide(const Mode& mode, std::uint32_t substeps, bool settled) {
   double worst = 0;
   for (const Slide& s : slides)
     for (double dt : {1.0 / 60, 1.0 / 240, 1.0 / 1200}) {
-      const double error = std::fabs(slide(mode, s.friction, dt, substeps, settled) - 0.5 * s.acceleration) / (s.acceleration * dt);
+      const double error =
+          std::fabs(slide(mode, s.friction, dt, substeps, settled) - 0.5 * s.acceleration) / (s.acceleration * dt);
       worst = std::max(worst, error);
-      MESSAGE("A21b " << mode.name() << std::string(settled ? ", settled, " : ", just touching, ") << substeps << " sub-steps, mu " << s.friction
-                      << ", dt " << dt << ": " << error << " of the must");
+      MESSAGE("A21b " << mode.name() << std::string(settled ? ", settled, " : ", just touching, ") << substeps
+                      << " sub-steps, mu " << s.friction << ", dt " << dt << ": " << error << " of the must");
     }
   return worst;
 }

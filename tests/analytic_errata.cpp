@@ -41,8 +41,8 @@ TEST_CASE("errata (ii): spheres that mesh like gears do not slip, so friction le
     c.w2 = {0, 0, -10};
     c.friction = 1;
     const Vec3 r1{0.5, 0, 0}, r2{-0.5, 0, 0};
-    CHECK(length(cross(c.w2, r2) - cross(c.w1, r1)) == 0);                        // no slip
-    CHECK(length(cross(c.w2, r1) - cross(c.w1, r1)) == doctest::Approx(10));     // published: 10 m/s
+    CHECK(length(cross(c.w2, r2) - cross(c.w1, r1)) == 0);                    // no slip
+    CHECK(length(cross(c.w2, r1) - cross(c.w1, r1)) == doctest::Approx(10));  // published: 10 m/s
     resolve(c, mode);
     const double tolerance = mode.is_double() ? 1e-12 : 1e-5;
     CHECK(length(c.w1 - Vec3{0, 0, 10}) <= tolerance);
@@ -126,7 +126,9 @@ TEST_CASE("errata (v): a pin turns a needle by I^-1 (t x D), not (I^-1 t) x D") 
     const double k = 1 + dot(lever, rotate(pose.orientation, scaled(inverse, rotate(conjugate(pose.orientation), lever))));
     const Vec3 impulse = (gap / k) * n;
     pose.position = pose.position - impulse;
-    pose.orientation = exponential(cross(rotate(pose.orientation, scaled(inverse, rotate(conjugate(pose.orientation), t2))), -impulse)) * pose.orientation;
+    pose.orientation =
+        exponential(cross(rotate(pose.orientation, scaled(inverse, rotate(conjugate(pose.orientation), t2))), -impulse)) *
+        pose.orientation;
   }
   CHECK(worst > 0.1);  // from 23 mm
 }

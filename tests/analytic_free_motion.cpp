@@ -140,7 +140,8 @@ SpinUp spin_up(const Mode& mode, double dt, double seconds_on) {
   }
   const double acceleration = 2.6 / 0.52, t1 = double(on) * dt, t2 = double(all - on) * dt;
   const double speed = acceleration * t1, angle = 0.5 * acceleration * t1 * t1 + speed * t2;
-  return {length(*run.world.angular_velocity(id) - Vec3{0, 0, speed}), angle_between(run.orientation(id), axis_angle({0, 0, 1}, angle))};
+  return {length(*run.world.angular_velocity(id) - Vec3{0, 0, speed}),
+          angle_between(run.orientation(id), axis_angle({0, 0, 1}, angle))};
 }
 
 constexpr double spin_ladder[] = {1.0 / 60, 1.0 / 240, 1.0 / 1200, 1e-4};
@@ -241,7 +242,8 @@ double variable_step_error(const Mode& mode, bool random, double drag) {
 
 TEST_CASE("A20: a projectile with steps of changing length stays exact") {
   for (bool random : {false, true}) {
-    const double twice = variable_step_error({Precision::f64}, random, 0), single = variable_step_error({Precision::f32}, random, 0);
+    const double twice = variable_step_error({Precision::f64}, random, 0),
+                 single = variable_step_error({Precision::f32}, random, 0);
     MESSAGE("A20 A2 " << std::string(random ? "random" : "alternating") << ": f64 " << twice << " m, f32 " << single << " m");
     CHECK(twice <= 1e-10);
     CHECK(single <= 1e-3);

@@ -33,8 +33,8 @@ Drifts run_island(Run& run, long steps = 300) {
 }
 
 void tell(const char* what, const Mode& mode, const Drifts& d) {
-  MESSAGE("momentum, " << std::string(what) << ", " << mode.name() << ": stored " << d.stored.linear << " and " << d.stored.angular << ", in phase "
-                       << d.in_phase.linear << " and " << d.in_phase.angular);
+  MESSAGE("momentum, " << std::string(what) << ", " << mode.name() << ": stored " << d.stored.linear << " and "
+                       << d.stored.angular << ", in phase " << d.in_phase.linear << " and " << d.in_phase.angular);
 }
 
 void check(const Mode& mode, const Drift& d) {

@@ -175,8 +175,8 @@ TEST_CASE("A4a: flips about the intermediate axis, double") {
   const double must_4s[] = {6e-3, 4e-4, 1.5e-5, 2e-7}, must_20s[] = {infinite, 5e-4, 2e-5, 3e-7};
   for (int i = 0; i < 4; i++) {
     const TumbleError error = tumble({Precision::f64}, ladder[i], reference, flipping_spin, 20);
-    MESSAGE("A4a f64 dt " << ladder[i] << ": " << error.early << " rad at 4 s, " << error.attitude << " at 20 s, L " << error.momentum
-                          << ", energy " << error.energy);
+    MESSAGE("A4a f64 dt " << ladder[i] << ": " << error.early << " rad at 4 s, " << error.attitude << " at 20 s, L "
+                          << error.momentum << ", energy " << error.energy);
     CAPTURE(ladder[i]);
     CHECK(error.early <= must_4s[i]);
     CHECK(error.attitude <= must_20s[i]);
@@ -206,7 +206,9 @@ TEST_CASE("A3, A4a: the musts of short steps, single" * doctest::may_fail()) {
 
 namespace {
 
-double middle_spin(const World& world, BodyId id) { return rotate(conjugate(world.pose(id)->orientation), *world.angular_velocity(id)).y; }
+double middle_spin(const World& world, BodyId id) {
+  return rotate(conjugate(world.pose(id)->orientation), *world.angular_velocity(id)).y;
+}
 
 /// Instants at which the spin about the intermediate axis changes sign, by secants between steps.
 std::vector<double> flips(double dt, double seconds) {
@@ -226,7 +228,9 @@ std::vector<double> flips(double dt, double seconds) {
 /// The same from Euler's equations by the classical fourth-order Runge-Kutta method.
 std::vector<double> reference_flips(double seconds) {
   const Vec3 i = box_moments;
-  const auto rate = [i](Vec3 w) { return Vec3{(i.y - i.z) / i.x * w.y * w.z, (i.z - i.x) / i.y * w.z * w.x, (i.x - i.y) / i.z * w.x * w.y}; };
+  const auto rate = [i](Vec3 w) {
+    return Vec3{(i.y - i.z) / i.x * w.y * w.z, (i.z - i.x) / i.y * w.z * w.x, (i.x - i.y) / i.z * w.x * w.y};
+  };
   const double dt = 5e-5;
   Vec3 w = flipping_spin;
   std::vector<double> times;
@@ -245,7 +249,7 @@ TEST_CASE("A4a: flips come when they should") {
   const std::vector<double> expected = reference_flips(20);
   REQUIRE(expected.size() == 4);
   CHECK(expected[2] - expected[1] == doctest::Approx(10.0420760193912 / 2).epsilon(1e-9));  // half of Jacobi's period
-  const double must[] = {infinite, 5e-4, 2e-5, 3e-7};  // rad at 20 s
+  const double must[] = {infinite, 5e-4, 2e-5, 3e-7};                                       // rad at 20 s
   for (int i = 0; i < 4; i++) {
     CAPTURE(ladder[i]);
     const std::vector<double> is = flips(ladder[i], 20);

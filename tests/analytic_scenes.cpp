@@ -14,8 +14,8 @@ struct SceneRun {
   Run run;
   scenes::Scene scene;
   double start = 0, highest = 0, low = 0, high = 0;  // energy; potential energy
-  double height = 0;                                  // potential energy of the start above the lowest there is
-  double separation = 0, limit = 0;                   // largest from step 240 on
+  double height = 0;                                 // potential energy of the start above the lowest there is
+  double separation = 0, limit = 0;                  // largest from step 240 on
   long escaped = 0, nonfinite = 0;
   scenes::Metrics end;
 
@@ -53,10 +53,11 @@ struct SceneRun {
 
   double gain() const { return highest - start; }
   void tell(const Mode& mode) const {
-    MESSAGE(scene.name << " " << scene.count << ", " << mode.name() << ": energy gain " << gain() << " J, " << gain() / (high - low)
-                       << " of the potential range " << high - low << " J; penetration " << end.penetration.max << " m, mean "
-                       << end.penetration.mean() << "; separation " << end.separation.max << ", from 4 s on " << separation
-                       << " m; limits " << limit / degree << " deg; sideways " << end.drift.sideways << ", down " << end.drift.down);
+    MESSAGE(scene.name << " " << scene.count << ", " << mode.name() << ": energy gain " << gain() << " J, "
+                       << gain() / (high - low) << " of the potential range " << high - low << " J; penetration "
+                       << end.penetration.max << " m, mean " << end.penetration.mean() << "; separation " << end.separation.max
+                       << ", from 4 s on " << separation << " m; limits " << limit / degree << " deg; sideways "
+                       << end.drift.sideways << ", down " << end.drift.down);
   }
   void check_sound() const {
     CHECK(escaped == 0);

@@ -18,7 +18,9 @@ TEST_CASE("velocity: read back to second order under a force that changes with p
     BodyDef def = free_body(2, {1, 1, 1});
     def.pose.position = {1, 0, 0};
     const BodyId id = run.add(def);
-    REQUIRE(run.world.add_force(id, [](const World& world, BodyId body) { return Wrench{-8.0 * world.pose(body)->position, {}}; }));
+    REQUIRE(run.world.add_force(id, [](const World& world, BodyId body) {
+      return Wrench{-8.0 * world.pose(body)->position, {}};
+    }));
     run.step(dt, 30 << level);
     errors[level] = std::fabs(run.world.velocity(id)->x + 2 * std::sin(2.0));
   }
@@ -147,7 +149,8 @@ TEST_CASE("two-real position: single precision moves at 1 mm/s, 1 km from the or
     run.step(1.0 / 60, steps);
     const double way = 1e-3 * double(steps) / 60;
     const Vec3 moved = run.position(id) - def.pose.position;
-    if (mode.place == Place::cpu) MESSAGE("1 mm/s at 1 km, " << mode.name() << ": off by " << length(moved - Vec3{way, 0, -way}) / way << " of the way");
+    if (mode.place == Place::cpu)
+      MESSAGE("1 mm/s at 1 km, " << mode.name() << ": off by " << length(moved - Vec3{way, 0, -way}) / way << " of the way");
     // a single float's last place is 6.1e-5 m there, 15 times the way of a sub-step
     CHECK(length(moved - Vec3{way, 0, -way}) <= 1e-6 * way);
   }

@@ -34,8 +34,10 @@ class TemporaryCache {
     setenv("PCPHYS_CACHE", folder_.c_str(), 1);
   }
   ~TemporaryCache() {
-    if (had_) setenv("PCPHYS_CACHE", before_.c_str(), 1);
-    else unsetenv("PCPHYS_CACHE");
+    if (had_)
+      setenv("PCPHYS_CACHE", before_.c_str(), 1);
+    else
+      unsetenv("PCPHYS_CACHE");
     std::filesystem::remove_all(folder_);
   }
   const std::filesystem::path& folder() const { return folder_; }
@@ -88,8 +90,9 @@ TEST_CASE("the report names the device, its limits and its arithmetic") {
   CHECK(report.f32.parity());
   CHECK(report.f64.parity());
   for (const GlArithmetic& found : {report.f32, report.f64})
-    MESSAGE(report.renderer << ": division " << std::string(name(found.division)) << ", square root " << std::string(name(found.square_root)) << ", fma fused " << found.fma_fused
-                            << ", subnormals kept " << found.subnormals_kept);
+    MESSAGE(report.renderer << ": division " << std::string(name(found.division)) << ", square root "
+                            << std::string(name(found.square_root)) << ", fma fused " << found.fma_fused << ", subnormals kept "
+                            << found.subnormals_kept);
 }
 
 TEST_CASE("a device that does not exist is a named error") {
@@ -111,8 +114,10 @@ TEST_CASE("every kernel compiles in both precisions and every form of division a
     for (const RoundingForm form : {RoundingForm::builtin, RoundingForm::fma, RoundingForm::nearest})
       for (std::size_t k = 0; k < kernel_count; k++) {
         const Result<KernelProgram> program = load_kernel(Kernel(k), {precision, form, form}, cache);
-        if (!program) FAIL_CHECK(program.error().message);
-        else glDeleteProgram(program->id);
+        if (!program)
+          FAIL_CHECK(program.error().message);
+        else
+          glDeleteProgram(program->id);
       }
 }
 
@@ -165,20 +170,32 @@ TEST_CASE("a program whose layout differs from the schema is refused, with buffe
 
 TEST_CASE("the cache is filled, used, and survives corruption") {
   const TemporaryCache cache;
-  { const auto gl = parity::require_gl(Precision::f32); CHECK(remember_works(*gl)); }
+  {
+    const auto gl = parity::require_gl(Precision::f32);
+    CHECK(remember_works(*gl));
+  }
   const auto files = cache.files();
   CHECK(files.size() >= 2);  // the probe's answer and the kernel
-  { const auto gl = parity::require_gl(Precision::f32); CHECK(remember_works(*gl)); }
+  {
+    const auto gl = parity::require_gl(Precision::f32);
+    CHECK(remember_works(*gl));
+  }
   CHECK(cache.files().size() == files.size());
   int rewritten = 0;
   for (const auto& file : files) {  // cut short, then with a flipped bit
     const std::string whole = text_of(file);
     std::ofstream(file, std::ios::binary) << whole.substr(0, whole.size() / 2);
-    { const auto gl = parity::require_gl(Precision::f32); CHECK(remember_works(*gl)); }
+    {
+      const auto gl = parity::require_gl(Precision::f32);
+      CHECK(remember_works(*gl));
+    }
     std::string flipped = whole;
     flipped[flipped.size() - 3] = char(flipped[flipped.size() - 3] ^ 4);
     std::ofstream(file, std::ios::binary) << flipped;
-    { const auto gl = parity::require_gl(Precision::f32); CHECK(remember_works(*gl)); }
+    {
+      const auto gl = parity::require_gl(Precision::f32);
+      CHECK(remember_works(*gl));
+    }
     rewritten += text_of(file) != flipped;  // made anew; some drivers add a time to a program
   }
   CHECK(rewritten >= 2);  // all but the probe's program, which nobody needs while its answer is whole
@@ -213,8 +230,16 @@ TEST_CASE("a host's context is used and its bindings are found again") {
     REQUIRE_MESSAGE(bool(made), made.error().message);
     CHECK(remember_works(**made));
   }
-  const auto bound = [](GLenum name) { GLint value = 0; glGetIntegerv(name, &value); return GLuint(value); };
-  const auto bound_at = [](GLenum name, GLuint i) { GLint64 value = 0; glGetInteger64i_v(name, i, &value); return value; };
+  const auto bound = [](GLenum name) {
+    GLint value = 0;
+    glGetIntegerv(name, &value);
+    return GLuint(value);
+  };
+  const auto bound_at = [](GLenum name, GLuint i) {
+    GLint64 value = 0;
+    glGetInteger64i_v(name, i, &value);
+    return value;
+  };
   CHECK(bound(GL_CURRENT_PROGRAM) == 0);
   CHECK(bound(GL_SHADER_STORAGE_BUFFER_BINDING) == buffers[2]);
   CHECK(bound(GL_UNIFORM_BUFFER_BINDING) == buffers[1]);

@@ -10,10 +10,14 @@ namespace {
 using namespace parity;
 
 /// A sub-step and what stands around it, in the order of a step; the same kernel runs in both phases.
-struct Call { Kernel kernel; std::size_t info; };
+struct Call {
+  Kernel kernel;
+  std::size_t info;
+};
 constexpr Call step_calls[] = {
-    {Kernel::begin, 0}, {Kernel::contact_prepare, 0}, {Kernel::integrate, 0}, {Kernel::joint_prepare, 0}, {Kernel::joint_solve, 0}, {Kernel::contact_warm, 0},
-    {Kernel::contact_solve, 0}, {Kernel::remember, 0}, {Kernel::advance, 0}, {Kernel::joint_solve, 1}, {Kernel::contact_solve, 1},
+    {Kernel::begin, 0},       {Kernel::contact_prepare, 0}, {Kernel::integrate, 0},     {Kernel::joint_prepare, 0},
+    {Kernel::joint_solve, 0}, {Kernel::contact_warm, 0},    {Kernel::contact_solve, 0}, {Kernel::remember, 0},
+    {Kernel::advance, 0},     {Kernel::joint_solve, 1},     {Kernel::contact_solve, 1},
 };
 constexpr Call last_calls[] = {{Kernel::contact_restitution, 1}, {Kernel::contact_store, 1}, {Kernel::synchronise, 1}};
 
@@ -34,7 +38,8 @@ template <class Scalar, class Other> void compare(const CpuKernels& reference, c
       other(call.kernel, call.info, theirs);
       std::string first;
       const std::size_t count = differences(call.kernel, state, theirs, first);
-      const std::string where = std::string(what) + ", " + std::string(schema(call.kernel).name) + ", " + mood.name + ": " + first;
+      const std::string where =
+          std::string(what) + ", " + std::string(schema(call.kernel).name) + ", " + mood.name + ": " + first;
       INFO(where);
       CHECK(count == 0);
     }
@@ -46,12 +51,14 @@ template <class Scalar> void compare_gl(Precision precision, const CpuKernels& r
   MESSAGE("device: " << report.renderer << ", " << report.version);
   REQUIRE_MESSAGE((precision == Precision::f64 ? report.f64 : report.f32).parity(), "this device promises no parity");
   const std::unique_ptr<Backend> gl = require_gl(precision);
-  compare<Scalar>(reference, "GL", [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, kernel, info, state); });
+  compare<Scalar>(reference, "GL",
+                  [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, kernel, info, state); });
 }
 
 template <class Scalar> void compare_lanes(const CpuKernels& reference, const CpuKernels& lanes) {
   const std::string what = std::to_string(lanes.lanes) + " lanes";
-  compare<Scalar>(reference, what.c_str(), [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_cpu(lanes, kernel, info, state); });
+  compare<Scalar>(reference, what.c_str(),
+                  [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_cpu(lanes, kernel, info, state); });
 }
 
 }  // namespace
@@ -81,7 +88,8 @@ TEST_CASE("the contents that parity is checked on move, and stay numbers") {
       const std::string where = std::string(schema(call.kernel).name) + ", " + mood.name;
       INFO(where);
       CHECK(differences(call.kernel, before, state, first) > 100);
-      for (const std::vector<float>& reals : state.reals) CHECK(std::none_of(reals.begin(), reals.end(), [](float x) { return x != x; }));
+      for (const std::vector<float>& reals : state.reals)
+        CHECK(std::none_of(reals.begin(), reals.end(), [](float x) { return x != x; }));
     }
   }
 }

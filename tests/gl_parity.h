@@ -24,13 +24,16 @@ using namespace pcphys;
 /// A test must not pass because there was nothing to test: llvmpipe comes with our scripts.
 inline std::unique_ptr<Backend> require_gl(Precision precision) {
   Result<std::unique_ptr<Backend>> made = make_gl_backend(precision, -1, false);
-  if (!made) FAIL("The GL backend is needed by this test (scripts/install-dependencies brings llvmpipe): " << made.error().message);
+  if (!made)
+    FAIL("The GL backend is needed by this test (scripts/install-dependencies brings llvmpipe): " << made.error().message);
   return std::move(*made);
 }
 
 inline Table table_of(Buffer buffer) { return schema(buffer).table; }
 inline bool is_index(Buffer buffer) { return schema(buffer).reals == 0; }
-inline bool is_rows(Buffer buffer) { return buffer == Buffer::contact_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows; }
+inline bool is_rows(Buffer buffer) {
+  return buffer == Buffer::contact_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows;
+}
 inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || buffer == Buffer::joint_ends; }
 
 /// Values of one size: what a kind of scene puts into kernels. `distance` is from the origin.
@@ -97,18 +100,28 @@ template <class Scalar> void Maker<Scalar>::body(std::uint32_t row) {
   std::swap(moments[1], moments[middle]);
   const double spin = speed == 0 ? 0 : mood_.spin * (dynamic ? moments[1] : 1);
   const double x = dynamic ? 1 : 0;
-  put(Buffer::motion, row, {either(speed), either(speed), either(speed), dynamic ? 1 / mass : 0, either(spin), either(spin), either(spin), dynamic ? double(int(below(3)) - 1) : 0});
+  put(Buffer::motion, row,
+      {either(speed), either(speed), either(speed), dynamic ? 1 / mass : 0, either(spin), either(spin), either(spin),
+       dynamic ? double(int(below(3)) - 1) : 0});
   const auto q = ground || rarely() ? std::array<double, 4>{0, 0, 0, 1} : turn(4);
   const double far = ground ? 0 : mood_.distance, near = ground ? 0 : 3, low = far * std::numeric_limits<Scalar>::epsilon() / 4;
-  put(Buffer::pose, row, {far + either(near), either(near), either(near) - far, 0, q[0], q[1], q[2], q[3], either(low), either(low), either(low), 0});
+  put(Buffer::pose, row,
+      {far + either(near), either(near), either(near) - far, 0, q[0], q[1], q[2], q[3], either(low), either(low), either(low),
+       0});
   const double change = speed / 100;
-  put(Buffer::half_change, row, {either(change), either(change), either(change), 0, either(change), either(change), either(change), 0});
-  put(Buffer::mass, row, {x * moments[0], x * moments[1], x * moments[2], x * mass, dynamic ? 1 / moments[0] : kinematic, dynamic ? 1 / moments[1] : kinematic, dynamic ? 1 / moments[2] : kinematic, double(middle)});
+  put(Buffer::half_change, row,
+      {either(change), either(change), either(change), 0, either(change), either(change), either(change), 0});
+  put(Buffer::mass, row,
+      {x * moments[0], x * moments[1], x * moments[2], x * mass, dynamic ? 1 / moments[0] : kinematic,
+       dynamic ? 1 / moments[1] : kinematic, dynamic ? 1 / moments[2] : kinematic, double(middle)});
   const double drags[] = {0, 0.25, 5, 300};
   const double push = ground || rarely() ? 0 : mood_.mass * 10;
-  put(Buffer::force, row, {either(push), either(push), either(push), drags[below(4)], either(push), either(push), either(push), drags[below(4)]});
+  put(Buffer::force, row,
+      {either(push), either(push), either(push), drags[below(4)], either(push), either(push), either(push), drags[below(4)]});
   const double moved = ground ? 0 : speed / 1000;
-  put(Buffer::inertia, row, {x / moments[0], x * either(0.1) / moments[2], x * either(0.1) / moments[2], x / moments[1], x * either(0.1) / moments[2], x / moments[2], x, 0});
+  put(Buffer::inertia, row,
+      {x / moments[0], x * either(0.1) / moments[2], x * either(0.1) / moments[2], x / moments[1], x * either(0.1) / moments[2],
+       x / moments[2], x, 0});
   put(Buffer::delta, row, {either(moved), either(moved), either(moved), 0, either(moved), either(moved), either(moved), 0});
 }
 
@@ -143,14 +156,20 @@ template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
     upper[i] = rarely() ? lower[i] : lower[i] + real(0, 2);
     if (rarely()) lower[i] = -infinity, upper[i] = infinity;
   }
-  put(Buffer::joint_frame, row, {either(0.5), either(0.5), either(0.5), double(below(3)), p[0], p[1], p[2], p[3], either(0.5), either(0.5), either(0.5), 0, q[0], q[1], q[2], q[3],
-                                 lower[0], lower[1], lower[2], 0, upper[0], upper[1], upper[2], 0});
+  put(Buffer::joint_frame, row, {either(0.5), either(0.5), either(0.5), double(below(3)),
+                                 p[0],        p[1],        p[2],        p[3],
+                                 either(0.5), either(0.5), either(0.5), 0,
+                                 q[0],        q[1],        q[2],        q[3],
+                                 lower[0],    lower[1],    lower[2],    0,
+                                 upper[0],    upper[1],    upper[2],    0});
   const double push = rarely() ? 0 : mood_.impulse;
   put(Buffer::joint_impulse, row, {either(push), either(push), either(push), 0, either(push), either(push), either(push), 0});
 }
 
 /// Colours: within one, no dynamic body stands in two slots. The last slots of each are padding.
-template <class Scalar> void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count, std::uint32_t blocks) {
+template <class Scalar>
+void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count,
+                          std::uint32_t blocks) {
   std::uint32_t record = 1;
   for (std::uint32_t c = 0; c < colour_count; c++) {
     std::vector<std::uint32_t> bodies(free_bodies);
@@ -175,7 +194,22 @@ template <class Scalar> void Maker<Scalar>::infos() {
     Scalar* field = &info.h;
     const bool relax = phase == 1;
     const double h = 1.0 / 240;
-    const double values[] = {h, 240, 0.3, -9.81, 0.1, 0.2, 0.8, relax ? 0.0 : 48, relax ? 1 : 0.9, relax ? 0 : 0.1, 4, relax ? 0.0 : 60, relax ? 1 : 0.95, relax ? 0 : 0.05, 8, 1};
+    const double values[] = {h,
+                             240,
+                             0.3,
+                             -9.81,
+                             0.1,
+                             0.2,
+                             0.8,
+                             relax ? 0.0 : 48,
+                             relax ? 1 : 0.9,
+                             relax ? 0 : 0.1,
+                             4,
+                             relax ? 0.0 : 60,
+                             relax ? 1 : 0.95,
+                             relax ? 0 : 0.05,
+                             8,
+                             1};
     for (std::size_t i = 0; i < sizeof info / sizeof(Scalar); i++) field[i] = Scalar(i < std::size(values) ? values[i] : 0.5);
   }
 }
@@ -189,7 +223,8 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   for (std::size_t i = 0; i < buffer_count; i++) {
     const Buffer buffer = Buffer(i);
     const std::uint32_t slots = rows[std::size_t(table_of(buffer))] - 1;
-    if (!is_index(buffer)) state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);
+    if (!is_index(buffer))
+      state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);
   }
   for (std::uint32_t row = 0; row < rows[std::size_t(Table::body)]; row++) body(row);
   for (std::uint32_t row = 0; row < rows[std::size_t(Table::contact)]; row++) contact(row);
@@ -217,7 +252,8 @@ inline std::vector<std::uint32_t> pack_indices(Buffer buffer, const std::vector<
 }
 
 /// Copies between logical order and a backend's, for rows of the solver; tables are the same in both.
-template <class Scalar> void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width, bool pack) {
+template <class Scalar>
+void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width, bool pack) {
   const std::size_t reals = schema(buffer).reals;
   for (std::size_t i = 0; i < count; i++) {
     const std::size_t packed = is_rows(buffer) ? place(i / reals, i % reals, reals, width) : i;
@@ -225,14 +261,16 @@ template <class Scalar> void copy_reals(Buffer buffer, const Scalar* from, Scala
   }
 }
 
-inline std::vector<Range> ranges_of(Kernel kernel, std::uint32_t bodies, const std::vector<Range>& contacts, const std::vector<Range>& joints, std::uint32_t width) {
+inline std::vector<Range> ranges_of(Kernel kernel, std::uint32_t bodies, const std::vector<Range>& contacts,
+                                    const std::vector<Range>& joints, std::uint32_t width) {
   if (schema(kernel).domain == Domain::body) return {{0, bodies}};
   std::vector<Range> ranges = schema(kernel).domain == Domain::contact ? contacts : joints;
   for (Range& range : ranges) range = {range.begin / width, range.end / width};
   return ranges;
 }
 template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<Scalar>& state, std::uint32_t width) {
-  return ranges_of(kernel, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size()), state.contact_colours, state.joint_colours, width);
+  return ranges_of(kernel, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size()), state.contact_colours,
+                   state.joint_colours, width);
 }
 
 // ---- running one kernel -----------------------------------------------------------------------------
@@ -249,7 +287,9 @@ class FlushSubnormals {
 };
 
 template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, std::size_t info, State<Scalar>& state) {
-  struct alignas(64) Line { char bytes[64]; };
+  struct alignas(64) Line {
+    char bytes[64];
+  };
   std::array<std::vector<Line>, buffer_count> memory;
   void* buffers[buffer_count] = {};
   for (const Access& access : schema(kernel).accesses) {
@@ -260,15 +300,19 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
     if (is_index(access.buffer))
       std::memcpy(buffers[i], indices.data(), indices.size() * 4);
     else
-      copy_reals(access.buffer, state.reals[i].data(), static_cast<Scalar*>(buffers[i]), state.reals[i].size(), kernels.lanes, true);
+      copy_reals(access.buffer, state.reals[i].data(), static_cast<Scalar*>(buffers[i]), state.reals[i].size(), kernels.lanes,
+                 true);
   }
   {
     FlushSubnormals flush;
-    for (const Range& range : ranges_of(kernel, state, kernels.lanes)) kernels.run[std::size_t(kernel)]({buffers, &state.infos[info], range.begin, range.end});
+    for (const Range& range : ranges_of(kernel, state, kernels.lanes))
+      kernels.run[std::size_t(kernel)]({buffers, &state.infos[info], range.begin, range.end});
   }
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
-    if (access.write) copy_reals(access.buffer, static_cast<const Scalar*>(buffers[i]), state.reals[i].data(), state.reals[i].size(), kernels.lanes, false);
+    if (access.write)
+      copy_reals(access.buffer, static_cast<const Scalar*>(buffers[i]), state.reals[i].data(), state.reals[i].size(),
+                 kernels.lanes, false);
   }
 }
 
@@ -303,15 +347,17 @@ template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info
 template <class Scalar> bool same(Scalar a, Scalar b) { return a == b || (a != a && b != b); }
 
 /// How many reals of what the kernel writes differ, and where the first does.
-template <class Scalar> std::size_t differences(Kernel kernel, const State<Scalar>& a, const State<Scalar>& b, std::string& first) {
+template <class Scalar>
+std::size_t differences(Kernel kernel, const State<Scalar>& a, const State<Scalar>& b, std::string& first) {
   std::size_t count = 0;
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer), reals = schema(access.buffer).reals;
     for (std::size_t k = 0; access.write && k < a.reals[i].size(); k++) {
       if (same(a.reals[i][k], b.reals[i][k])) continue;
       char text[200];
-      std::snprintf(text, sizeof text, "%s row %zu real %zu: %a (%.9g) and %a (%.9g)", std::string(schema(access.buffer).name).c_str(), k / reals, k % reals,
-                    double(a.reals[i][k]), double(a.reals[i][k]), double(b.reals[i][k]), double(b.reals[i][k]));
+      std::snprintf(text, sizeof text, "%s row %zu real %zu: %a (%.9g) and %a (%.9g)",
+                    std::string(schema(access.buffer).name).c_str(), k / reals, k % reals, double(a.reals[i][k]),
+                    double(a.reals[i][k]), double(b.reals[i][k]), double(b.reals[i][k]));
       if (count++ == 0) first = text;
     }
   }

@@ -14,8 +14,13 @@
 #define precise
 namespace {
 using uint = std::uint32_t;
-struct uvec2 { uint x, y; };
-uvec2 unpackDouble2x32(double v) { const auto b = std::bit_cast<std::uint64_t>(v); return {uint(b), uint(b >> 32)}; }
+struct uvec2 {
+  uint x, y;
+};
+uvec2 unpackDouble2x32(double v) {
+  const auto b = std::bit_cast<std::uint64_t>(v);
+  return {uint(b), uint(b >> 32)};
+}
 double packDouble2x32(uvec2 v) { return std::bit_cast<double>(std::uint64_t(v.y) << 32 | v.x); }
 uint floatBitsToUint(float v) { return std::bit_cast<uint>(v); }
 float uintBitsToFloat(uint v) { return std::bit_cast<float>(v); }
@@ -38,13 +43,13 @@ using Real = float;
 #include "glcompute/rounding.glsl"
 #undef PC_BIAS
 #undef PC_EXPONENT_END
-}
+}  // namespace single
 namespace twice {
 using Real = double;
 #define PC_DOUBLE
 #include "glcompute/rounding.glsl"
 #undef PC_DOUBLE
-}
+}  // namespace twice
 
 template <class R> struct Forms;
 template <> struct Forms<float> {

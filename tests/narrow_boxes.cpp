@@ -36,8 +36,12 @@ TEST_CASE("narrow: a box on a floor of 200 m has its four corners to a millionth
       int which = 0;
       for (int c = 0; c < 8; c++) {
         const Shape exact = to_double(a);
-        const Vec3 v = rotate(turn(exact), {c & 1 ? exact.size[0] : -exact.size[0], c & 2 ? exact.size[1] : -exact.size[1], c & 4 ? exact.size[2] : -exact.size[2]});
-        if (length(v - corner) < best) { best = length(v - corner); which = c; }
+        const Vec3 v = rotate(turn(exact), {c & 1 ? exact.size[0] : -exact.size[0], c & 2 ? exact.size[1] : -exact.size[1],
+                                            c & 4 ? exact.size[2] : -exact.size[2]});
+        if (length(v - corner) < best) {
+          best = length(v - corner);
+          which = c;
+        }
       }
       corners.insert(which);
       worst_point = std::max(worst_point, best);
@@ -77,7 +81,8 @@ TEST_CASE("narrow: a resting stack of boxes keeps its points and features") {
 
 TEST_CASE("narrow: a standing cylinder keeps its points and features") {
   Pairs random(6);
-  const View floors[] = {box({2, 0.5, 2}, {0.3, -1, 0}), box({100, 0.5, 100}, {40, -1, 20}), to_float(shape(ShapeKind::cylinder, {0.7, 0.5, 0}, {0.1, -1, 0})),
+  const View floors[] = {box({2, 0.5, 2}, {0.3, -1, 0}), box({100, 0.5, 100}, {40, -1, 20}),
+                         to_float(shape(ShapeKind::cylinder, {0.7, 0.5, 0}, {0.1, -1, 0})),
                          to_float(shape(ShapeKind::plane, {}, {0, -0.5, 0}))};
   for (const View& floor : floors) {
     CAPTURE(kind_names[std::size_t(floor.kind)]);

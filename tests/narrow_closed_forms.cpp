@@ -69,7 +69,8 @@ TEST_CASE("narrow: boxes") {
   expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {0, -1.02, 0}), {0, -1, 0}, 4, 0.02);
   expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {0, -0.95, 0}, axis_angle({0, 1, 0}, pi / 4)), {0, -1, 0}, 4, -0.05);
   // standing on an edge, on a corner
-  expect(box({0.5, 0.5, 0.5}, {}, axis_angle({0, 0, 1}, pi / 4)), box({2, 0.5, 2}, {0, -1.15, 0}), {0, -1, 0}, 2, 0.65 - std::sqrt(0.5));
+  expect(box({0.5, 0.5, 0.5}, {}, axis_angle({0, 0, 1}, pi / 4)), box({2, 0.5, 2}, {0, -1.15, 0}), {0, -1, 0}, 2,
+         0.65 - std::sqrt(0.5));
   const Quat corner = axis_angle({std::sqrt(0.5), 0, -std::sqrt(0.5)}, std::acos(1 / std::sqrt(3.0)));
   expect(box({0.5, 0.5, 0.5}, {}, corner), box({2, 0.5, 2}, {0, -1.34, 0}), {0, -1, 0}, 1, 0.84 - std::sqrt(0.75));
   // two edges across: x edge of a over z edge of b

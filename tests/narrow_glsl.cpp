@@ -21,8 +21,11 @@ std::string with_includes(const std::filesystem::path& path) {
   std::string out, line;
   const std::string directive = "#include \"";
   while (std::getline(lines, line)) {
-    if (line.starts_with(directive)) out += with_includes(path.parent_path() / line.substr(directive.size(), line.find('"', directive.size()) - directive.size()));
-    else out += line + "\n";
+    if (line.starts_with(directive))
+      out +=
+          with_includes(path.parent_path() / line.substr(directive.size(), line.find('"', directive.size()) - directive.size()));
+    else
+      out += line + "\n";
   }
   return out;
 }

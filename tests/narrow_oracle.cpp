@@ -19,14 +19,22 @@ int pairs_wanted(int standard) {
 double preference(const Shape& a, const Shape& b) {
   return a.kind == ShapeKind::box && b.kind == ShapeKind::box ? 6e-3 * std::min(smallest(a), smallest(b)) : 0;
 }
-struct Worst { double normal = 0, separation = 0, degrees = 0; int missed = 0, ghosts = 0, broken = 0; };
+struct Worst {
+  double normal = 0, separation = 0, degrees = 0;
+  int missed = 0, ghosts = 0, broken = 0;
+};
 
-template <class M>
-void judge(const Shape& a, const Shape& b, const Bounds& known, const M& m, double margin, Worst& worst) {
+template <class M> void judge(const Shape& a, const Shape& b, const Bounds& known, const M& m, double margin, Worst& worst) {
   const double size = scale(a, b), slop = preference(a, b);
   const bool apart = known.high > 1e-7;
-  if (!finite(m)) { worst.broken++; return; }
-  if (m.count == 0) { worst.missed += (apart ? known.high : known.low) < margin - 1e-3 * size; return; }
+  if (!finite(m)) {
+    worst.broken++;
+    return;
+  }
+  if (m.count == 0) {
+    worst.missed += (apart ? known.high : known.low) < margin - 1e-3 * size;
+    return;
+  }
   worst.ghosts += known.low > margin + 1e-3 * size;
   const Vec3 n = 1 / length(normal(m)) * normal(m);
   const double along = separation_along(a, b, n), found = deepest(m);
@@ -35,7 +43,8 @@ void judge(const Shape& a, const Shape& b, const Bounds& known, const M& m, doub
   // the deepest point is as deep as the shapes are: along this normal, or at their distance
   const double off = apart ? std::max(found - known.high, known.low - found) : std::abs(found - along);
   worst.separation = std::max(worst.separation, (off - slop) / size);
-  if (known.low > 0.03 && known.high - known.low < 1e-5 * known.low && slop == 0) worst.degrees = std::max(worst.degrees, 57.29578 * std::acos(std::min(1.0, dot(n, known.normal))));
+  if (known.low > 0.03 && known.high - known.low < 1e-5 * known.low && slop == 0)
+    worst.degrees = std::max(worst.degrees, 57.29578 * std::acos(std::min(1.0, dot(n, known.normal))));
 }
 }  // namespace
 
@@ -91,7 +100,10 @@ TEST_CASE("narrow: never shallower than FCL, and as far apart") {
         place(b, (pairs.between(0.2, 1.1) * (reach(a, d) + reach(b, -d))) * d);
         const Manifold<double> m = find(a, b, 10);
         double oracle = 0;
-        if (!distance_fcl(a, b, oracle)) { gave_up++; continue; }
+        if (!distance_fcl(a, b, oracle)) {
+          gave_up++;
+          continue;
+        }
         const double found = deepest(m), size = scale(a, b), slop = preference(a, b) + 1e-4 * size;
         if (oracle > 1e-4 * size) {
           apart++;
@@ -104,7 +116,9 @@ TEST_CASE("narrow: never shallower than FCL, and as far apart") {
           deeper += found > oracle + 1e-2 * size;
         }
       }
-      MESSAGE(pair_name(ShapeKind(ka), ShapeKind(kb)), ": ", apart, " apart, ", equal, " of them equal; ", overlapping, " overlapping, FCL's way out longer by over 1 % in ", deeper, ", ours in ", shallower, "; FCL gave up on ", gave_up);
+      MESSAGE(pair_name(ShapeKind(ka), ShapeKind(kb)), ": ", apart, " apart, ", equal, " of them equal; ", overlapping,
+              " overlapping, FCL's way out longer by over 1 % in ", deeper, ", ours in ", shallower, "; FCL gave up on ",
+              gave_up);
       CHECK(far_off <= apart / 1000);
       CHECK(shallower <= overlapping / 1000);
     }

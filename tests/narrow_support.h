@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include "fcl/fcl_narrow.h"
 #include "collision/narrow.h"
+#include "fcl/fcl_narrow.h"
 
 namespace narrow_test {
 using namespace pcphys;
@@ -24,15 +24,25 @@ inline Quat turn(const Shape& s) { return {s.q[0], s.q[1], s.q[2], s.q[3]}; }
 inline Shape shape(ShapeKind kind, Vec3 size, Vec3 p = {}, Quat q = {}) {
   return {kind, {size.x, size.y, size.z}, {p.x, p.y, p.z}, {q.x, q.y, q.z, q.w}};
 }
-inline void move(Shape& s, Vec3 d) { s.p[0] += d.x; s.p[1] += d.y; s.p[2] += d.z; }
-inline void place(Shape& s, Vec3 p) { s.p[0] = p.x; s.p[1] = p.y; s.p[2] = p.z; }
+inline void move(Shape& s, Vec3 d) {
+  s.p[0] += d.x;
+  s.p[1] += d.y;
+  s.p[2] += d.z;
+}
+inline void place(Shape& s, Vec3 p) {
+  s.p[0] = p.x;
+  s.p[1] = p.y;
+  s.p[2] = p.z;
+}
 inline Shape turned(Shape s, Quat q, Vec3 shift) {
   const Vec3 p = rotate(q, centre(s)) + shift;
   const Quat r = q * turn(s);
   return shape(s.kind, vec(s.size), p, r);
 }
 inline ShapeView<float> to_float(const Shape& s) {
-  return {s.kind, {float(s.size[0]), float(s.size[1]), float(s.size[2])}, {float(s.p[0]), float(s.p[1]), float(s.p[2])},
+  return {s.kind,
+          {float(s.size[0]), float(s.size[1]), float(s.size[2])},
+          {float(s.p[0]), float(s.p[1]), float(s.p[2])},
           {float(s.q[0]), float(s.q[1]), float(s.q[2]), float(s.q[3])}};
 }
 inline Shape to_double(const ShapeView<float>& s) {
@@ -41,7 +51,9 @@ inline Shape to_double(const ShapeView<float>& s) {
   return {s.kind, {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, {n * q.x, n * q.y, n * q.z, n * q.w}};
 }
 template <class S> Vec3 normal(const Manifold<S>& m) { return {double(m.normal[0]), double(m.normal[1]), double(m.normal[2])}; }
-template <class S> Vec3 point(const Manifold<S>& m, std::uint32_t i) { return {double(m.points[i].p[0]), double(m.points[i].p[1]), double(m.points[i].p[2])}; }
+template <class S> Vec3 point(const Manifold<S>& m, std::uint32_t i) {
+  return {double(m.points[i].p[0]), double(m.points[i].p[1]), double(m.points[i].p[2])};
+}
 template <class S> double deepest(const Manifold<S>& m) {
   double s = 1e30;
   for (std::uint32_t i = 0; i < m.count; i++) s = std::min(s, double(m.points[i].separation));
@@ -83,7 +95,10 @@ inline double separation_along(const Shape& a, const Shape& b, Vec3 n) {
   return dot(n, centre(b) - centre(a)) - reach(a, n) - reach(b, -n);
 }
 
-struct Best { double separation; Vec3 normal; };
+struct Best {
+  double separation;
+  Vec3 normal;
+};
 /// Largest separation over all normals: a spiral of directions, then the best few refined at random.
 inline Best brute_force(const Shape& a, const Shape& b) {
   constexpr int directions = 200, starts = 4;
@@ -93,7 +108,8 @@ inline Best brute_force(const Shape& a, const Shape& b) {
     const Vec3 n{r * std::cos(t), y, r * std::sin(t)};
     tried[std::size_t(i)] = {separation_along(a, b, n), n};
   }
-  std::partial_sort(tried.begin(), tried.begin() + starts, tried.end(), [](const auto& x, const auto& y) { return x.first > y.first; });
+  std::partial_sort(tried.begin(), tried.begin() + starts, tried.end(),
+                    [](const auto& x, const auto& y) { return x.first > y.first; });
   std::mt19937 random(7);
   std::uniform_real_distribution<double> one(-1, 1);
   Best best{-1e30, {}};
@@ -104,8 +120,15 @@ inline Best brute_force(const Shape& a, const Shape& b) {
       Vec3 c = n + step * Vec3{one(random), one(random), one(random)};
       c = 1 / length(c) * c;
       const double t = separation_along(a, b, c);
-      if (t > s) { s = t; n = c; missed = 0; step *= 1.3; }
-      else if (++missed > 12) { step *= 0.5; missed = 0; }
+      if (t > s) {
+        s = t;
+        n = c;
+        missed = 0;
+        step *= 1.3;
+      } else if (++missed > 12) {
+        step *= 0.5;
+        missed = 0;
+      }
     }
     if (s > best.separation) best = {s, n};
   }
@@ -122,7 +145,8 @@ inline Vec3 nearest(const Shape& s, Vec3 x) {
   };
   if (s.kind == ShapeKind::sphere) l = shrink({}, s.size[0]);
   if (s.kind == ShapeKind::capsule) l = shrink({0, std::clamp(l.y, -s.size[1], s.size[1]), 0}, s.size[0]);
-  if (s.kind == ShapeKind::box) l = {std::clamp(l.x, -s.size[0], s.size[0]), std::clamp(l.y, -s.size[1], s.size[1]), std::clamp(l.z, -s.size[2], s.size[2])};
+  if (s.kind == ShapeKind::box)
+    l = {std::clamp(l.x, -s.size[0], s.size[0]), std::clamp(l.y, -s.size[1], s.size[1]), std::clamp(l.z, -s.size[2], s.size[2])};
   if (s.kind == ShapeKind::cylinder) {
     const double rho = std::hypot(l.x, l.z), k = rho > s.size[0] ? s.size[0] / rho : 1;
     l = {k * l.x, std::clamp(l.y, -s.size[1], s.size[1]), k * l.z};
@@ -136,17 +160,30 @@ inline Best alternating(const Shape& a, const Shape& b) {
   for (int i = 0; i < 400; i++) {
     const Vec3 next = nearest(a, y);
     Vec3 ahead = nearest(a, x + stride * (next - x)), b1 = nearest(b, ahead), b2 = nearest(b, next);
-    if (length(b1 - ahead) <= length(b2 - next)) { x = ahead; y = b1; stride *= 1.5; }
-    else { x = next; y = b2; stride = 1; }
+    if (length(b1 - ahead) <= length(b2 - next)) {
+      x = ahead;
+      y = b1;
+      stride *= 1.5;
+    } else {
+      x = next;
+      y = b2;
+      stride = 1;
+    }
     const double d = length(y - x);
-    if (d < 1e-12 || (i > 30 && best - d < 1e-15)) { best = std::min(best, d); break; }
+    if (d < 1e-12 || (i > 30 && best - d < 1e-15)) {
+      best = std::min(best, d);
+      break;
+    }
     best = std::min(best, d);
   }
   return {best, best > 0 ? 1 / length(y - x) * (y - x) : Vec3{}};
 }
 
 /// What is known of the signed distance: at least `low`, and at most `high` when the shapes are apart.
-struct Bounds { double low, high; Vec3 normal; };
+struct Bounds {
+  double low, high;
+  Vec3 normal;
+};
 inline Bounds bounds(const Shape& a, const Shape& b) {
   const Best apart = alternating(a, b);
   if (apart.separation > 1e-7) {
@@ -159,9 +196,10 @@ inline Bounds bounds(const Shape& a, const Shape& b) {
 
 // ---- random pairs ------------------------------------------------------------------------------------------
 enum class Stratum { anywhere, near_touching, deep, parallel, aligned, coincident, uneven };
-inline const std::array<Stratum, 7> strata{Stratum::anywhere, Stratum::near_touching, Stratum::deep,   Stratum::parallel,
+inline const std::array<Stratum, 7> strata{Stratum::anywhere, Stratum::near_touching, Stratum::deep,  Stratum::parallel,
                                            Stratum::aligned,  Stratum::coincident,    Stratum::uneven};
-inline const std::array<const char*, 7> stratum_names{"anywhere", "near_touching", "deep", "parallel", "aligned", "coincident", "uneven"};
+inline const std::array<const char*, 7> stratum_names{"anywhere", "near_touching", "deep",  "parallel",
+                                                      "aligned",  "coincident",    "uneven"};
 
 inline double smallest(const Shape& s) {
   switch (s.kind) {
@@ -196,7 +234,9 @@ class Pairs {
   Quat rotation() { return axis_angle(direction(), between(0, 3.14159265)); }
   Shape random_shape(ShapeKind kind) {
     const auto s = [&] { return between(0.1, 0.5); };
-    const Vec3 size = kind == ShapeKind::sphere ? Vec3{s(), 0, 0} : kind == ShapeKind::box ? Vec3{s(), s(), s()} : Vec3{s(), s(), 0};
+    const Vec3 size = kind == ShapeKind::sphere ? Vec3{s(), 0, 0}
+                      : kind == ShapeKind::box  ? Vec3{s(), s(), s()}
+                                                : Vec3{s(), s(), 0};
     return shape(kind, size, {}, rotation());
   }
   std::pair<Shape, Shape> pair(ShapeKind ka, ShapeKind kb, Stratum stratum) {
@@ -206,7 +246,8 @@ class Pairs {
         if (kb == ShapeKind::box && between(0, 1) < 0.6) b.size[i] *= between(1, 200);
       if (kb == ShapeKind::capsule || kb == ShapeKind::cylinder) b.size[1] *= between(1, 50);
     }
-    if (stratum == Stratum::parallel) b = shape(kb, vec(b.size), {}, axis_angle(direction(), between(0, 1) < 0.5 ? 0 : std::pow(10, between(-7, -1))) * turn(a));
+    if (stratum == Stratum::parallel)
+      b = shape(kb, vec(b.size), {}, axis_angle(direction(), between(0, 1) < 0.5 ? 0 : std::pow(10, between(-7, -1))) * turn(a));
     if (stratum == Stratum::aligned) {
       a = shape(ka, vec(a.size));
       const double quarter = 1.57079632679489662 * std::floor(between(0, 4));
@@ -217,7 +258,10 @@ class Pairs {
       if (between(0, 1) < 0.5) b = shape(kb, vec(b.size), {}, turn(a));
       return {a, b};
     }
-    if (stratum == Stratum::deep) { place(b, ball(0.1)); return {a, b}; }
+    if (stratum == Stratum::deep) {
+      place(b, ball(0.1));
+      return {a, b};
+    }
     if (stratum == Stratum::uneven && kb == ShapeKind::box) {  // somewhere over one of its faces
       const int i = int(between(0, 2.999));
       Vec3 l{b.size[0] * between(-1, 1), b.size[1] * between(-1, 1), b.size[2] * between(-1, 1)};
@@ -232,7 +276,8 @@ class Pairs {
       const Bounds now = bounds(a, b);
       move(b, (want - now.low) * now.normal);
       if (k == 0 && stratum == Stratum::near_touching) move(b, 0.01 * now.normal);
-      if (k == 1 && stratum == Stratum::near_touching) move(b, (std::pow(10, between(-7, -2)) * (between(0, 1) < 0.5 ? -1 : 1)) * now.normal);
+      if (k == 1 && stratum == Stratum::near_touching)
+        move(b, (std::pow(10, between(-7, -2)) * (between(0, 1) < 0.5 ? -1 : 1)) * now.normal);
     }
     return {a, b};
   }

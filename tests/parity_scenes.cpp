@@ -15,10 +15,13 @@ struct Case {
   int count;
   int before;  // steps on the CPU until something touches, made before the comparison on GL begins
 };
-constexpr Case cases[] = {{"balls", 60, 70}, {"ragdolls", 8, 60}, {"pyramid", 20, 5}, {"chain", 20, 5}, {"door", 1, 35}, {"dominoes", 20, 40}, {"stack", 10, 5}};
+constexpr Case cases[] = {{"balls", 60, 70}, {"ragdolls", 8, 60},  {"pyramid", 20, 5}, {"chain", 20, 5},
+                          {"door", 1, 35},   {"dominoes", 20, 40}, {"stack", 10, 5}};
 constexpr int cpu_steps = 600, gl_steps = 120, gl_mixed_steps = 30;
 
-std::string text(const Case& c, Precision precision) { return std::string(c.scene) + " " + std::to_string(c.count) + (precision == Precision::f32 ? ", float" : ", double"); }
+std::string text(const Case& c, Precision precision) {
+  return std::string(c.scene) + " " + std::to_string(c.count) + (precision == Precision::f32 ? ", float" : ", double");
+}
 
 /// The hashes after the first, every 60th, and the last step: the first difference tells when.
 std::vector<std::uint64_t> hashes(const Case& c, Precision precision, const StepSettings& settings, int steps) {

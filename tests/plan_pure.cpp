@@ -1,7 +1,7 @@
 // Pins the plan as data: a pure function of what a world holds and of the settings, with a name and a reason
 // for all that is left out, kept from step to step, and printed whole.
-#include "support_world.h"
 #include "plan/plan.h"
+#include "support_world.h"
 
 using namespace worldtest;
 
@@ -144,20 +144,20 @@ TEST_CASE("left out: shapes that could never touch") {
   };
   CHECK(reason(plan_of([](World& w) { (void)must(w.create_body(ball({}))); }), "collision") == "no two shapes could ever touch");
   CHECK(reason(plan_of([](World& w) {
-          BodyDef def;
-          def.mass = 1;
-          def.moments = Vec3{1, 1, 1};
-          for (int i = 0; i < 3; i++) (void)must(w.create_body(def));
-        }),
+                 BodyDef def;
+                 def.mass = 1;
+                 def.moments = Vec3{1, 1, 1};
+                 for (int i = 0; i < 3; i++) (void)must(w.create_body(def));
+               }),
                "collision") == "no two shapes could ever touch");
   CHECK(reason(plan_of([](World& w) {
-          for (int i = 0; i < 3; i++) must(w.set_filter(must(w.create_body(ball({}))), {1, 0, 0}));
-        }),
+                 for (int i = 0; i < 3; i++) must(w.set_filter(must(w.create_body(ball({}))), {1, 0, 0}));
+               }),
                "collision") == "no two shapes could ever touch");
   CHECK(reason(plan_of([](World& w) {
-          (void)must(w.create_body(ball({})));
-          (void)must(w.create_body(ball({5, 0, 0})));
-        }),
+                 (void)must(w.create_body(ball({})));
+                 (void)must(w.create_body(ball({5, 0, 0})));
+               }),
                "collision") == "");
 }
 
@@ -213,7 +213,8 @@ TEST_CASE("the plan as text: a line an entry, each with its names, and what was 
     std::vector<std::string> lines;
     std::string text = to_text(plan);
     CHECK(text.back() == '\n');
-    for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1) lines.push_back(text.substr(at, end - at));
+    for (std::size_t at = 0, end; (end = text.find('\n', at)) != std::string::npos; at = end + 1)
+      lines.push_back(text.substr(at, end - at));
     REQUIRE(lines.size() == 2 + plan.entries.size() + plan.left_out.size());
     CHECK(lines[0] == "sub-steps " + std::to_string(s.substeps));
     const auto holds = [](const std::string& line, std::string_view word) { return line.find(word) != std::string::npos; };
@@ -231,7 +232,8 @@ TEST_CASE("the plan as text: a line an entry, each with its names, and what was 
       all &= line.ends_with("  B") == e.barrier;
       CHECK_MESSAGE(all, line);
     }
-    for (std::size_t i = 0; i < plan.left_out.size(); i++) CHECK(lines[2 + plan.entries.size() + i] == "left out: " + plan.left_out[i].what + ", since " + plan.left_out[i].why);
+    for (std::size_t i = 0; i < plan.left_out.size(); i++)
+      CHECK(lines[2 + plan.entries.size() + i] == "left out: " + plan.left_out[i].what + ", since " + plan.left_out[i].why);
   });
 }
 

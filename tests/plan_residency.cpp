@@ -5,8 +5,8 @@
 #include <map>
 #include <set>
 
-#include "support_world.h"
 #include "plan/plan.h"
+#include "support_world.h"
 
 using namespace worldtest;
 
@@ -28,14 +28,15 @@ struct Holder {
 
 void follow(const PlanSignature& signature, const StepPlan& plan) {
   std::map<Buffer, Holder> holders;
-  std::map<Buffer, Place> homes;            // of the solver's scratch
-  std::set<Buffer> written, read;           // on GL since the last barrier
-  std::set<std::size_t> unused;             // transfers that nobody has used yet
+  std::map<Buffer, Place> homes;   // of the solver's scratch
+  std::set<Buffer> written, read;  // on GL since the last barrier
+  std::set<std::size_t> unused;    // transfers that nobody has used yet
   const auto here = [](Place p) { return std::size_t(p); };
 
   for (std::size_t i = 0; i < plan.entries.size(); i++) {
     const PlanEntry& e = plan.entries[i];
-    INFO("entry " << i << ": " << std::string(kernel_name(e)) << std::string(buffer_name(e)) << " on " << std::string(name(e.place)));
+    INFO("entry " << i << ": " << std::string(kernel_name(e)) << std::string(buffer_name(e)) << " on "
+                  << std::string(name(e.place)));
     CHECK(e.substep < std::max(signature.substeps, 1u));
     if (e.kind != PlanEntry::Kind::kernel) {
       CHECK((e.place == Place::gl) == (e.kind == PlanEntry::Kind::upload));
@@ -94,7 +95,8 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
     CHECK_MESSAGE(h.on[0], std::string(p.name) << " is not on the host after the step");
     if (const auto copy = h.copies.find(Place::cpu); copy != h.copies.end()) unused.erase(copy->second.entry);
   }
-  for (std::size_t i : unused) CHECK_MESSAGE(false, "transfer " << i << " of " << std::string(buffer_name(plan.entries[i])) << " is used by nobody");
+  for (std::size_t i : unused)
+    CHECK_MESSAGE(false, "transfer " << i << " of " << std::string(buffer_name(plan.entries[i])) << " is used by nobody");
 }
 
 template <class Visit> void for_all_needs(Visit&& visit) {
@@ -109,7 +111,8 @@ template <class Visit> void for_all_needs(Visit&& visit) {
         s.contacts = bits & 2;
         s.shapes |= s.contacts;
         s.restitution = bits & 4;
-        INFO(mix.text() << ", joints " << s.joints << ", contacts " << s.contacts << ", restitution " << s.restitution << ", sub-steps " << substeps);
+        INFO(mix.text() << ", joints " << s.joints << ", contacts " << s.contacts << ", restitution " << s.restitution
+                        << ", sub-steps " << substeps);
         visit(s);
       }
 }
@@ -137,8 +140,10 @@ TEST_CASE("all on gl: each buffer goes up at most once, and nothing comes down b
   bool coming_down = false;
   for (const PlanEntry& e : make_plan(s).entries) {
     if (e.kind == PlanEntry::Kind::upload) CHECK(up.insert(e.buffer).second);
-    if (e.kind == PlanEntry::Kind::download) coming_down = true;
-    else CHECK_FALSE(coming_down);
+    if (e.kind == PlanEntry::Kind::download)
+      coming_down = true;
+    else
+      CHECK_FALSE(coming_down);
   }
 }
 
@@ -163,7 +168,8 @@ TEST_CASE("the bytes of a step are those of its transfers") {
     SceneWorld s = scene_world("ragdolls", 1);
     Stepper stepper(mix.settings());
     run(s.world, stepper, 1);
-    const bool transfers = std::any_of(stepper.plan().entries.begin(), stepper.plan().entries.end(), [](const PlanEntry& e) { return e.kind != PlanEntry::Kind::kernel; });
+    const bool transfers = std::any_of(stepper.plan().entries.begin(), stepper.plan().entries.end(),
+                                       [](const PlanEntry& e) { return e.kind != PlanEntry::Kind::kernel; });
     const bool mixed_or_gl = std::any_of(mix.places.begin(), mix.places.end(), [](Place p) { return p == Place::gl; });
     const StepReport& report = stepper.step(s.world, frame);
     CHECK((report.transfer_bytes > 0) == transfers);

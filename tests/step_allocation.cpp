@@ -15,8 +15,10 @@ std::size_t allocations = 0;
 void* counted(std::size_t size, std::size_t alignment) {
   if (counting) allocations++;
   void* p = nullptr;
-  if (alignment <= alignof(std::max_align_t)) p = std::malloc(size ? size : 1);
-  else if (posix_memalign(&p, alignment, size ? size : 1) != 0) p = nullptr;
+  if (alignment <= alignof(std::max_align_t))
+    p = std::malloc(size ? size : 1);
+  else if (posix_memalign(&p, alignment, size ? size : 1) != 0)
+    p = nullptr;
   return p;
 }
 void* counted_or_throw(std::size_t size, std::size_t alignment = 1) {
@@ -83,7 +85,8 @@ Count last_run(const char* name, int count, Precision precision, std::uint32_t w
 }
 
 void check_none(const char* name, int count, Precision precision, std::uint32_t width, int settle, int steps) {
-  INFO(std::string(name) << " " << count << ", " << std::string(precision == Precision::f32 ? "float" : "double") << ", lanes " << width << ", after " << settle << " steps");
+  INFO(std::string(name) << " " << count << ", " << std::string(precision == Precision::f32 ? "float" : "double") << ", lanes "
+                         << width << ", after " << settle << " steps");
   const Count c = last_run(name, count, precision, width, settle, steps);
   CHECK_MESSAGE(c.allocations == 0, c.allocations << " allocations, the first in step " << c.first);
   CHECK(c.memory_growth == 0);

@@ -52,8 +52,8 @@ TEST_CASE("report: counts of bodies, joints, pairs, contacts, points, colours, s
   CHECK(report->joints == 1);
   CHECK(report->pairs == 2);
   CHECK(report->contacts == 2);
-  CHECK(report->points == 5);  // four corners of the box, one of the ball
-  CHECK(report->colours == 1); // the two share only what is fixed
+  CHECK(report->points == 5);   // four corners of the box, one of the ball
+  CHECK(report->colours == 1);  // the two share only what is fixed
   CHECK(world.contact_count() == 2);
   CHECK(report->transfer_bytes == 0);
   CHECK(report->total_ms > 0);
@@ -79,7 +79,8 @@ TEST_CASE("a time step that is none is refused") {
   Stepper stepper;
   run(s.world, stepper, 3);
   for (double dt : {0.0, -1.0, std::nan(""), double(INFINITY), -double(INFINITY), -0.0})
-    CHECK_REFUSED(s.world, step_status(stepper, s.world, dt), ErrorCode::bad_time_step, "it must be finite and above zero. The world is as it was.");
+    CHECK_REFUSED(s.world, step_status(stepper, s.world, dt), ErrorCode::bad_time_step,
+                  "it must be finite and above zero. The world is as it was.");
 }
 
 TEST_CASE("settings that are refused, by a step and by configure") {
@@ -89,14 +90,17 @@ TEST_CASE("settings that are refused, by a step and by configure") {
     const char* words;
   };
   const Case cases[] = {
-      {with([](StepSettings& s) { s.substeps = 0; }), ErrorCode::bad_time_step, "The number of sub-steps is 0; it must lie between 1 and 1000."},
+      {with([](StepSettings& s) { s.substeps = 0; }), ErrorCode::bad_time_step,
+       "The number of sub-steps is 0; it must lie between 1 and 1000."},
       {with([](StepSettings& s) { s.substeps = 1001; }), ErrorCode::bad_time_step, "The number of sub-steps is 1001"},
-      {with([](StepSettings& s) { s.threads = 2; }), ErrorCode::unavailable, "More than one thread is not there yet; set threads to 1."},
+      {with([](StepSettings& s) { s.threads = 2; }), ErrorCode::unavailable,
+       "More than one thread is not there yet; set threads to 1."},
       {with([](StepSettings& s) { s.threads = 0; }), ErrorCode::unavailable, "set threads to 1"},
       {with([](StepSettings& s) { s.lanes = 3; }), ErrorCode::unavailable, "lanes"},
       {with([](StepSettings& s) { s.push_speed = std::nan(""); }), ErrorCode::bad_argument, "must be finite and not below zero."},
       {with([](StepSettings& s) { s.push_speed = -1; }), ErrorCode::bad_argument, "must be finite and not below zero."},
-      {with([](StepSettings& s) { s.restitution_threshold = -1; }), ErrorCode::bad_argument, "must be finite and not below zero."},
+      {with([](StepSettings& s) { s.restitution_threshold = -1; }), ErrorCode::bad_argument,
+       "must be finite and not below zero."},
       {with([](StepSettings& s) { s.contact_margin = INFINITY; }), ErrorCode::bad_argument, "must be finite and not below zero."},
   };
   for (const Case& c : cases) {
@@ -118,7 +122,9 @@ TEST_CASE("settings that are refused, by a step and by configure") {
 TEST_CASE("lanes that a precision does not have, and devices that are not there") {
   SceneWorld f64 = scene_world("stack", 2, Precision::f64), f32 = scene_world("stack", 2);
   Stepper eight(lanes(8));
-  CHECK_REFUSED(f64.world, step_status(eight, f64.world), ErrorCode::unavailable, "There are no kernels of 8 lanes in double (1 or 4 with AVX2) for this processor; use lanes 0 for the widest it has.");
+  CHECK_REFUSED(
+      f64.world, step_status(eight, f64.world), ErrorCode::unavailable,
+      "There are no kernels of 8 lanes in double (1 or 4 with AVX2) for this processor; use lanes 0 for the widest it has.");
   CHECK(step_status(eight, f32.world));
   for (const Mix& mix : mixes()) {
     StepSettings s = mix.settings();
@@ -140,7 +146,8 @@ TEST_CASE("a host's context that is not there is refused, not replaced") {
   settings.set_all(Place::gl);
   settings.host_context = true;
   Stepper stepper(settings);
-  CHECK_REFUSED(s.world, step_status(stepper, s.world), ErrorCode::device_error, "No GL context is current on this thread; make the host's context current, or ask for a headless one.");
+  CHECK_REFUSED(s.world, step_status(stepper, s.world), ErrorCode::device_error,
+                "No GL context is current on this thread; make the host's context current, or ask for a headless one.");
 }
 
 TEST_CASE("FCL as the narrow phase is refused until it was asked for; then a scene stands, and native steps may follow") {
@@ -179,7 +186,8 @@ TEST_CASE("pairs: one more than there is room for is refused and says the number
       StepSettings settings;
       settings.max_pairs = capacity;
       Stepper stepper(settings);
-      CHECK_REFUSED(s.world, step_status(stepper, s.world), ErrorCode::buffer_full, "raise StepSettings::max_pairs, or spread the bodies. The world is as before the step.");
+      CHECK_REFUSED(s.world, step_status(stepper, s.world), ErrorCode::buffer_full,
+                    "raise StepSettings::max_pairs, or spread the bodies. The world is as before the step.");
       // "The scene has N [or fewer] pairs of shapes close together and room for M"
       const StepReport& report = stepper.step(s.world, frame);
       const std::string text = report.error.message;
@@ -211,7 +219,10 @@ TEST_CASE("configure takes effect at the next step, in the middle of a run") {
   Stepper stepper;
   run(s.world, stepper, 5);
   CHECK(stepper.plan().substeps == 4);
-  must(stepper.configure(with([](StepSettings& x) { x.substeps = 8; x.lanes = 1; })));
+  must(stepper.configure(with([](StepSettings& x) {
+    x.substeps = 8;
+    x.lanes = 1;
+  })));
   CHECK(stepper.plan().substeps == 4);
   run(s.world, stepper, 1);
   CHECK(stepper.plan().substeps == 8);
@@ -286,7 +297,8 @@ TEST_CASE("one stepper may serve several worlds in turn, cpu and gl, and worlds 
 
 TEST_CASE("one stepper may serve both precisions in turn") {
   Stepper shared;
-  SceneWorld f = scene_world("stack", 3), d = scene_world("stack", 3, Precision::f64), f_alone = scene_world("stack", 3), d_alone = scene_world("stack", 3, Precision::f64);
+  SceneWorld f = scene_world("stack", 3), d = scene_world("stack", 3, Precision::f64), f_alone = scene_world("stack", 3),
+             d_alone = scene_world("stack", 3, Precision::f64);
   for (int i = 0; i < 10; i++) {
     run(f.world, shared, 1);
     run(d.world, shared, 1);

@@ -23,7 +23,8 @@ std::vector<Mode> precisions() { return {{Precision::f64}, {Precision::f32}}; }
 std::vector<Mode> everywhere() {
   std::vector<Mode> modes = {{Precision::f64, Place::cpu, 1}, {Precision::f32, Place::cpu, 1}};
   // wider lanes where the processor has them
-  for (const Mode& wide : {Mode{Precision::f64, Place::cpu, 4}, Mode{Precision::f32, Place::cpu, 4}, Mode{Precision::f32, Place::cpu, 8}})
+  for (const Mode& wide :
+       {Mode{Precision::f64, Place::cpu, 4}, Mode{Precision::f32, Place::cpu, 4}, Mode{Precision::f32, Place::cpu, 8}})
     if (make_cpu_backend(wide.precision, wide.lanes)) modes.push_back(wide);
   modes.push_back({Precision::f64, Place::gl});
   modes.push_back({Precision::f32, Place::gl});
@@ -106,7 +107,9 @@ double angle_between(Quat a, Quat b) {
   return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
 }
 
-double order(double coarse_error, double fine_error, double dt_ratio) { return std::log(coarse_error / fine_error) / std::log(dt_ratio); }
+double order(double coarse_error, double fine_error, double dt_ratio) {
+  return std::log(coarse_error / fine_error) / std::log(dt_ratio);
+}
 
 // ---- conserved quantities ------------------------------------------------------------------------------
 
@@ -134,8 +137,8 @@ Momenta momenta_stored(const World& world) {
   for (BodyId id : world.bodies()) {
     if (*world.kind(id) != BodyKind::dynamic) continue;
     const std::uint32_t row = *world.row_of(id);
-    add(sum, world.mass_properties(id)->mass, world.pose(id)->position, {velocity.at(row, 0), velocity.at(row, 1), velocity.at(row, 2)},
-        {spin.at(row, 0), spin.at(row, 1), spin.at(row, 2)});
+    add(sum, world.mass_properties(id)->mass, world.pose(id)->position,
+        {velocity.at(row, 0), velocity.at(row, 1), velocity.at(row, 2)}, {spin.at(row, 0), spin.at(row, 1), spin.at(row, 2)});
   }
   return sum;
 }

@@ -56,7 +56,8 @@ void run(World& world, Stepper& stepper, int steps, double dt) {
 
 void require_gl() {
   const GlReport report = probe_gl(-1);
-  if (!report.usable) FAIL("The GL backend is needed by this test (scripts/install-dependencies brings llvmpipe): " << report.problem);
+  if (!report.usable)
+    FAIL("The GL backend is needed by this test (scripts/install-dependencies brings llvmpipe): " << report.problem);
   REQUIRE_MESSAGE(report.f32.parity(), "this device promises no parity in float");
   REQUIRE_MESSAGE(report.f64.parity(), "this device promises no parity in double");
 }
@@ -98,7 +99,8 @@ void check_refused(bool went_through, const Error& error, ErrorCode code, std::s
 
 std::vector<BodyState> states(const World& world, const std::vector<BodyId>& bodies) {
   std::vector<BodyState> all;
-  for (BodyId body : bodies) all.push_back({must(world.pose(body)), must(world.velocity(body)), must(world.angular_velocity(body))});
+  for (BodyId body : bodies)
+    all.push_back({must(world.pose(body)), must(world.velocity(body)), must(world.angular_velocity(body))});
   return all;
 }
 

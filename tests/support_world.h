@@ -62,11 +62,11 @@ struct Fingerprint {
 Fingerprint fingerprint(const World& world);
 
 /// Checks the error's code and message, and that the world is what it was.
-#define CHECK_REFUSED(world, call, expected_code, words)               \
-  do {                                                                 \
-    const auto before_call = worldtest::fingerprint(world);            \
-    const auto answer = (call);                                        \
-    worldtest::check_refused(bool(answer), answer ? Error{} : answer.error(), expected_code, words); \
+#define CHECK_REFUSED(world, call, expected_code, words)                                                         \
+  do {                                                                                                           \
+    const auto before_call = worldtest::fingerprint(world);                                                      \
+    const auto answer = (call);                                                                                  \
+    worldtest::check_refused(bool(answer), answer ? Error{} : answer.error(), expected_code, words);             \
     CHECK_MESSAGE((worldtest::fingerprint(world) == before_call), "the refused call changed the world: " #call); \
   } while (false)
 void check_refused(bool went_through, const Error& error, ErrorCode code, std::string_view words);

@@ -51,8 +51,9 @@ struct BadBody {
 }  // namespace
 
 TEST_CASE("names of error codes") {
-  const char* names[] = {"none", "not_finite", "bad_mass", "degenerate_shape", "not_unit_quaternion", "bad_time_step", "stale_id", "bad_joint",
-                         "bad_argument", "unknown_name", "unavailable", "buffer_full", "device_error", "bad_file", "bad_snapshot"};
+  const char* names[] = {"none",          "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion",
+                         "bad_time_step", "stale_id",    "bad_joint",    "bad_argument",     "unknown_name",
+                         "unavailable",   "buffer_full", "device_error", "bad_file",         "bad_snapshot"};
   for (int i = 0; i < int(std::size(names)); i++) CHECK(std::string(name(ErrorCode(i))) == names[i]);
   CHECK(int(ErrorCode::bad_snapshot) + 1 == int(std::size(names)));
 }
@@ -60,48 +61,114 @@ TEST_CASE("names of error codes") {
 TEST_CASE("create_body refuses") {
   Populated p;
   const BadBody cases[] = {
-      {"NaN position", [](BodyDef& d) { d.pose.position.y = not_a_number; }, ErrorCode::not_finite, "The position of a body is (0, nan, 0); every component must be finite"},
-      {"infinite position", [](BodyDef& d) { d.pose.position.z = -infinity; }, ErrorCode::not_finite, "The position of a body is (0, 0, -inf)"},
+      {"NaN position", [](BodyDef& d) { d.pose.position.y = not_a_number; }, ErrorCode::not_finite,
+       "The position of a body is (0, nan, 0); every component must be finite"},
+      {"infinite position", [](BodyDef& d) { d.pose.position.z = -infinity; }, ErrorCode::not_finite,
+       "The position of a body is (0, 0, -inf)"},
       {"position out of range", [](BodyDef& d) { d.pose.position.x = 1e16; }, ErrorCode::not_finite, "no larger than 1e+15"},
-      {"NaN orientation", [](BodyDef& d) { d.pose.orientation.x = not_a_number; }, ErrorCode::not_finite, "The orientation of a body holds NaN or infinity; give a unit quaternion"},
-      {"long orientation", [](BodyDef& d) { d.pose.orientation.w = 1.01; }, ErrorCode::not_unit_quaternion, "The orientation of a body has length 1.01; normalise it"},
+      {"NaN orientation", [](BodyDef& d) { d.pose.orientation.x = not_a_number; }, ErrorCode::not_finite,
+       "The orientation of a body holds NaN or infinity; give a unit quaternion"},
+      {"long orientation", [](BodyDef& d) { d.pose.orientation.w = 1.01; }, ErrorCode::not_unit_quaternion,
+       "The orientation of a body has length 1.01; normalise it"},
       {"zero orientation", [](BodyDef& d) { d.pose.orientation.w = 0; }, ErrorCode::not_unit_quaternion, "has length 0"},
-      {"NaN velocity", [](BodyDef& d) { d.velocity.x = not_a_number; }, ErrorCode::not_finite, "The velocity of a body is (nan, 0, 0)"},
-      {"NaN spin", [](BodyDef& d) { d.angular_velocity.x = not_a_number; }, ErrorCode::not_finite, "The angular velocity of a body is (nan, 0, 0)"},
-      {"NaN friction", [](BodyDef& d) { d.material.static_friction = not_a_number; }, ErrorCode::not_finite, "A coefficient of friction or restitution is not a number"},
-      {"infinite friction", [](BodyDef& d) { d.material.kinetic_friction = infinity; }, ErrorCode::not_finite, "A coefficient of friction or restitution is not a number"},
-      {"negative friction", [](BodyDef& d) { d.material.kinetic_friction = -0.1; }, ErrorCode::bad_argument, "A coefficient of friction is below zero; use 0 for none."},
-      {"negative restitution", [](BodyDef& d) { d.material.restitution = -0.5; }, ErrorCode::bad_argument, "The restitution is -0.5; it must lie between 0 (no bounce) and 1 (no loss)."},
-      {"restitution above one", [](BodyDef& d) { d.material.restitution = 1.5; }, ErrorCode::bad_argument, "The restitution is 1.5"},
+      {"NaN velocity", [](BodyDef& d) { d.velocity.x = not_a_number; }, ErrorCode::not_finite,
+       "The velocity of a body is (nan, 0, 0)"},
+      {"NaN spin", [](BodyDef& d) { d.angular_velocity.x = not_a_number; }, ErrorCode::not_finite,
+       "The angular velocity of a body is (nan, 0, 0)"},
+      {"NaN friction", [](BodyDef& d) { d.material.static_friction = not_a_number; }, ErrorCode::not_finite,
+       "A coefficient of friction or restitution is not a number"},
+      {"infinite friction", [](BodyDef& d) { d.material.kinetic_friction = infinity; }, ErrorCode::not_finite,
+       "A coefficient of friction or restitution is not a number"},
+      {"negative friction", [](BodyDef& d) { d.material.kinetic_friction = -0.1; }, ErrorCode::bad_argument,
+       "A coefficient of friction is below zero; use 0 for none."},
+      {"negative restitution", [](BodyDef& d) { d.material.restitution = -0.5; }, ErrorCode::bad_argument,
+       "The restitution is -0.5; it must lie between 0 (no bounce) and 1 (no loss)."},
+      {"restitution above one", [](BodyDef& d) { d.material.restitution = 1.5; }, ErrorCode::bad_argument,
+       "The restitution is 1.5"},
       {"NaN drag", [](BodyDef& d) { d.linear_drag = not_a_number; }, ErrorCode::not_finite, "The linear drag of a body is nan"},
-      {"infinite drag", [](BodyDef& d) { d.angular_drag = infinity; }, ErrorCode::not_finite, "The angular drag of a body is inf"},
-      {"negative drag", [](BodyDef& d) { d.angular_drag = -1; }, ErrorCode::bad_argument, "A drag is below zero; use 0 for none."},
-      {"NaN radius", [](BodyDef& d) { d.shapes[0].size.x = not_a_number; }, ErrorCode::not_finite, "The radius of a shape is not a number"},
-      {"zero radius", [](BodyDef& d) { d.shapes[0].size.x = 0; }, ErrorCode::degenerate_shape, "The radius of a shape is 0 m; it must lie between 1e-05 and 1e+06 m."},
-      {"negative radius", [](BodyDef& d) { d.shapes[0].size.x = -1; }, ErrorCode::degenerate_shape, "The radius of a shape is -1 m"},
-      {"huge radius", [](BodyDef& d) { d.shapes[0].size.x = 2e6; }, ErrorCode::degenerate_shape, "The radius of a shape is 2e+06 m"},
-      {"flat box x", [](BodyDef& d) { d.shapes[0] = ShapeDef::box({0, 1, 1}); }, ErrorCode::degenerate_shape, "The half extent x of a shape is 0 m"},
-      {"flat box y", [](BodyDef& d) { d.shapes[0] = ShapeDef::box({1, 0, 1}); }, ErrorCode::degenerate_shape, "The half extent y of a shape is 0 m"},
-      {"flat box z", [](BodyDef& d) { d.shapes[0] = ShapeDef::box({1, 1, 0}); }, ErrorCode::degenerate_shape, "The half extent z of a shape is 0 m"},
-      {"flat cylinder", [](BodyDef& d) { d.shapes[0] = ShapeDef::cylinder(1, 0); }, ErrorCode::degenerate_shape, "The half length of a shape is 0 m"},
-      {"flat capsule", [](BodyDef& d) { d.shapes[0] = ShapeDef::capsule(1, 0); }, ErrorCode::degenerate_shape, "The half length of a shape is 0 m"},
-      {"unknown shape", [](BodyDef& d) { d.shapes[0].kind = ShapeKind(9); }, ErrorCode::bad_argument, "A shape is of no known kind"},
-      {"shape at NaN", [](BodyDef& d) { d.shapes[0].local.position.x = not_a_number; }, ErrorCode::not_finite, "The local position of a shape is (nan, 0, 0)"},
-      {"shape turned wrongly", [](BodyDef& d) { d.shapes[0].local.orientation.w = 2; }, ErrorCode::not_unit_quaternion, "The local orientation of a shape has length 2"},
-      {"moving plane", [](BodyDef& d) { d.shapes[0] = ShapeDef::plane(); }, ErrorCode::degenerate_shape, "A plane is infinite; use it on fixed bodies only."},
-      {"kinematic plane", [](BodyDef& d) { d.kind = BodyKind::kinematic; d.shapes[0] = ShapeDef::plane(); }, ErrorCode::degenerate_shape, "A plane is infinite"},
-      {"zero density", [](BodyDef& d) { d.density = 0; }, ErrorCode::bad_mass, "A density must be above zero and finite; it is 0.0"},
-      {"NaN density", [](BodyDef& d) { d.density = not_a_number; }, ErrorCode::bad_mass, "A density must be above zero and finite"},
-      {"zero mass", [](BodyDef& d) { d.mass = 0; }, ErrorCode::bad_mass, "The mass is 0 kg; a dynamic body's must be above zero. Use BodyKind::fixed"},
+      {"infinite drag", [](BodyDef& d) { d.angular_drag = infinity; }, ErrorCode::not_finite,
+       "The angular drag of a body is inf"},
+      {"negative drag", [](BodyDef& d) { d.angular_drag = -1; }, ErrorCode::bad_argument,
+       "A drag is below zero; use 0 for none."},
+      {"NaN radius", [](BodyDef& d) { d.shapes[0].size.x = not_a_number; }, ErrorCode::not_finite,
+       "The radius of a shape is not a number"},
+      {"zero radius", [](BodyDef& d) { d.shapes[0].size.x = 0; }, ErrorCode::degenerate_shape,
+       "The radius of a shape is 0 m; it must lie between 1e-05 and 1e+06 m."},
+      {"negative radius", [](BodyDef& d) { d.shapes[0].size.x = -1; }, ErrorCode::degenerate_shape,
+       "The radius of a shape is -1 m"},
+      {"huge radius", [](BodyDef& d) { d.shapes[0].size.x = 2e6; }, ErrorCode::degenerate_shape,
+       "The radius of a shape is 2e+06 m"},
+      {"flat box x",
+       [](BodyDef& d) {
+         d.shapes[0] = ShapeDef::box({0, 1, 1});
+       },
+       ErrorCode::degenerate_shape, "The half extent x of a shape is 0 m"},
+      {"flat box y",
+       [](BodyDef& d) {
+         d.shapes[0] = ShapeDef::box({1, 0, 1});
+       },
+       ErrorCode::degenerate_shape, "The half extent y of a shape is 0 m"},
+      {"flat box z",
+       [](BodyDef& d) {
+         d.shapes[0] = ShapeDef::box({1, 1, 0});
+       },
+       ErrorCode::degenerate_shape, "The half extent z of a shape is 0 m"},
+      {"flat cylinder", [](BodyDef& d) { d.shapes[0] = ShapeDef::cylinder(1, 0); }, ErrorCode::degenerate_shape,
+       "The half length of a shape is 0 m"},
+      {"flat capsule", [](BodyDef& d) { d.shapes[0] = ShapeDef::capsule(1, 0); }, ErrorCode::degenerate_shape,
+       "The half length of a shape is 0 m"},
+      {"unknown shape", [](BodyDef& d) { d.shapes[0].kind = ShapeKind(9); }, ErrorCode::bad_argument,
+       "A shape is of no known kind"},
+      {"shape at NaN", [](BodyDef& d) { d.shapes[0].local.position.x = not_a_number; }, ErrorCode::not_finite,
+       "The local position of a shape is (nan, 0, 0)"},
+      {"shape turned wrongly", [](BodyDef& d) { d.shapes[0].local.orientation.w = 2; }, ErrorCode::not_unit_quaternion,
+       "The local orientation of a shape has length 2"},
+      {"moving plane", [](BodyDef& d) { d.shapes[0] = ShapeDef::plane(); }, ErrorCode::degenerate_shape,
+       "A plane is infinite; use it on fixed bodies only."},
+      {"kinematic plane",
+       [](BodyDef& d) {
+         d.kind = BodyKind::kinematic;
+         d.shapes[0] = ShapeDef::plane();
+       },
+       ErrorCode::degenerate_shape, "A plane is infinite"},
+      {"zero density", [](BodyDef& d) { d.density = 0; }, ErrorCode::bad_mass,
+       "A density must be above zero and finite; it is 0.0"},
+      {"NaN density", [](BodyDef& d) { d.density = not_a_number; }, ErrorCode::bad_mass,
+       "A density must be above zero and finite"},
+      {"zero mass", [](BodyDef& d) { d.mass = 0; }, ErrorCode::bad_mass,
+       "The mass is 0 kg; a dynamic body's must be above zero. Use BodyKind::fixed"},
       {"negative mass", [](BodyDef& d) { d.mass = -2; }, ErrorCode::bad_mass, "The mass is -2 kg"},
-      {"NaN mass", [](BodyDef& d) { d.mass = not_a_number; }, ErrorCode::not_finite, "The mass or a moment of inertia is not a number"},
-      {"infinite mass", [](BodyDef& d) { d.mass = infinity; }, ErrorCode::not_finite, "The mass or a moment of inertia is not a number"},
-      {"moments alone", [](BodyDef& d) { d.moments = Vec3{1, 1, 1}; }, ErrorCode::bad_mass, "Moments of inertia are given without a mass; give both, or neither."},
-      {"zero moment", [](BodyDef& d) { d.mass = 1; d.moments = Vec3{1, 0, 1}; }, ErrorCode::bad_mass, "A moment of inertia is not above zero"},
-      {"NaN moment", [](BodyDef& d) { d.mass = 1; d.moments = Vec3{1, not_a_number, 1}; }, ErrorCode::not_finite, "The mass or a moment of inertia is not a number"},
-      {"impossible moments", [](BodyDef& d) { d.mass = 1; d.moments = Vec3{1, 1, 3}; }, ErrorCode::bad_mass, "The moments of inertia (1, 1, 3) belong to no body"},
-      {"no shape and no mass", [](BodyDef& d) { d.shapes.clear(); }, ErrorCode::bad_mass, "A dynamic body without shapes needs a mass and moments of inertia."},
-      {"several shapes", [](BodyDef& d) { d.shapes.push_back(d.shapes[0]); }, ErrorCode::bad_mass, "pass a body of several or displaced shapes through make_compound first"},
+      {"NaN mass", [](BodyDef& d) { d.mass = not_a_number; }, ErrorCode::not_finite,
+       "The mass or a moment of inertia is not a number"},
+      {"infinite mass", [](BodyDef& d) { d.mass = infinity; }, ErrorCode::not_finite,
+       "The mass or a moment of inertia is not a number"},
+      {"moments alone",
+       [](BodyDef& d) {
+         d.moments = Vec3{1, 1, 1};
+       },
+       ErrorCode::bad_mass, "Moments of inertia are given without a mass; give both, or neither."},
+      {"zero moment",
+       [](BodyDef& d) {
+         d.mass = 1;
+         d.moments = Vec3{1, 0, 1};
+       },
+       ErrorCode::bad_mass, "A moment of inertia is not above zero"},
+      {"NaN moment",
+       [](BodyDef& d) {
+         d.mass = 1;
+         d.moments = Vec3{1, not_a_number, 1};
+       },
+       ErrorCode::not_finite, "The mass or a moment of inertia is not a number"},
+      {"impossible moments",
+       [](BodyDef& d) {
+         d.mass = 1;
+         d.moments = Vec3{1, 1, 3};
+       },
+       ErrorCode::bad_mass, "The moments of inertia (1, 1, 3) belong to no body"},
+      {"no shape and no mass", [](BodyDef& d) { d.shapes.clear(); }, ErrorCode::bad_mass,
+       "A dynamic body without shapes needs a mass and moments of inertia."},
+      {"several shapes", [](BodyDef& d) { d.shapes.push_back(d.shapes[0]); }, ErrorCode::bad_mass,
+       "pass a body of several or displaced shapes through make_compound first"},
       {"displaced shape", [](BodyDef& d) { d.shapes[0].local.position.x = 1; }, ErrorCode::bad_mass, "make_compound"},
   };
   for (const BadBody& bad : cases) {
@@ -135,26 +202,34 @@ TEST_CASE("set functions refuse") {
   CHECK_REFUSED(w, w.set_pose(p.a, {{}, {0, 0, 0, 2}}), ErrorCode::not_unit_quaternion, "The orientation of a body has length 2");
   CHECK_REFUSED(w, w.set_pose(p.a, {{}, {not_a_number, 0, 0, 1}}), ErrorCode::not_finite, "The orientation of a body holds NaN");
   CHECK_REFUSED(w, w.set_velocity(p.a, {not_a_number, 0, 0}), ErrorCode::not_finite, "The velocity of a body is (nan, 0, 0)");
-  CHECK_REFUSED(w, w.set_velocity(p.fixed, {1, 0, 0}), ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it.");
-  CHECK_REFUSED(w, w.set_angular_velocity(p.a, {0, 0, infinity}), ErrorCode::not_finite, "The angular velocity of a body is (0, 0, inf)");
-  CHECK_REFUSED(w, w.set_angular_velocity(p.fixed, {}), ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it.");
-  CHECK_REFUSED(w, w.set_position_last(p.a, {not_a_number, 0, 0}), ErrorCode::not_finite, "The last position of a body is (nan, 0, 0)");
+  CHECK_REFUSED(w, w.set_velocity(p.fixed, {1, 0, 0}), ErrorCode::bad_argument,
+                "A fixed body has no velocity; make it kinematic to move it.");
+  CHECK_REFUSED(w, w.set_angular_velocity(p.a, {0, 0, infinity}), ErrorCode::not_finite,
+                "The angular velocity of a body is (0, 0, inf)");
+  CHECK_REFUSED(w, w.set_angular_velocity(p.fixed, {}), ErrorCode::bad_argument,
+                "A fixed body has no angular velocity; make it kinematic to turn it.");
+  CHECK_REFUSED(w, w.set_position_last(p.a, {not_a_number, 0, 0}), ErrorCode::not_finite,
+                "The last position of a body is (nan, 0, 0)");
   CHECK_REFUSED(w, w.set_position_last(p.fixed, {}), ErrorCode::bad_argument, "A fixed body has no last position");
-  CHECK_REFUSED(w, w.set_orientation_last(p.a, {0, 0, 0, 0}), ErrorCode::not_unit_quaternion, "The last orientation of a body has length 0");
+  CHECK_REFUSED(w, w.set_orientation_last(p.a, {0, 0, 0, 0}), ErrorCode::not_unit_quaternion,
+                "The last orientation of a body has length 0");
   CHECK_REFUSED(w, w.set_orientation_last(p.fixed, {}), ErrorCode::bad_argument, "A fixed body has no last orientation");
   CHECK_REFUSED(w, w.set_mass_properties(p.a, {0, {1, 1, 1}}), ErrorCode::bad_mass, "The mass is 0 kg");
   CHECK_REFUSED(w, w.set_mass_properties(p.a, {1, {1, 1, 5}}), ErrorCode::bad_mass, "belong to no body");
   CHECK_REFUSED(w, w.set_mass_properties(p.a, {not_a_number, {1, 1, 1}}), ErrorCode::not_finite, "not a number");
   CHECK_REFUSED(w, w.set_mass_properties(p.fixed, {1, {1, 1, 1}}), ErrorCode::bad_argument, "Only dynamic bodies have a mass.");
-  CHECK_REFUSED(w, w.set_mass_properties(p.kinematic, {1, {1, 1, 1}}), ErrorCode::bad_argument, "Only dynamic bodies have a mass.");
+  CHECK_REFUSED(w, w.set_mass_properties(p.kinematic, {1, {1, 1, 1}}), ErrorCode::bad_argument,
+                "Only dynamic bodies have a mass.");
   CHECK_REFUSED(w, w.set_material(p.a, {-1, 0, 0}), ErrorCode::bad_argument, "below zero");
   CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 2}), ErrorCode::bad_argument, "The restitution is 2");
   CHECK_REFUSED(w, w.set_drag(p.a, -1, 0), ErrorCode::bad_argument, "A drag is below zero; use 0 for none.");
   CHECK_REFUSED(w, w.set_drag(p.a, 0, not_a_number), ErrorCode::not_finite, "The angular drag of a body is nan");
-  CHECK_REFUSED(w, w.add_force(p.a, Wrench{{not_a_number, 0, 0}, {}}), ErrorCode::not_finite, "The force on a body is (nan, 0, 0)");
+  CHECK_REFUSED(w, w.add_force(p.a, Wrench{{not_a_number, 0, 0}, {}}), ErrorCode::not_finite,
+                "The force on a body is (nan, 0, 0)");
   CHECK_REFUSED(w, w.add_force(p.a, Wrench{{}, {0, infinity, 0}}), ErrorCode::not_finite, "The torque on a body is (0, inf, 0)");
   CHECK_REFUSED(w, w.add_force(p.a, ForceCallback{}), ErrorCode::bad_argument, "The force callback is empty; pass a function.");
-  CHECK_REFUSED(w, w.view("speed of light"), ErrorCode::unknown_name, "There is no property \"speed of light\"; docs/properties.md lists them.");
+  CHECK_REFUSED(w, w.view("speed of light"), ErrorCode::unknown_name,
+                "There is no property \"speed of light\"; docs/properties.md lists them.");
 }
 
 TEST_CASE("last positions need a step") {
@@ -174,17 +249,33 @@ TEST_CASE("create_joint refuses") {
     spoil(def);
     CHECK_REFUSED(p.world, p.world.create_joint(def), code, words);
   };
-  refused([&](JointDef& d) { d.b = d.a; }, ErrorCode::bad_joint, "A joint needs two different bodies; use the world's ground() to hold a body in place.");
+  refused([&](JointDef& d) { d.b = d.a; }, ErrorCode::bad_joint,
+          "A joint needs two different bodies; use the world's ground() to hold a body in place.");
   refused([&](JointDef& d) { d.a = p.fixed, d.b = p.kinematic; }, ErrorCode::bad_joint, "Neither body of the joint is dynamic");
-  refused([&](JointDef& d) { d.a = p.world.ground(), d.b = p.fixed; }, ErrorCode::bad_joint, "Neither body of the joint is dynamic");
-  refused([&](JointDef& d) { d.frame_a.position.x = not_a_number; }, ErrorCode::not_finite, "The pin of a joint in body a is (nan, 0, 0)");
-  refused([&](JointDef& d) { d.frame_b.position.x = infinity; }, ErrorCode::not_finite, "The pin of a joint in body b is (inf, 0, 0)");
-  refused([&](JointDef& d) { d.frame_a.orientation.w = 3; }, ErrorCode::not_unit_quaternion, "The frame of a joint in body a has length 3");
-  refused([&](JointDef& d) { d.frame_b.orientation.w = not_a_number; }, ErrorCode::not_finite, "The frame of a joint in body b holds NaN");
-  refused([&](JointDef& d) { d.freedom = AngleFreedom::cone_and_twist(-0.1, 0); }, ErrorCode::bad_joint, "The cone and twist of a joint must be zero or above [rad].");
-  refused([&](JointDef& d) { d.freedom = AngleFreedom::cone_and_twist(0, not_a_number); }, ErrorCode::bad_joint, "The cone and twist of a joint");
-  refused([&](JointDef& d) { d.freedom = AngleFreedom::between({0, 1, 0}, {0, 0, 0}); }, ErrorCode::bad_joint, "An angle limit of a joint has its lower bound above its upper one");
-  refused([&](JointDef& d) { d.freedom = AngleFreedom::between({0, 0, not_a_number}, {0, 0, 0}); }, ErrorCode::bad_joint, "or is not a number");
+  refused([&](JointDef& d) { d.a = p.world.ground(), d.b = p.fixed; }, ErrorCode::bad_joint,
+          "Neither body of the joint is dynamic");
+  refused([&](JointDef& d) { d.frame_a.position.x = not_a_number; }, ErrorCode::not_finite,
+          "The pin of a joint in body a is (nan, 0, 0)");
+  refused([&](JointDef& d) { d.frame_b.position.x = infinity; }, ErrorCode::not_finite,
+          "The pin of a joint in body b is (inf, 0, 0)");
+  refused([&](JointDef& d) { d.frame_a.orientation.w = 3; }, ErrorCode::not_unit_quaternion,
+          "The frame of a joint in body a has length 3");
+  refused([&](JointDef& d) { d.frame_b.orientation.w = not_a_number; }, ErrorCode::not_finite,
+          "The frame of a joint in body b holds NaN");
+  refused([&](JointDef& d) { d.freedom = AngleFreedom::cone_and_twist(-0.1, 0); }, ErrorCode::bad_joint,
+          "The cone and twist of a joint must be zero or above [rad].");
+  refused([&](JointDef& d) { d.freedom = AngleFreedom::cone_and_twist(0, not_a_number); }, ErrorCode::bad_joint,
+          "The cone and twist of a joint");
+  refused(
+      [&](JointDef& d) {
+        d.freedom = AngleFreedom::between({0, 1, 0}, {0, 0, 0});
+      },
+      ErrorCode::bad_joint, "An angle limit of a joint has its lower bound above its upper one");
+  refused(
+      [&](JointDef& d) {
+        d.freedom = AngleFreedom::between({0, 0, not_a_number}, {0, 0, 0});
+      },
+      ErrorCode::bad_joint, "or is not a number");
 }
 
 TEST_CASE("create_ragdoll refuses, whole") {
@@ -196,22 +287,32 @@ TEST_CASE("create_ragdoll refuses, whole") {
     spoil(def, pose, velocity);
     CHECK_REFUSED(p.world, p.world.create_ragdoll(def, pose, velocity), code, words);
   };
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[5].parent = 7; }, ErrorCode::bad_joint, "Bone 5 of a ragdoll must have a parent that stands before it.");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[5].parent = 7; }, ErrorCode::bad_joint,
+          "Bone 5 of a ragdoll must have a parent that stands before it.");
   refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[3].parent = -1; }, ErrorCode::bad_joint, "Bone 3 of a ragdoll");
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].shape.size.x = 0; }, ErrorCode::degenerate_shape, "The radius of a shape is 0 m");
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].joint.x = not_a_number; }, ErrorCode::not_finite, "The pin of a joint in body a");
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].joint_axes.w = 5; }, ErrorCode::not_unit_quaternion, "The frame of a joint in body a");
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].pose.position.y = infinity; }, ErrorCode::not_finite, "The position of a body");
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].freedom = AngleFreedom::cone_and_twist(-1, 0); }, ErrorCode::bad_joint, "The cone and twist");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].shape.size.x = 0; }, ErrorCode::degenerate_shape,
+          "The radius of a shape is 0 m");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].joint.x = not_a_number; }, ErrorCode::not_finite,
+          "The pin of a joint in body a");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].joint_axes.w = 5; }, ErrorCode::not_unit_quaternion,
+          "The frame of a joint in body a");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].pose.position.y = infinity; }, ErrorCode::not_finite,
+          "The position of a body");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].freedom = AngleFreedom::cone_and_twist(-1, 0); }, ErrorCode::bad_joint,
+          "The cone and twist");
   refused([](RagdollDef& d, Pose&, Vec3&) { d.density = 0; }, ErrorCode::bad_mass, "A density must be above zero");
   refused([](RagdollDef& d, Pose&, Vec3&) { d.material.restitution = 3; }, ErrorCode::bad_argument, "The restitution is 3");
-  refused([](RagdollDef&, Pose& pose, Vec3&) { pose.position.x = not_a_number; }, ErrorCode::not_finite, "The position of a body");
-  refused([](RagdollDef&, Pose& pose, Vec3&) { pose.orientation.w = 0; }, ErrorCode::not_unit_quaternion, "The orientation of a ragdoll has length 0");
+  refused([](RagdollDef&, Pose& pose, Vec3&) { pose.position.x = not_a_number; }, ErrorCode::not_finite,
+          "The position of a body");
+  refused([](RagdollDef&, Pose& pose, Vec3&) { pose.orientation.w = 0; }, ErrorCode::not_unit_quaternion,
+          "The orientation of a ragdoll has length 0");
   refused([](RagdollDef&, Pose&, Vec3& velocity) { velocity.z = not_a_number; }, ErrorCode::not_finite, "The velocity of a body");
 }
 
 TEST_CASE("mass_properties and make_compound refuse") {
-  const auto refused = [](const auto& answer, ErrorCode code, const char* words) { check_refused(bool(answer), answer ? Error{} : answer.error(), code, words); };
+  const auto refused = [](const auto& answer, ErrorCode code, const char* words) {
+    check_refused(bool(answer), answer ? Error{} : answer.error(), code, words);
+  };
   refused(mass_properties(ShapeDef::sphere(0), 1), ErrorCode::degenerate_shape, "The radius of a shape is 0 m");
   refused(mass_properties(ShapeDef::sphere(1), 0), ErrorCode::bad_mass, "A density must be above zero");
   refused(mass_properties(ShapeDef::sphere(1), infinity), ErrorCode::bad_mass, "A density must be above zero");

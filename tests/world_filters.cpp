@@ -44,9 +44,9 @@ JointDef joint_between(BodyId a, BodyId b, bool collide = false) {
 TEST_CASE("filters: category and mask must agree both ways") {
   CHECK(with_filters({}, {}));
   CHECK(with_filters({1, 2, 0}, {2, 1, 0}));
-  CHECK_FALSE(with_filters({1, 1, 0}, {2, 1, 0}));   // a does not want b
-  CHECK_FALSE(with_filters({1, 2, 0}, {2, 2, 0}));   // b does not want a
-  CHECK(with_filters({6, 8, 0}, {8, 4, 0}));         // one common bit is enough
+  CHECK_FALSE(with_filters({1, 1, 0}, {2, 1, 0}));  // a does not want b
+  CHECK_FALSE(with_filters({1, 2, 0}, {2, 2, 0}));  // b does not want a
+  CHECK(with_filters({6, 8, 0}, {8, 4, 0}));        // one common bit is enough
   CHECK_FALSE(with_filters({0, 0xffffffffu, 0}, {1, 0xffffffffu, 0}));
   CHECK_FALSE(with_filters({1, 0, 0}, {1, 0xffffffffu, 0}));
 }

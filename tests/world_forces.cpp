@@ -38,7 +38,8 @@ TEST_CASE("constant forces: they add up, act, and go one by one") {
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     World world(WorldDef{precision, {}});
     const BodyId body = must(world.create_body(unit_body({}))), other = must(world.create_body(unit_body({10, 0, 0})));
-    const ForceId first = must(world.add_force(body, Wrench{{1, 0, 0}, {}})), second = must(world.add_force(body, Wrench{{1, 2, 0}, {0.5, 0, 0}}));
+    const ForceId first = must(world.add_force(body, Wrench{{1, 0, 0}, {}})),
+                  second = must(world.add_force(body, Wrench{{1, 2, 0}, {0.5, 0, 0}}));
     CHECK(stored(world, body, "force") == Vec3{2, 2, 0});
     CHECK(stored(world, body, "torque") == Vec3{0.5, 0, 0});
     CHECK(stored(world, other, "force") == Vec3{});
@@ -46,8 +47,8 @@ TEST_CASE("constant forces: they add up, act, and go one by one") {
     run(world, stepper, 60);
     const Vec3 v = must(world.velocity(body)), w = must(world.angular_velocity(body));
     const double tolerance = precision == Precision::f32 ? 1e-5 : 1e-12;
-    CHECK(length(v - Vec3{1, 1, 0}) < tolerance);   // F t / m
-    CHECK(length(w - Vec3{0.5, 0, 0}) < tolerance); // T t / I
+    CHECK(length(v - Vec3{1, 1, 0}) < tolerance);    // F t / m
+    CHECK(length(w - Vec3{0.5, 0, 0}) < tolerance);  // T t / I
     CHECK(length(must(world.pose(body)).position - Vec3{0.5, 0.5, 0}) < tolerance);
     CHECK(must(world.velocity(other)) == Vec3{});
     must(world.remove(first));
@@ -162,7 +163,9 @@ TEST_CASE("a callback that is not finite: a named error, and the world as it was
   const BodyId a = must(world.create_body(unit_body({}))), b = must(world.create_body(unit_body({3, 0, 0})));
   bool broken = false;
   (void)must(world.add_force(a, [&](const World&, BodyId) { return Wrench{{broken ? 7.0 : 1.0, 0, 0}, {}}; }));
-  (void)must(world.add_force(b, [&](const World&, BodyId) { return Wrench{{broken ? std::nan("") : 1.0, 0, 0}, {0, broken ? 1.0 : 0, 0}}; }));
+  (void)must(world.add_force(b, [&](const World&, BodyId) {
+    return Wrench{{broken ? std::nan("") : 1.0, 0, 0}, {0, broken ? 1.0 : 0, 0}};
+  }));
   Stepper stepper;
   run(world, stepper, 2);
   broken = true;

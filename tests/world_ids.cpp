@@ -59,11 +59,14 @@ TEST_CASE("ids: what happens in between, steps included, does not matter") {
       if (busy) run(world, stepper, 1);
       if (busy) CHECK_FALSE(world.create_body(ball({}, -1)));
       if (i % 3 == 2) must(world.destroy(ids[std::size_t(i) - 1]));
-      if (busy) CHECK_FALSE(world.create_ragdoll([] {
-        RagdollDef def = RagdollDef::human();
-        def.bones.back().shape.size.x = -1;
-        return def;
-      }(), {}));
+      if (busy)
+        CHECK_FALSE(world.create_ragdoll(
+            [] {
+              RagdollDef def = RagdollDef::human();
+              def.bones.back().shape.size.x = -1;
+              return def;
+            }(),
+            {}));
     }
     return world.bodies();
   };
@@ -212,7 +215,8 @@ TEST_CASE("destroying joints: the others keep their data, whatever row they move
 
 TEST_CASE("destroying a body takes its joints, forces, shapes and collision exceptions along") {
   World world = empty();
-  const BodyId a = must(world.create_body(numbered(1))), b = must(world.create_body(numbered(2))), c = must(world.create_body(numbered(3)));
+  const BodyId a = must(world.create_body(numbered(1))), b = must(world.create_body(numbered(2))),
+               c = must(world.create_body(numbered(3)));
   JointDef def;
   def.a = a;
   def.b = b;
@@ -263,7 +267,8 @@ TEST_CASE("the ground stands at the origin and stays") {
   CHECK(world.body_count() == 0);
   CHECK(world.bodies().empty());
   CHECK_REFUSED(world, world.destroy(world.ground()), ErrorCode::bad_argument, "The ground cannot be destroyed.");
-  CHECK_REFUSED(world, world.set_pose(world.ground(), {{1, 0, 0}, {}}), ErrorCode::bad_argument, "The ground stays at the origin; create a fixed body for anything else.");
+  CHECK_REFUSED(world, world.set_pose(world.ground(), {{1, 0, 0}, {}}), ErrorCode::bad_argument,
+                "The ground stays at the origin; create a fixed body for anything else.");
   CHECK_REFUSED(world, world.set_velocity(world.ground(), {1, 0, 0}), ErrorCode::bad_argument, "A fixed body has no velocity");
   const BodyId body = must(world.create_body(ball({1, 2, 3})));
   JointDef def;

@@ -57,22 +57,31 @@ Eigen::Matrix3d world_inertia(const BodyDef& def) {
 
 TEST_CASE("mass properties: closed forms") {
   const double rho = 800;
-  check_near(must(mass_properties(ShapeDef::sphere(0.3), rho)), {rho * 4 / 3 * pi * 0.027, {0.4 * 0.09 * rho * 4 / 3 * pi * 0.027, 0.4 * 0.09 * rho * 4 / 3 * pi * 0.027, 0.4 * 0.09 * rho * 4 / 3 * pi * 0.027}}, 1e-14);
+  check_near(
+      must(mass_properties(ShapeDef::sphere(0.3), rho)),
+      {rho * 4 / 3 * pi * 0.027,
+       {0.4 * 0.09 * rho * 4 / 3 * pi * 0.027, 0.4 * 0.09 * rho * 4 / 3 * pi * 0.027, 0.4 * 0.09 * rho * 4 / 3 * pi * 0.027}},
+      1e-14);
   const double box = rho * 0.2 * 0.4 * 0.6;
-  check_near(must(mass_properties(ShapeDef::box({0.1, 0.2, 0.3}), rho)), {box, {box / 12 * (0.16 + 0.36), box / 12 * (0.04 + 0.36), box / 12 * (0.04 + 0.16)}}, 1e-14);
+  check_near(must(mass_properties(ShapeDef::box({0.1, 0.2, 0.3}), rho)),
+             {box, {box / 12 * (0.16 + 0.36), box / 12 * (0.04 + 0.36), box / 12 * (0.04 + 0.16)}}, 1e-14);
   const double cylinder = rho * pi * 0.04 * 1.0, across = cylinder / 12 * (3 * 0.04 + 1.0);
   check_near(must(mass_properties(ShapeDef::cylinder(0.2, 0.5), rho)), {cylinder, {across, cylinder * 0.02, across}}, 1e-14);
   // a capsule: the cylinder, and each half ball m by its own m r^2 (2/5 - 9/64) about its centre of mass 3r/8 beyond the end
   const double half_ball = rho * 2 / 3 * pi * 0.008, r = 0.2, reach = 0.5 + 0.375 * r;
   const double capsule_across = across + 2 * half_ball * (r * r * (0.4 - 9.0 / 64) + reach * reach);
-  check_near(must(mass_properties(ShapeDef::capsule(r, 0.5), rho)), {cylinder + 2 * half_ball, {capsule_across, cylinder * 0.02 + 2 * half_ball * 0.4 * r * r, capsule_across}}, 1e-14);
+  check_near(must(mass_properties(ShapeDef::capsule(r, 0.5), rho)),
+             {cylinder + 2 * half_ball, {capsule_across, cylinder * 0.02 + 2 * half_ball * 0.4 * r * r, capsule_across}}, 1e-14);
 }
 
 TEST_CASE("mass properties: sums over small cubes") {
   check_near(must(mass_properties(ShapeDef::sphere(0.3), 1000)), summed(ShapeDef::sphere(0.3), 1000, {0.3, 0.3, 0.3}), 2e-3);
-  check_near(must(mass_properties(ShapeDef::box({0.1, 0.2, 0.3}), 1000)), summed(ShapeDef::box({0.1, 0.2, 0.3}), 1000, {0.1, 0.2, 0.3}), 2e-3);
-  check_near(must(mass_properties(ShapeDef::cylinder(0.2, 0.5), 1000)), summed(ShapeDef::cylinder(0.2, 0.5), 1000, {0.2, 0.5, 0.2}), 2e-3);
-  check_near(must(mass_properties(ShapeDef::capsule(0.2, 0.5), 1000)), summed(ShapeDef::capsule(0.2, 0.5), 1000, {0.2, 0.7, 0.2}), 2e-3);
+  check_near(must(mass_properties(ShapeDef::box({0.1, 0.2, 0.3}), 1000)),
+             summed(ShapeDef::box({0.1, 0.2, 0.3}), 1000, {0.1, 0.2, 0.3}), 2e-3);
+  check_near(must(mass_properties(ShapeDef::cylinder(0.2, 0.5), 1000)),
+             summed(ShapeDef::cylinder(0.2, 0.5), 1000, {0.2, 0.5, 0.2}), 2e-3);
+  check_near(must(mass_properties(ShapeDef::capsule(0.2, 0.5), 1000)), summed(ShapeDef::capsule(0.2, 0.5), 1000, {0.2, 0.7, 0.2}),
+             2e-3);
 }
 
 TEST_CASE("mass properties of a body: from density, from mass, as given, none") {
@@ -114,7 +123,8 @@ TEST_CASE("the axis of the middle moment, ties included") {
   CHECK(middle({2.5, 1, 2}) == 2);
   CHECK(middle({2, 2.5, 1}) == 0);
   CHECK(middle({2.5, 2, 1}) == 1);
-  for (const Vec3 tie : {Vec3{1, 1, 1}, Vec3{1, 1, 2}, Vec3{2, 1, 1}, Vec3{1, 2, 1}, Vec3{2, 2, 1}, Vec3{1, 2, 2}, Vec3{2, 1, 2}}) {
+  for (const Vec3 tie :
+       {Vec3{1, 1, 1}, Vec3{1, 1, 2}, Vec3{2, 1, 1}, Vec3{1, 2, 1}, Vec3{2, 2, 1}, Vec3{1, 2, 2}, Vec3{2, 1, 2}}) {
     const double m[3] = {tie.x, tie.y, tie.z};
     const int axis = int(middle(tie));
     const int others[2] = {(axis + 1) % 3, (axis + 2) % 3};
@@ -144,7 +154,8 @@ TEST_CASE("compound: two half boxes are the box") {
 TEST_CASE("compound: shapes stay where they were, axes are principal, the mass may be given") {
   BodyDef def;
   def.pose = {{-1, 0.5, 2}, axis_angle({0, 1, 0}, 1.1)};
-  def.shapes = {ShapeDef::sphere(0.3), ShapeDef::capsule(0.1, 0.4), ShapeDef::box({0.2, 0.1, 0.3}), ShapeDef::cylinder(0.15, 0.2)};
+  def.shapes = {ShapeDef::sphere(0.3), ShapeDef::capsule(0.1, 0.4), ShapeDef::box({0.2, 0.1, 0.3}),
+                ShapeDef::cylinder(0.15, 0.2)};
   def.shapes[1].local = {{0.5, 0.2, 0}, axis_angle({1, 0, 0}, 0.7)};
   def.shapes[2].local = {{-0.3, 0.6, 0.1}, axis_angle({0, 0, 1}, -0.4)};
   def.shapes[3].local = {{0.1, -0.4, -0.5}, axis_angle({0, 0.6, 0.8}, 2.0)};
@@ -152,7 +163,9 @@ TEST_CASE("compound: shapes stay where they were, axes are principal, the mass m
   // the oracle: mass, centre and inertia about world axes, straight from the definition
   double mass = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  const auto place = [&](const BodyDef& d, std::size_t i) -> Pose { return {transform(d.pose, d.shapes[i].local.position), d.pose.orientation * d.shapes[i].local.orientation}; };
+  const auto place = [&](const BodyDef& d, std::size_t i) -> Pose {
+    return {transform(d.pose, d.shapes[i].local.position), d.pose.orientation * d.shapes[i].local.orientation};
+  };
   for (std::size_t i = 0; i < before.shapes.size(); i++) {
     const double m = must(mass_properties(before.shapes[i], before.density)).mass;
     const Eigen::Vector3d at = place(before, i).position;

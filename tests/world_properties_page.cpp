@@ -48,19 +48,23 @@ std::string page() {
     out << "| property | type | role | unit | at first | place | meaning |\n|---|---|---|---|---|---|---|\n";
     for (const PropertySchema& p : properties())
       if (p.table == Table(t))
-        out << "| `" << p.name << "` | " << name(p.type) << " | " << name(p.role) << " | " << p.unit << " | " << p.initial << " | " << place(p) << " | " << p.doc << " |\n";
+        out << "| `" << p.name << "` | " << name(p.type) << " | " << name(p.role) << " | " << p.unit << " | " << p.initial
+            << " | " << place(p) << " | " << p.doc << " |\n";
     out << "\n| buffer | reals a row | holds |\n|---|---|---|\n";
     for (std::size_t b = 0; b < table_buffer_count; b++)
-      if (schema(Buffer(b)).table == Table(t)) out << "| `" << schema(Buffer(b)).name << "` | " << schema(Buffer(b)).reals << " | " << schema(Buffer(b)).doc << " |\n";
+      if (schema(Buffer(b)).table == Table(t))
+        out << "| `" << schema(Buffer(b)).name << "` | " << schema(Buffer(b)).reals << " | " << schema(Buffer(b)).doc << " |\n";
   }
   out << "\n## Kernels\nEvery kernel with its stage, what it runs over, and the buffers that it reads and writes.\n\n"
          "| kernel | stage | over | reads | writes |\n|---|---|---|---|---|\n";
   for (std::size_t k = 0; k < kernel_count; k++) {
     const KernelSchema& s = schema(Kernel(k));
     std::string lists[2];
-    for (const Access& a : s.accesses) lists[a.write] += (lists[a.write].empty() ? "" : ", ") + std::string(schema(a.buffer).name);
+    for (const Access& a : s.accesses)
+      lists[a.write] += (lists[a.write].empty() ? "" : ", ") + std::string(schema(a.buffer).name);
     constexpr const char* domains[] = {"bodies", "contacts", "joints"};
-    out << "| `" << s.name << "` | " << name(s.stage) << " | " << domains[std::size_t(s.domain)] << " | " << lists[0] << " | " << lists[1] << " |\n";
+    out << "| `" << s.name << "` | " << name(s.stage) << " | " << domains[std::size_t(s.domain)] << " | " << lists[0] << " | "
+        << lists[1] << " |\n";
   }
   return out.str();
 }

@@ -108,7 +108,9 @@ TEST_CASE("row 0 of every table does nothing, and stays so, on every mix of plac
   for (const char* name : {"ragdolls", "door"}) {
     SceneWorld s = scene_world(name, 1);
     const Tables& tables = s.world.state().tables;
-    const auto row_0 = [&](Buffer buffer) { return std::vector<std::byte>(tables.bytes(buffer).data(), tables.bytes(buffer).data() + tables.row_bytes(buffer)); };
+    const auto row_0 = [&](Buffer buffer) {
+      return std::vector<std::byte>(tables.bytes(buffer).data(), tables.bytes(buffer).data() + tables.row_bytes(buffer));
+    };
     std::vector<std::vector<std::byte>> before;
     for (std::size_t b = 0; b < table_buffer_count; b++) before.push_back(row_0(Buffer(b)));
     for (const StepSettings& settings : all) {
@@ -117,7 +119,8 @@ TEST_CASE("row 0 of every table does nothing, and stays so, on every mix of plac
       for (std::size_t b = 0; b < table_buffer_count; b++) {
         if (schema(Buffer(b)).table == Table::contact) continue;  // made anew in every step; looked at below
         bool same = row_0(Buffer(b)) == before[b];
-        if (!same && (Buffer(b) == Buffer::inertia || Buffer(b) == Buffer::delta || Buffer(b) == Buffer::joint_impulse)) {  // -0 is nothing too
+        if (!same && (Buffer(b) == Buffer::inertia || Buffer(b) == Buffer::delta ||
+                      Buffer(b) == Buffer::joint_impulse)) {  // -0 is nothing too
           same = true;
           for (std::uint32_t k = 0; k < schema(Buffer(b)).reals; k++) same &= tables.get(Buffer(b), 0, k) == 0;
         }

@@ -11,7 +11,8 @@ struct Case {
   const char* scene;
   int count, steps;
 };
-constexpr Case cases[] = {{"balls", 30, 90}, {"ragdolls", 2, 90}, {"pyramid", 6, 60}, {"stack", 5, 60}, {"chain", 8, 30}, {"door", 1, 45}, {"dominoes", 8, 60}};
+constexpr Case cases[] = {{"balls", 30, 90}, {"ragdolls", 2, 90}, {"pyramid", 6, 60}, {"stack", 5, 60},
+                          {"chain", 8, 30},  {"door", 1, 45},     {"dominoes", 8, 60}};
 constexpr int more = 40;
 constexpr Precision both[] = {Precision::f32, Precision::f64};
 
@@ -116,7 +117,8 @@ TEST_CASE("cut, changed and foreign snapshots are refused, and change nothing") 
   run(s.world, stepper, 10);
   World& w = s.world;
   const char* cut = "These bytes are no whole snapshot; take them from World::snapshot, unchanged.";
-  for (std::size_t n = 0; n < snapshot.size(); n += n < 80 ? 1 : 37) CHECK_REFUSED(w, w.restore(std::span(snapshot).first(n)), ErrorCode::bad_snapshot, "");
+  for (std::size_t n = 0; n < snapshot.size(); n += n < 80 ? 1 : 37)
+    CHECK_REFUSED(w, w.restore(std::span(snapshot).first(n)), ErrorCode::bad_snapshot, "");
   CHECK_REFUSED(w, w.restore({}), ErrorCode::bad_snapshot, cut);
   std::vector<std::byte> longer = snapshot;
   longer.push_back({});
@@ -127,7 +129,8 @@ TEST_CASE("cut, changed and foreign snapshots are refused, and change nothing") 
     changed[i] ^= std::byte(1u << (i % 8));
     CHECK_REFUSED(w, w.restore(changed), ErrorCode::bad_snapshot, "");
   }
-  const char* foreign = "The snapshot is of a world with other objects or another precision; restore it into one with the same bodies and joints.";
+  const char* foreign =
+      "The snapshot is of a world with other objects or another precision; restore it into one with the same bodies and joints.";
   CHECK_REFUSED(w, w.restore(scene_world("stack", 4).world.snapshot()), ErrorCode::bad_snapshot, foreign);
   CHECK_REFUSED(w, w.restore(scene_world("stack", 3, Precision::f64).world.snapshot()), ErrorCode::bad_snapshot, foreign);
   CHECK_REFUSED(w, w.restore(scene_world("chain", 3).world.snapshot()), ErrorCode::bad_snapshot, foreign);

@@ -44,7 +44,8 @@ TEST_CASE("views: every property of the schema, by name, over the world's own me
       CHECK(view.data == tables.bytes(p.buffer).data() + p.offset * real);
       CHECK(reinterpret_cast<std::uintptr_t>(view.data) % real == 0);
       for (std::size_t i = 0; i < view.count; i++)
-        for (std::uint32_t c = 0; c < view.components; c++) CHECK(view.at(i, c) == tables.get(p.buffer, std::uint32_t(i), p.offset + c));
+        for (std::uint32_t c = 0; c < view.components; c++)
+          CHECK(view.at(i, c) == tables.get(p.buffer, std::uint32_t(i), p.offset + c));
     }
   }
 }
@@ -118,7 +119,8 @@ TEST_CASE("velocities come back as they were set, before and after steps") {
     const Vec3 start = must(world.pose(body)).position;
     run(world, stepper, 6);
     const double t = 6 * frame;
-    check_close(must(world.pose(body)).position, start + t * Vec3{4, 5, 6} + 0.5 * t * t * Vec3{0, -10, 0}, precision == Precision::f32 ? 2e-6 : 1e-13);
+    check_close(must(world.pose(body)).position, start + t * Vec3{4, 5, 6} + 0.5 * t * t * Vec3{0, -10, 0},
+                precision == Precision::f32 ? 2e-6 : 1e-13);
   }
 }
 
@@ -189,7 +191,8 @@ TEST_CASE("last position and orientation are one sub-step ago, and may be writte
     // Verlet goes on from where it was put: p' = 2 p - p_last + h^2 a
     const Vec3 p = must(world.pose(body)).position;
     run(world, stepper, 1);
-    check_close(must(world.pose(body)).position, 2.0 * p - Vec3{0.5, 0.25, -0.125} + frame * frame * Vec3{0, -10, 0}, 10 * tolerance);
+    check_close(must(world.pose(body)).position, 2.0 * p - Vec3{0.5, 0.25, -0.125} + frame * frame * Vec3{0, -10, 0},
+                10 * tolerance);
   }
 }
 

@@ -11,10 +11,22 @@ namespace pcphys {
 
 /// Anything with x(), y(), z() members that is built from three numbers, such as Eigen::Vector3d.
 template <class V>
-concept ForeignVector3 = requires(const V v) { v.x(); v.y(); v.z(); V(0.0, 0.0, 0.0); };
+concept ForeignVector3 = requires(const V v) {
+  v.x();
+  v.y();
+  v.z();
+  V(0.0, 0.0, 0.0);
+};
 /// Anything with w(), x(), y(), z() members that is built as (w, x, y, z), such as Eigen::Quaterniond.
 template <class Q>
-concept ForeignQuaternion = requires(const Q q) { q.x(); q.y(); q.z(); q.w(); q.toRotationMatrix(); Q(1.0, 0.0, 0.0, 0.0); };
+concept ForeignQuaternion = requires(const Q q) {
+  q.x();
+  q.y();
+  q.z();
+  q.w();
+  q.toRotationMatrix();
+  Q(1.0, 0.0, 0.0, 0.0);
+};
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;

@@ -23,8 +23,8 @@ struct PlanEntry {
   enum class Kind : std::uint8_t { kernel, upload, download };
   Kind kind = Kind::kernel;
   Place place = Place::cpu;
-  Kernel kernel{};       // of a kernel
-  Buffer buffer{};       // of a transfer
+  Kernel kernel{};  // of a kernel
+  Buffer buffer{};  // of a transfer
   Phase phase = Phase::biased;
   bool barrier = false;  // uses what a kernel before it wrote, or writes what one read, on the same device
   std::uint32_t substep = 0;

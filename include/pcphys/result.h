@@ -41,12 +41,30 @@ template <class T> class [[nodiscard]] Result {
   Result(Error error) : content_(std::in_place_index<1>, std::move(error)) {}
 
   explicit operator bool() const { return content_.index() == 0; }
-  T& operator*() & { assert(*this); return *std::get_if<0>(&content_); }
-  const T& operator*() const& { assert(*this); return *std::get_if<0>(&content_); }
-  T&& operator*() && { assert(*this); return std::move(*std::get_if<0>(&content_)); }
-  T* operator->() { assert(*this); return std::get_if<0>(&content_); }
-  const T* operator->() const { assert(*this); return std::get_if<0>(&content_); }
-  const Error& error() const { assert(!*this); return *std::get_if<1>(&content_); }
+  T& operator*() & {
+    assert(*this);
+    return *std::get_if<0>(&content_);
+  }
+  const T& operator*() const& {
+    assert(*this);
+    return *std::get_if<0>(&content_);
+  }
+  T&& operator*() && {
+    assert(*this);
+    return std::move(*std::get_if<0>(&content_));
+  }
+  T* operator->() {
+    assert(*this);
+    return std::get_if<0>(&content_);
+  }
+  const T* operator->() const {
+    assert(*this);
+    return std::get_if<0>(&content_);
+  }
+  const Error& error() const {
+    assert(!*this);
+    return *std::get_if<1>(&content_);
+  }
 
  private:
   std::variant<T, Error> content_;
@@ -59,7 +77,10 @@ template <> class [[nodiscard]] Result<void> {
   Result(Error error) : error_(std::move(error)) {}
 
   explicit operator bool() const { return error_.code == ErrorCode::none; }
-  const Error& error() const { assert(!*this); return error_; }
+  const Error& error() const {
+    assert(!*this);
+    return error_;
+  }
 
  private:
   Error error_;

@@ -26,10 +26,10 @@ struct StepSettings {
   bool host_context = false;  // use the GL context that is current on this thread
   bool timings = true;        // clock each stage; on GL this waits for the device after each
 
-  double push_speed = 3;              // at which an overlap is undone, at most [m/s]
-  double restitution_threshold = 0.5; // approach speeds below it do not bounce [m/s]; 0 switches it off
-  double contact_margin = 0.02;       // contacts are kept up to this gap [m]
-  std::size_t max_pairs = 1u << 24;   // more is an error that says how many there are
+  double push_speed = 3;               // at which an overlap is undone, at most [m/s]
+  double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
+  double contact_margin = 0.02;        // contacts are kept up to this gap [m]
+  std::size_t max_pairs = 1u << 24;    // more is an error that says how many there are
 
   void set_all(Place place) { integrate = joints = impulses = place; }
 };
@@ -38,8 +38,8 @@ enum class Timer : std::uint8_t { forces, broad, narrow, plan, upload, integrate
 const char* name(Timer timer);
 
 struct StepReport {
-  Error error;               // code none: the step was made. Otherwise the world is as it was before
-  std::uint64_t step = 0;    // how many steps this stepper has made
+  Error error;             // code none: the step was made. Otherwise the world is as it was before
+  std::uint64_t step = 0;  // how many steps this stepper has made
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   std::uint64_t transfer_bytes = 0;  // between host and device
   double total_ms = 0;

@@ -68,21 +68,21 @@ struct BodyDef {
   Vec3 velocity;          // of the centre of mass [m/s]
   Vec3 angular_velocity;  // world axes [rad/s]
   std::vector<ShapeDef> shapes;
-  double density = 1000;               // [kg/m^3]; used when `mass` is not given
-  std::optional<double> mass;          // [kg]; moments scale with the shapes' own
-  std::optional<Vec3> moments;         // [kg m^2]; overrides the shapes' own (then `mass` is needed too)
+  double density = 1000;        // [kg/m^3]; used when `mass` is not given
+  std::optional<double> mass;   // [kg]; moments scale with the shapes' own
+  std::optional<Vec3> moments;  // [kg m^2]; overrides the shapes' own (then `mass` is needed too)
   Material material;
-  double linear_drag = 0;              // F in v' = -F v [1/s]; the original's default is 0.25
-  double angular_drag = 0;             // the same of the angular momentum [1/s]
+  double linear_drag = 0;   // F in v' = -F v [1/s]; the original's default is 0.25
+  double angular_drag = 0;  // the same of the angular momentum [1/s]
 };
 
 /// Freedom of b's frame relative to a's. Angles [rad]: roll about the frames' x axis (twist), pitch
 /// about y, yaw about z. A freedom with lower = upper is locked; an infinite one is free.
 struct AngleFreedom {
   enum class Kind : std::uint8_t {
-    free,            // the pin alone
-    cone_twist,      // the x axes at most `cone` apart, roll within [-twist, twist]
-    pitch_yaw_roll   // the original's angle constraint: each angle within its own interval
+    free,           // the pin alone
+    cone_twist,     // the x axes at most `cone` apart, roll within [-twist, twist]
+    pitch_yaw_roll  // the original's angle constraint: each angle within its own interval
   };
   Kind kind = Kind::free;
   double cone = 0, twist = 0;
@@ -100,7 +100,7 @@ struct AngleFreedom {
 
 /// A pin between two bodies, with an optional angle constraint about the default relative orientation.
 struct JointDef {
-  BodyId a, b;          // a may be `World::ground()`
+  BodyId a, b;            // a may be `World::ground()`
   Pose frame_a, frame_b;  // the pin and the joint axes in each body; they coincide in the default pose
   AngleFreedom freedom;
   bool collide = false;  // whether a and b may collide; adjacent bones do not
@@ -110,9 +110,9 @@ struct JointDef {
 struct BoneDef {
   int parent = -1;
   ShapeDef shape;
-  Pose pose;                // in the ragdoll's frame, default pose
-  Vec3 joint;               // where it is pinned to its parent, ragdoll's frame
-  Quat joint_axes;          // of the joint frames, ragdoll's frame
+  Pose pose;        // in the ragdoll's frame, default pose
+  Vec3 joint;       // where it is pinned to its parent, ragdoll's frame
+  Quat joint_axes;  // of the joint frames, ragdoll's frame
   AngleFreedom freedom;
 };
 
@@ -127,8 +127,8 @@ struct RagdollDef {
 };
 
 struct Ragdoll {
-  std::vector<BodyId> bones;   // as in the definition
-  std::vector<JointId> joints; // joints[i] holds bones[i + 1] to its parent
+  std::vector<BodyId> bones;    // as in the definition
+  std::vector<JointId> joints;  // joints[i] holds bones[i + 1] to its parent
 };
 
 /// A force [N] and a torque [N m] acting at a body's centre of mass, world axes.

@@ -18,7 +18,8 @@ bool may_touch(const void* context, std::uint32_t a, std::uint32_t b) {
   const WorldState& s = *static_cast<const WorldState*>(context);
   const ShapeRecord &x = s.shapes[a], &y = s.shapes[b];
   if (x.body == y.body) return false;
-  if (s.bodies[s.body_ids.row(x.body)].kind != BodyKind::dynamic && s.bodies[s.body_ids.row(y.body)].kind != BodyKind::dynamic) return false;
+  if (s.bodies[s.body_ids.row(x.body)].kind != BodyKind::dynamic && s.bodies[s.body_ids.row(y.body)].kind != BodyKind::dynamic)
+    return false;
   if (x.filter.group != 0 && x.filter.group == y.filter.group) {
     if (x.filter.group < 0) return false;
   } else if (!(x.filter.category & y.filter.mask) || !(y.filter.category & x.filter.mask)) {
@@ -45,7 +46,8 @@ std::pair<float, float> levers(const ShapeDef& d) {
 /// bodies that slide past each other by more than `extent` before it closes is none: they would meet only if their
 /// contact plane had no end.
 template <class Scalar>
-bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt, double fall, double extent) {
+bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt, double fall,
+            double extent) {
   const float n[3] = {float(m.normal[0]), float(m.normal[1]), float(m.normal[2])};
   for (std::uint32_t i = 0; i < m.count; i++) {
     const double gap = double(m.points[i].separation) - margin;
@@ -108,17 +110,22 @@ bool Detector::may_bounce(const WorldState& s) {
 Status Detector::find_pairs(const WorldState& s, double dt, const Options& options) {
   if (structure_ != s.structure_version || serial_ != s.serial) rebuild(s);
   if (!possible_) return {};
-  if (s.tables.precision() == Precision::f32) bound<float>(s, dt, options.contact_margin, scratch_f_.shapes);
-  else bound<double>(s, dt, options.contact_margin, scratch_d_.shapes);
+  if (s.tables.precision() == Precision::f32)
+    bound<float>(s, dt, options.contact_margin, scratch_f_.shapes);
+  else
+    bound<double>(s, dt, options.contact_margin, scratch_d_.shapes);
   pairs_.set_capacity(options.max_pairs);
   const PairReport report = pairs_.update(tight_);
   if (report.overflow)
-    return Error{ErrorCode::buffer_full, "The scene has " + std::to_string(report.pairs_needed) + (report.needed_is_exact ? "" : " or fewer") + " pairs of shapes close together and room for " + std::to_string(options.max_pairs) +
-                                             "; raise StepSettings::max_pairs, or spread the bodies. The world is as before the step."};
+    return Error{ErrorCode::buffer_full,
+                 "The scene has " + std::to_string(report.pairs_needed) + (report.needed_is_exact ? "" : " or fewer") +
+                     " pairs of shapes close together and room for " + std::to_string(options.max_pairs) +
+                     "; raise StepSettings::max_pairs, or spread the bodies. The world is as before the step."};
   if (report.refused > 0) {
     const std::uint32_t body = s.shapes[report.first_refused].body;
     structure_ = 0;  // the broad phase dropped the shape: list all of them anew once the host has mended it
-    return Error{ErrorCode::not_finite, "The pose or velocity of body " + std::to_string(body) + " is not finite; set it anew or destroy the body. The world is as before the step."};
+    return Error{ErrorCode::not_finite, "The pose or velocity of body " + std::to_string(body) +
+                                            " is not finite; set it anew or destroy the body. The world is as before the step."};
   }
   if (report.changed) {
     next_hints_.resize(pairs_.pairs().size());
@@ -138,14 +145,16 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
   const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
   const float fall = float(length(s.gravity) * dt * dt), step = float(dt);
   twists_.resize(s.bodies.size());
-  for (std::uint32_t row = 0; row < s.bodies.size(); row++) twists_[row] = s.bodies[row].kind == BodyKind::fixed ? Twist() : twist_of<Scalar>(s.tables, row);
+  for (std::uint32_t row = 0; row < s.bodies.size(); row++)
+    twists_[row] = s.bodies[row].kind == BodyKind::fixed ? Twist() : twist_of<Scalar>(s.tables, row);
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
     ShapeView<Scalar>& view = shapes[i];
     place_shape(table + std::size_t(i + 1) * 12, proxy.kind, proxy.centred, bodies.orientation(proxy.body), view);
     const Twist& twist = twists_[proxy.body];
-    const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across + std::min(step * twist.turn, largest_turn) * proxy.lever_any;
+    const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
+                         std::min(step * twist.turn, largest_turn) * proxy.lever_any;
     reach_[i] = s.bodies[proxy.body].kind == BodyKind::fixed ? 0.0f : step * twist.speed + turned + fall;
     tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
   }
@@ -173,7 +182,8 @@ Status Detector::find_contacts(WorldState& s, double dt, const Options& options,
     if (s.contact_rows() > 1) s.tables.resize(Table::contact, 1);
     return {};
   }
-  return s.tables.precision() == Precision::f32 ? narrow_all(s, dt, options, scratch<float>(), found) : narrow_all(s, dt, options, scratch<double>(), found);
+  return s.tables.precision() == Precision::f32 ? narrow_all(s, dt, options, scratch<float>(), found)
+                                                : narrow_all(s, dt, options, scratch<double>(), found);
 }
 
 template <class Scalar>
@@ -203,12 +213,16 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     bodies.shift(row_a, row_b, there.p);
     Manifold<Scalar> manifold;
     const Scalar margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
-    if (options.narrow == NarrowPhase::fcl) fcl_hook()(scratch.shapes[first], there, margin, manifold);
-    else narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
+    if (options.narrow == NarrowPhase::fcl)
+      fcl_hook()(scratch.shapes[first], there, margin, manifold);
+    else
+      narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
     Scalar apart[3] = {};
     bodies.shift(row_a, row_b, apart);
     const float apart_f[3] = {float(apart[0]), float(apart[1]), float(apart[2])};
-    if (!closes(manifold, twists_[row_a], twists_[row_b], apart_f, options.contact_margin, dt, fall, proxies_[a].radius + proxies_[b].radius)) continue;
+    if (!closes(manifold, twists_[row_a], twists_[row_b], apart_f, options.contact_margin, dt, fall,
+                proxies_[a].radius + proxies_[b].radius))
+      continue;
 
     const std::uint32_t row = std::uint32_t(next_.keys.size());
     next_.keys.push_back(key);
@@ -216,9 +230,12 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     next_.features.push_back({});
     if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
     Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
-    write_contact(manifold, materials + std::size_t(row_a) * 4, materials + std::size_t(row_b) * 4, out, next_.features[row].data());
+    write_contact(manifold, materials + std::size_t(row_a) * 4, materials + std::size_t(row_b) * 4, out,
+                  next_.features[row].data());
     while (old < before_rows && s.contacts.keys[old] < key) old++;
-    if (old < before_rows && s.contacts.keys[old] == key) remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(options.contact_margin), out, next_.features[row].data());
+    if (old < before_rows && s.contacts.keys[old] == key)
+      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(options.contact_margin), out,
+                        next_.features[row].data());
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
   }

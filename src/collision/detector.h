@@ -46,7 +46,7 @@ class Detector {
     std::uint32_t body = 0;              // row
     // how far a turn of one radian moves its surface outward: a turn across its axis (the body's y), any turn
     float lever_across = 0, lever_any = 0;
-    double radius = 0;                   // of the sphere about its centre that holds it
+    double radius = 0;  // of the sphere about its centre that holds it
   };
 
   template <class Scalar> struct Scratch {
@@ -56,7 +56,8 @@ class Detector {
 
   void rebuild(const WorldState& state);
   template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
-  template <class Scalar> Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  template <class Scalar>
+  Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
   template <class Scalar> Scratch<Scalar>& scratch();
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last

@@ -9,23 +9,20 @@ namespace pcphys {
 
 /// A shape relative to an origin nearby: best the centre of mass of the smaller body, since the digits of
 /// the result are those of these numbers.
-template <class Scalar>
-struct ShapeView {
+template <class Scalar> struct ShapeView {
   ShapeKind kind;
   Scalar size[3];  // as in ShapeDef, metres
   Scalar p[3];     // centre of the shape
   Scalar q[4];     // x y z w, shape to world axes, unit
 };
 
-template <class Scalar>
-struct ManifoldPoint {
+template <class Scalar> struct ManifoldPoint {
   Scalar p[3];            // midway between the surfaces
   Scalar separation;      // along the normal, negative when the shapes overlap
   std::uint32_t feature;  // which corner, edge or side: the same from step to step while the shapes move a little
 };
 
-template <class Scalar>
-struct Manifold {
+template <class Scalar> struct Manifold {
   Scalar normal[3];  // unit, from a to b
   std::uint32_t count = 0;
   ManifoldPoint<Scalar> points[4];

@@ -8,16 +8,18 @@
 namespace pcphys {
 
 struct Twist {
-  float v[3] = {}, w[3] = {};          // velocity of the centre [m/s], angular velocity [rad/s], world axes
+  float v[3] = {}, w[3] = {};             // velocity of the centre [m/s], angular velocity [rad/s], world axes
   float speed = 0, turn = 0, across = 0;  // |v|, |w|, and the part of w across the body's y axis
 };
 
 template <class Scalar> Twist twist_of(const Tables& t, std::uint32_t row) {
-  const Scalar *m = t.data<Scalar>(Buffer::motion) + std::size_t(row) * 8, *i = t.data<Scalar>(Buffer::mass) + std::size_t(row) * 8 + 4;
+  const Scalar *m = t.data<Scalar>(Buffer::motion) + std::size_t(row) * 8,
+               *i = t.data<Scalar>(Buffer::mass) + std::size_t(row) * 8 + 4;
   const Scalar* q = t.data<Scalar>(Buffer::pose) + std::size_t(row) * 12 + 4;
   const float x = float(q[0]), y = float(q[1]), z = float(q[2]), w = float(q[3]);
-  const float r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z), 1 - 2 * (x * x + z * z),
-                      2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)};
+  const float r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
+                      2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
+                      2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
   const float l[3] = {float(m[4]), float(m[5]), float(m[6])};
   float local[3];
   for (int k = 0; k < 3; k++) local[k] = float(i[k]) * (r[k] * l[0] + r[3 + k] * l[1] + r[6 + k] * l[2]);

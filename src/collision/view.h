@@ -38,7 +38,8 @@ template <class Scalar> void rotate_by(const Scalar* q, const Scalar* v, Scalar*
 }
 
 /// `row`: of the shape table; q: the body's orientation. The view's p is relative to the body's centre.
-template <class Scalar> void place_shape(const Scalar* row, ShapeKind kind, bool centred, const Scalar* q, ShapeView<Scalar>& view) {
+template <class Scalar>
+void place_shape(const Scalar* row, ShapeKind kind, bool centred, const Scalar* q, ShapeView<Scalar>& view) {
   view.kind = kind;
   for (int k = 0; k < 3; k++) view.size[k] = row[k];
   for (int k = 0; k < 3; k++) view.p[k] = 0;
@@ -80,7 +81,9 @@ template <class Scalar> Aabb box_of(const ShapeView<Scalar>& view, Vec3 centre, 
 }
 
 /// A manifold as a row of the contact table (properties.inl), without impulses.
-template <class Scalar> void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Scalar* material_b, Scalar* out, std::uint32_t* features) {
+template <class Scalar>
+void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Scalar* material_b, Scalar* out,
+                   std::uint32_t* features) {
   for (int k = 0; k < 3; k++) out[k] = m.normal[k];
   out[3] = Scalar(m.count);
   for (std::uint32_t i = 0; i < 4; i++) {
@@ -100,7 +103,8 @@ template <class Scalar> void write_contact(const Manifold<Scalar>& m, const Scal
 /// the nearest point within `reach` [m], since a feature may change its name while the contact stays; friction
 /// goes with the manifold. `before` and `out` are rows of the contact table.
 template <class Scalar>
-void remember_impulses(const Scalar* before, const std::uint32_t* before_features, Scalar reach, Scalar* out, const std::uint32_t* features) {
+void remember_impulses(const Scalar* before, const std::uint32_t* before_features, Scalar reach, Scalar* out,
+                       const std::uint32_t* features) {
   const int count = int(out[3]), before_count = int(before[3]);
   bool taken[4] = {}, given[4] = {};
   const auto hand_on = [&](int i, int j) {
@@ -116,7 +120,8 @@ void remember_impulses(const Scalar* before, const std::uint32_t* before_feature
     Scalar best = reach * reach;
     for (int j = 0; j < before_count; j++) {
       if (taken[j]) continue;
-      const Scalar dx = out[4 + 4 * i] - before[4 + 4 * j], dy = out[5 + 4 * i] - before[5 + 4 * j], dz = out[6 + 4 * i] - before[6 + 4 * j];
+      const Scalar dx = out[4 + 4 * i] - before[4 + 4 * j], dy = out[5 + 4 * i] - before[5 + 4 * j],
+                   dz = out[6 + 4 * i] - before[6 + 4 * j];
       const Scalar d = dx * dx + dy * dy + dz * dz;
       if (d < best) {
         best = d;

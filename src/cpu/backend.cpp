@@ -13,7 +13,9 @@ class CpuBackend final : public Backend {
  public:
   explicit CpuBackend(const CpuKernels& kernels) : kernels_(kernels) {}
 
-  std::string device() const override { return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes"; }
+  std::string device() const override {
+    return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes";
+  }
   std::uint32_t width() const override { return kernels_.lanes; }
 
   Status attach(Buffer buffer, void* host, std::size_t) override {
@@ -72,7 +74,9 @@ Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint
   else
     kernels = find_kernels(precision, lanes);
   if (!kernels)
-    return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(lanes) + (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)" : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
+    return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(lanes) +
+                                             (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)"
+                                                                          : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
                                              " for this processor; use lanes 0 for the widest it has."};
   return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels));
 }

@@ -25,12 +25,16 @@ namespace PC_NAMESPACE {
 
 using uint = std::uint32_t;
 using Scalar = PC_SCALAR;
-struct Slot { uint block; };
+struct Slot {
+  uint block;
+};
 
 #if PC_LANES == 1
 using Real = Scalar;
 using Mask = bool;
-struct Index { uint i; };
+struct Index {
+  uint i;
+};
 PC_INLINE Real pc_select(Mask m, Real a, Real b) { return m ? a : b; }
 PC_INLINE Mask pc_and(Mask a, Mask b) { return a && b; }
 PC_INLINE Mask pc_or(Mask a, Mask b) { return a || b; }
@@ -75,7 +79,10 @@ PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) {
 PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
 #if PC_LANES == 1
   Scalar* p = buffer + (std::size_t(i.i) * quads + k) * 4;
-  p[0] = q.v.x; p[1] = q.v.y; p[2] = q.v.z; p[3] = q.s;
+  p[0] = q.v.x;
+  p[1] = q.v.y;
+  p[2] = q.v.z;
+  p[3] = q.s;
 #else
   Scalar* p[PC_LANES];
   for (uint l = 0; l < PC_LANES; l++) p[l] = buffer + (std::size_t(i.i[l]) * quads + k) * 4;

@@ -45,13 +45,17 @@ Object object(const ShapeView<double>& s, double raise) {
   return o;
 }
 
-struct Found { Vector normal; std::vector<std::pair<Vector, double>> points; };  // points and separations
+struct Found {
+  Vector normal;
+  std::vector<std::pair<Vector, double>> points;
+};  // points and separations
 
 // Deepest, farthest, largest triangle, opposite, in the order found.
 void reduce(std::vector<std::pair<Vector, double>>& points) {
   std::vector<std::pair<Vector, double>> kept;
   const auto take = [&](auto score) {
-    const auto best = std::max_element(points.begin(), points.end(), [&](const auto& x, const auto& y) { return score(x) < score(y); });
+    const auto best =
+        std::max_element(points.begin(), points.end(), [&](const auto& x, const auto& y) { return score(x) < score(y); });
     kept.push_back(*best);
     points.erase(best);
   };
@@ -106,9 +110,7 @@ bool narrow_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double m
   try {
     const Object first = object(a, raise), second = object(b, raise);
     if (!collide(first, second, raise, found) && !plane) apart(first, second, margin, found);
-  } catch (const std::exception&) {
-    return false;
-  }
+  } catch (const std::exception&) { return false; }
   if (found.points.size() > 4) reduce(found.points);
   for (int i = 0; i < 3 && !found.points.empty(); i++) out.normal[i] = found.normal[i];
   for (const auto& [p, separation] : found.points)
@@ -133,9 +135,7 @@ bool distance_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double
     fcl::DistanceRequestd request(false, false, 0, 0, 1e-9, fcl::GST_LIBCCD);
     fcl::DistanceResultd result;
     distance = fcl::distance(first.geometry.get(), first.pose, second.geometry.get(), second.pose, request, result);
-  } catch (const std::exception&) {
-    return false;
-  }
+  } catch (const std::exception&) { return false; }
   return std::isfinite(distance) && distance >= 0;
 }
 
@@ -145,7 +145,10 @@ bool distance_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double
 
 namespace pcphys {
 bool fcl_available() { return false; }
-bool narrow_fcl(const ShapeView<double>&, const ShapeView<double>&, double, Manifold<double>& out) { out.count = 0; return false; }
+bool narrow_fcl(const ShapeView<double>&, const ShapeView<double>&, double, Manifold<double>& out) {
+  out.count = 0;
+  return false;
+}
 bool distance_fcl(const ShapeView<double>&, const ShapeView<double>&, double&) { return false; }
 }  // namespace pcphys
 
@@ -155,7 +158,8 @@ namespace pcphys {
 
 bool narrow_fcl(const ShapeView<float>& a, const ShapeView<float>& b, float margin, Manifold<float>& out) {
   const auto widen = [](const ShapeView<float>& s) {
-    return ShapeView<double>{s.kind, {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, {s.q[0], s.q[1], s.q[2], s.q[3]}};
+    return ShapeView<double>{
+        s.kind, {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, {s.q[0], s.q[1], s.q[2], s.q[3]}};
   };
   Manifold<double> wide;
   const bool done = narrow_fcl(widen(a), widen(b), double(margin), wide);

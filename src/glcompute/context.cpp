@@ -47,8 +47,9 @@ std::uint32_t limit(GLenum name) {
 
 EGLContext create_context(EGLDisplay display, EGLConfig config, int major, int minor) {
   std::vector<EGLint> wanted;
-  if (major != 0) wanted = {EGL_CONTEXT_MAJOR_VERSION, major, EGL_CONTEXT_MINOR_VERSION, minor,
-                            EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+  if (major != 0)
+    wanted = {EGL_CONTEXT_MAJOR_VERSION,          major, EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
 #ifndef NDEBUG
   if (epoxy_egl_version(display) >= 15) wanted.insert(wanted.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
 #endif
@@ -87,7 +88,8 @@ void GlBindings::save() {
     return range;
   };
   for (GLuint i = 0; i < storage_ranges_.size(); i++)
-    storage_ranges_[i] = range(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, i);
+    storage_ranges_[i] =
+        range(GL_SHADER_STORAGE_BUFFER_BINDING, GL_SHADER_STORAGE_BUFFER_START, GL_SHADER_STORAGE_BUFFER_SIZE, i);
   uniform_range_ = range(GL_UNIFORM_BUFFER_BINDING, GL_UNIFORM_BUFFER_START, GL_UNIFORM_BUFFER_SIZE, 0);
 }
 
@@ -107,12 +109,13 @@ void GlBindings::restore() const {
 
 // ---- creation ---------------------------------------------------------------------------------------
 Result<std::unique_ptr<GlContext>> GlContext::open(int device) {
-  if (!epoxy_has_egl()) return unavailable("libEGL is not on this machine; install it (Debian, Ubuntu: apt-get install libegl1 libgl1-mesa-dri).");
+  if (!epoxy_has_egl())
+    return unavailable("libEGL is not on this machine; install it (Debian, Ubuntu: apt-get install libegl1 libgl1-mesa-dri).");
   const std::vector<void*> devices = egl_devices();
   if (device >= 0) {
     if (std::size_t(device) >= devices.size())
-      return unavailable("There is no EGL device " + std::to_string(device) + "; this machine has " + std::to_string(devices.size()) +
-                         ". `pcphys doctor` lists them.");
+      return unavailable("There is no EGL device " + std::to_string(device) + "; this machine has " +
+                         std::to_string(devices.size()) + ". `pcphys doctor` lists them.");
     return open_display(egl_device_display(devices[std::size_t(device)]), device);
   }
   std::string problem;
@@ -132,10 +135,12 @@ Result<std::unique_ptr<GlContext>> GlContext::open(int device) {
 Result<std::unique_ptr<GlContext>> GlContext::open_display(void* display, int device) {
   const std::string cure = " Install a driver with OpenGL 4.3 (Debian, Ubuntu: apt-get install libgl1-mesa-dri libegl-mesa0).";
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
-    return unavailable(device < 0 ? "No EGL display could be opened." + cure : "EGL device " + std::to_string(device) + " could not be opened." + cure);
+    return unavailable(device < 0 ? "No EGL display could be opened." + cure
+                                  : "EGL device " + std::to_string(device) + " could not be opened." + cure);
   const EGLenum api = eglQueryAPI();
   eglBindAPI(EGL_OPENGL_API);
-  const bool any = epoxy_has_egl_extension(display, "EGL_KHR_no_config_context") || epoxy_has_egl_extension(display, "EGL_MESA_configless_context");
+  const bool any = epoxy_has_egl_extension(display, "EGL_KHR_no_config_context") ||
+                   epoxy_has_egl_extension(display, "EGL_MESA_configless_context");
   const EGLConfig config = any ? EGL_NO_CONFIG_KHR : any_config(display);
   std::unique_ptr<GlContext> made(new GlContext);
   made->report_.device = device;
@@ -149,15 +154,16 @@ Result<std::unique_ptr<GlContext>> GlContext::open_display(void* display, int de
   if (!scope.status()) return unavailable(scope.status().error().message);
   const Status status = made->describe();
   if (old || !status)
-    return unavailable("pcphys needs OpenGL 4.3; " + (made->report_.renderer.empty() ? "this device" : made->report_.renderer) + " offers " +
-                       made->report_.version + "." + cure);
+    return unavailable("pcphys needs OpenGL 4.3; " + (made->report_.renderer.empty() ? "this device" : made->report_.renderer) +
+                       " offers " + made->report_.version + "." + cure);
   return made;
 }
 
 Result<std::unique_ptr<GlContext>> GlContext::adopt_current() {
   void* host = current_context();
   if (host == nullptr)
-    return Error{ErrorCode::device_error, "No GL context is current on this thread; make the host's context current, or ask for a headless one."};
+    return Error{ErrorCode::device_error,
+                 "No GL context is current on this thread; make the host's context current, or ask for a headless one."};
   std::unique_ptr<GlContext> made(new GlContext);
   made->host_ = host;
   GlScope scope(*made);
@@ -197,7 +203,10 @@ Status GlContext::describe() {
 /// Displays stay initialised: EGL hands the same one to everybody in the process, and nobody counts.
 GlContext::~GlContext() {
   if (context_ == nullptr) return;
-  if (depth_ > 0) { depth_ = 1; leave(); }
+  if (depth_ > 0) {
+    depth_ = 1;
+    leave();
+  }
   eglDestroyContext(display_, context_);
 }
 
@@ -217,15 +226,20 @@ Status GlContext::enter() {
 Status GlContext::make_current() {
   if (host_ != nullptr) {
     if (current_context() == host_) return {};
-    return Error{ErrorCode::device_error, "The host's GL context is not current on this thread (or was destroyed); make it current before calling pcphys."};
+    return Error{
+        ErrorCode::device_error,
+        "The host's GL context is not current on this thread (or was destroyed); make it current before calling pcphys."};
   }
   switched_ = eglGetCurrentContext() != context_;
   if (!switched_) return {};
-  before_ = {eglGetCurrentDisplay(), eglGetCurrentSurface(EGL_DRAW), eglGetCurrentSurface(EGL_READ), eglGetCurrentContext(), eglQueryAPI()};
+  before_ = {eglGetCurrentDisplay(), eglGetCurrentSurface(EGL_DRAW), eglGetCurrentSurface(EGL_READ), eglGetCurrentContext(),
+             eglQueryAPI()};
   eglBindAPI(EGL_OPENGL_API);
   if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return {};
   eglBindAPI(before_.api);
-  return Error{ErrorCode::device_error, "The GL context could not be made current; it is in use on another thread, or a GLX context is current on this one."};
+  return Error{
+      ErrorCode::device_error,
+      "The GL context could not be made current; it is in use on another thread, or a GLX context is current on this one."};
 }
 
 void GlContext::leave() {
@@ -247,8 +261,10 @@ Status GlContext::check(const std::string& doing) {
   const GLenum code = glGetError();
   if (code == GL_NO_ERROR) return {};
   while (glGetError() != GL_NO_ERROR) {}
-  const char* what = code == GL_OUT_OF_MEMORY ? "out of memory" : code == GL_INVALID_VALUE ? "invalid value"
-                   : code == GL_INVALID_ENUM ? "invalid enumerant" : "invalid operation";
+  const char* what = code == GL_OUT_OF_MEMORY   ? "out of memory"
+                     : code == GL_INVALID_VALUE ? "invalid value"
+                     : code == GL_INVALID_ENUM  ? "invalid enumerant"
+                                                : "invalid operation";
   std::string message = "GL reports " + std::string(what) + " while " + doing + ".";
   if (!debug_message_.empty()) message += " " + debug_message_;
   debug_message_.clear();

@@ -17,7 +17,10 @@ class GlBindings {
   void restore() const;
 
  private:
-  struct Range { std::uint32_t buffer; std::int64_t start, size; };
+  struct Range {
+    std::uint32_t buffer;
+    std::int64_t start, size;
+  };
   std::uint32_t program_ = 0, storage_ = 0, uniform_ = 0;
   std::array<Range, 8> storage_ranges_{};
   Range uniform_range_{};
@@ -52,10 +55,13 @@ class GlContext {
   GlReport report_;
   void* display_ = nullptr;  // EGL, of our own context
   void* context_ = nullptr;
-  void* host_ = nullptr;     // the host's context, GLX or EGL
+  void* host_ = nullptr;  // the host's context, GLX or EGL
   int depth_ = 0;
   bool switched_ = false;
-  struct Current { void *display, *draw, *read, *context; unsigned api; } before_{};
+  struct Current {
+    void *display, *draw, *read, *context;
+    unsigned api;
+  } before_{};
   GlBindings bindings_;
   std::string debug_message_;  // the driver's first complaint, debug builds only
 };
@@ -64,7 +70,9 @@ class GlContext {
 class GlScope {
  public:
   explicit GlScope(GlContext& context) : context_(context), status_(context.enter()) {}
-  ~GlScope() { if (status_) context_.leave(); }
+  ~GlScope() {
+    if (status_) context_.leave();
+  }
   GlScope(const GlScope&) = delete;
   GlScope& operator=(const GlScope&) = delete;
   const Status& status() const { return status_; }

@@ -30,7 +30,9 @@ class Random {
 
  private:
   std::uint64_t next() {
-    state_ ^= state_ >> 12; state_ ^= state_ << 25; state_ ^= state_ >> 27;
+    state_ ^= state_ >> 12;
+    state_ ^= state_ << 25;
+    state_ ^= state_ >> 27;
     return state_ * 0x2545f4914f6cdd1du;
   }
   std::uint64_t state_ = 0x9e3779b97f4a7c15u;
@@ -90,7 +92,8 @@ template <class Real> void Trial<Real>::powers() {
 
 /// Divisors just below a power of two defeat a corrected reciprocal; small integers are what kernels divide by.
 template <class Real> void Trial<Real>::hard_divisors() {
-  const Real divisors[] = {1 - ulp / 2, 2 - ulp, 1 + ulp, 1 + 2 * ulp, Real(1.5) - ulp, Real(1.5) + ulp, 3, 5, 7, 10, 11, 13, 49, 60, 100, 240};
+  const Real divisors[] = {1 - ulp / 2, 2 - ulp, 1 + ulp, 1 + 2 * ulp, Real(1.5) - ulp, Real(1.5) + ulp, 3, 5, 7, 10, 11, 13,
+                           49,          60,      100,     240};
   for (const Real divisor : divisors)
     for (int i = 0; i < 48; i++) {
       add(1 + Real(i) * ulp, divisor);

@@ -29,7 +29,8 @@ void* egl_device_display(void* device) {
 }
 
 void* egl_surfaceless_display() {
-  return client_extension("EGL_MESA_platform_surfaceless") ? platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY) : EGL_NO_DISPLAY;
+  return client_extension("EGL_MESA_platform_surfaceless") ? platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY)
+                                                           : EGL_NO_DISPLAY;
 }
 
 }  // namespace pcphys

@@ -4,8 +4,8 @@
 
 namespace pcphys {
 
-std::vector<void*> egl_devices();              // EGLDeviceEXT
-void* egl_device_display(void* device);        // EGLDisplay, not initialised; null when there is none
+std::vector<void*> egl_devices();        // EGLDeviceEXT
+void* egl_device_display(void* device);  // EGLDisplay, not initialised; null when there is none
 void* egl_surfaceless_display();
 
 }  // namespace pcphys

@@ -18,7 +18,8 @@ constexpr std::uint32_t local_size = 64;
 
 class GlBackend final : public Backend {
  public:
-  GlBackend(std::unique_ptr<GlContext> context, Precision precision) : context_(std::move(context)), cache_(context_->identity()) {
+  GlBackend(std::unique_ptr<GlContext> context, Precision precision)
+      : context_(std::move(context)), cache_(context_->identity()) {
     options_.precision = precision;
     options_.local_size = local_size;
   }
@@ -91,7 +92,8 @@ GlBackend::~GlBackend() {
 Status GlBackend::attach(Buffer buffer, void* host, std::size_t bytes) {
   GlScope scope(*context_);
   if (!scope.status()) return scope.status();
-  if (Status status = at(buffer).resize(schema(buffer).name, bytes, context_->report().limits.storage_block_bytes); !status) return status;
+  if (Status status = at(buffer).resize(schema(buffer).name, bytes, context_->report().limits.storage_block_bytes); !status)
+    return status;
   at(buffer).attach(host, bytes);
   return {};
 }
@@ -99,12 +101,14 @@ Status GlBackend::attach(Buffer buffer, void* host, std::size_t bytes) {
 Status GlBackend::reserve(Buffer buffer, std::size_t slots) {
   GlScope scope(*context_);
   if (!scope.status()) return scope.status();
-  return at(buffer).resize(schema(buffer).name, slots * schema(buffer).reals * real_bytes(), context_->report().limits.storage_block_bytes);
+  return at(buffer).resize(schema(buffer).name, slots * schema(buffer).reals * real_bytes(),
+                           context_->report().limits.storage_block_bytes);
 }
 
 Status GlBackend::transferable(Buffer buffer) {
   if (at(buffer).attached() && at(buffer).transferable()) return {};
-  return Error{ErrorCode::bad_argument, "The buffer `" + std::string(schema(buffer).name) + "` has no memory on the host; attach it before a transfer."};
+  return Error{ErrorCode::bad_argument,
+               "The buffer `" + std::string(schema(buffer).name) + "` has no memory on the host; attach it before a transfer."};
 }
 
 /// What dispatches wrote becomes visible to transfers, and to dispatches after them: a plan counts a download
@@ -164,7 +168,9 @@ void GlBackend::release() {
 }
 
 Status GlBackend::bind(Kernel kernel, std::size_t info) {
-  if (info >= info_count_) return Error{ErrorCode::bad_argument, "There is no info block " + std::to_string(info) + "; set_infos gave " + std::to_string(info_count_) + "."};
+  if (info >= info_count_)
+    return Error{ErrorCode::bad_argument,
+                 "There is no info block " + std::to_string(info) + "; set_infos gave " + std::to_string(info_count_) + "."};
   KernelProgram& program = programs_[std::size_t(kernel)];
   if (program.id == 0) {
     const Result<KernelProgram> loaded = load_kernel(kernel, options_, cache_);
@@ -174,7 +180,8 @@ Status GlBackend::bind(Kernel kernel, std::size_t info) {
   std::uint32_t binding = 0;
   for (const Access& access : schema(kernel).accesses) {
     if (!at(access.buffer).attached())
-      return Error{ErrorCode::bad_argument, "The kernel `" + std::string(schema(kernel).name) + "` uses the buffer `" + std::string(schema(access.buffer).name) +
+      return Error{ErrorCode::bad_argument, "The kernel `" + std::string(schema(kernel).name) + "` uses the buffer `" +
+                                                std::string(schema(access.buffer).name) +
                                                 "`, which was neither attached nor reserved."};
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding++, at(access.buffer).id());
   }

@@ -9,8 +9,9 @@ namespace pcphys {
 
 Status GlBuffer::resize(std::string_view label, std::size_t bytes, std::uint64_t limit) {
   if (bytes > limit)
-    return Error{ErrorCode::buffer_full, "The buffer `" + std::string(label) + "` needs " + std::to_string(bytes) + " bytes; this GL device takes at most " +
-                                             std::to_string(limit) + ". Make the scene smaller, or use the CPU backend."};
+    return Error{ErrorCode::buffer_full, "The buffer `" + std::string(label) + "` needs " + std::to_string(bytes) +
+                                             " bytes; this GL device takes at most " + std::to_string(limit) +
+                                             ". Make the scene smaller, or use the CPU backend."};
   if (id_ != 0 && bytes <= capacity_) return {};
   constexpr std::size_t smallest = 256;  // an empty buffer cannot be bound
   const std::size_t half_more = capacity_ + capacity_ / 2;
@@ -20,7 +21,8 @@ Status GlBuffer::resize(std::string_view label, std::size_t bytes, std::uint64_t
   glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(wanted), nullptr, GL_DYNAMIC_COPY);
   if (glGetError() == GL_OUT_OF_MEMORY) {
     release();
-    return Error{ErrorCode::buffer_full, "The GL device has no memory for the buffer `" + std::string(label) + "` of " + std::to_string(wanted) + " bytes."};
+    return Error{ErrorCode::buffer_full, "The GL device has no memory for the buffer `" + std::string(label) + "` of " +
+                                             std::to_string(wanted) + " bytes."};
   }
   capacity_ = wanted;
   return {};

@@ -12,7 +12,10 @@ class GlBuffer {
  public:
   /// Grows by half when `bytes` do not fit; contents are then lost. buffer_full when the device cannot hold it.
   Status resize(std::string_view label, std::size_t bytes, std::uint64_t limit);
-  void attach(void* host, std::size_t bytes) { host_ = host; bytes_ = bytes; }
+  void attach(void* host, std::size_t bytes) {
+    host_ = host;
+    bytes_ = bytes;
+  }
   void upload() const;
   void download() const;
   void release();

@@ -94,8 +94,9 @@ GLint property_of(GLuint program, GLenum interface, GLuint index, GLenum propert
 
 Status expect(std::string_view buffer, const char* what, std::int64_t expected, std::int64_t found) {
   if (expected == found) return {};
-  return Error{ErrorCode::device_error, "The GL program sees `" + std::string(buffer) + "` with " + what + " " + std::to_string(found) +
-                                            " where pcphys has " + std::to_string(expected) + "; the driver or the precision does not fit."};
+  return Error{ErrorCode::device_error, "The GL program sees `" + std::string(buffer) + "` with " + what + " " +
+                                            std::to_string(found) + " where pcphys has " + std::to_string(expected) +
+                                            "; the driver or the precision does not fit."};
 }
 
 /// GL reports either stride for an array of vectors, 0 for the one that does not apply.
@@ -116,7 +117,8 @@ Status check_buffer(GLuint program, Buffer buffer, std::uint32_t binding, Precis
   Status status = expect(what.name, "element type", type, property_of(program, GL_BUFFER_VARIABLE, index, GL_TYPE));
   if (status) status = expect(what.name, "stride", stride, stride_of(program, index));
   if (status) status = expect(what.name, "offset", 0, property_of(program, GL_BUFFER_VARIABLE, index, GL_OFFSET));
-  if (status) status = expect(what.name, "binding", binding, property_of(program, GL_SHADER_STORAGE_BLOCK, block, GL_BUFFER_BINDING));
+  if (status)
+    status = expect(what.name, "binding", binding, property_of(program, GL_SHADER_STORAGE_BLOCK, block, GL_BUFFER_BINDING));
   return status;
 }
 

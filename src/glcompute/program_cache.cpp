@@ -29,8 +29,10 @@ std::string hexadecimal(std::uint64_t value) {
 
 std::filesystem::path cache_folder() {
   if (const char* own = std::getenv("PCPHYS_CACHE")) return own;
-  if (const char* shared = std::getenv("XDG_CACHE_HOME"); shared != nullptr && *shared != 0) return std::filesystem::path(shared) / "pcphys";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0) return std::filesystem::path(home) / ".cache" / "pcphys";
+  if (const char* shared = std::getenv("XDG_CACHE_HOME"); shared != nullptr && *shared != 0)
+    return std::filesystem::path(shared) / "pcphys";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
+    return std::filesystem::path(home) / ".cache" / "pcphys";
   return {};
 }
 
@@ -69,7 +71,9 @@ void ProgramCache::store(std::string_view text, const std::vector<char>& bytes) 
   draft += std::to_string(getpid()) + '-' + std::to_string(serial++) + ".draft";
   std::ofstream out(draft, std::ios::binary);
   const std::uint64_t sum = hash({bytes.data(), bytes.size()}, hash_start);
-  out.write(magic, sizeof magic).write(reinterpret_cast<const char*>(&sum), sizeof sum).write(bytes.data(), std::streamsize(bytes.size()));
+  out.write(magic, sizeof magic)
+      .write(reinterpret_cast<const char*>(&sum), sizeof sum)
+      .write(bytes.data(), std::streamsize(bytes.size()));
   out.close();
   if (out) std::filesystem::rename(draft, target, ignored);
   if (!out || ignored) std::filesystem::remove(draft, ignored);

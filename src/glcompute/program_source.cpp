@@ -35,7 +35,8 @@ class Text {
 
 Status Text::include(std::string_view file) {
   const char* text = embedded_source(file);
-  if (text == nullptr) return Error{ErrorCode::unknown_name, "There is no embedded kernel text called " + std::string(file) + "."};
+  if (text == nullptr)
+    return Error{ErrorCode::unknown_name, "There is no embedded kernel text called " + std::string(file) + "."};
   const std::size_t index = files_.size();
   files_.emplace_back(file);
   locate(index, 1);
@@ -74,7 +75,8 @@ Status Text::constants(std::string_view text, std::string_view file, std::uint32
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (code != std::errc() || end == text.data() + text.size() || *end != ')')
-      return Error{ErrorCode::bad_argument, "PC_REAL at " + std::string(file) + ":" + number(at) + " holds no decimal number; write one, such as PC_REAL(0.5)."};
+      return Error{ErrorCode::bad_argument, "PC_REAL at " + std::string(file) + ":" + number(at) +
+                                                " holds no decimal number; write one, such as PC_REAL(0.5)."};
     text_ += literal(value);
     text.remove_prefix(std::size_t(end - text.data()) + 1);
   }
@@ -86,14 +88,16 @@ std::string Text::literal(double value) const {
   char digits[64];
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const double scaled = std::ldexp(value, 10);
-  const bool plain = (bits >> 52 & 0x7ffu) < 1073u && static_cast<double>(static_cast<std::int64_t>(scaled)) == scaled;  // exact in few digits
+  const bool plain =
+      (bits >> 52 & 0x7ffu) < 1073u && static_cast<double>(static_cast<std::int64_t>(scaled)) == scaled;  // exact in few digits
   if (precision_ == Precision::f64 && plain) {
     std::string text(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr);
     if (text.find('.') == text.npos) text += ".0";
     return "(" + text + "lf)";
   }
   if (precision_ == Precision::f64) {
-    std::snprintf(digits, sizeof digits, "packDouble2x32(uvec2(0x%08xu, 0x%08xu))", unsigned(bits & 0xffffffffu), unsigned(bits >> 32));
+    std::snprintf(digits, sizeof digits, "packDouble2x32(uvec2(0x%08xu, 0x%08xu))", unsigned(bits & 0xffffffffu),
+                  unsigned(bits >> 32));
     return digits;
   }
   std::string text(digits, std::to_chars(digits, digits + sizeof digits, static_cast<float>(value)).ptr);
@@ -119,8 +123,8 @@ std::string buffer_declarations(const KernelSchema& kernel) {
   for (const Access& access : kernel.accesses) {
     const BufferSchema& buffer = schema(access.buffer);
     const std::string label(buffer.name);
-    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (access.write ? "" : "readonly ") + "buffer Block_" + label +
-            " { " + (buffer.reals == 0 ? "uint" : "Real4") + " io_" + label + "[]; };\n";
+    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (access.write ? "" : "readonly ") +
+            "buffer Block_" + label + " { " + (buffer.reals == 0 ? "uint" : "Real4") + " io_" + label + "[]; };\n";
     if (buffer.reals != 0) text += "#define quads_" + label + " " + number(quads(access.buffer)) + "u\n";
   }
   return text;

@@ -20,7 +20,8 @@ GlReport probe_gl(int device) {
   GlScope scope(**context);
   const ProgramCache cache((*context)->identity());
   for (const Precision precision : {Precision::f32, Precision::f64}) {
-    const Result<GlArithmetic> found = scope.status() ? probe_arithmetic(precision, cache) : Result<GlArithmetic>(scope.status().error());
+    const Result<GlArithmetic> found =
+        scope.status() ? probe_arithmetic(precision, cache) : Result<GlArithmetic>(scope.status().error());
     if (found)
       (precision == Precision::f64 ? report.f64 : report.f32) = *found;
     else if (precision == Precision::f32)

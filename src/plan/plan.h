@@ -12,9 +12,9 @@ namespace pcphys {
 struct PlanSignature {
   std::uint32_t substeps = 4;
   std::array<Place, stage_count> places{};  // by Stage
-  bool bodies = false;       // some move
-  bool drag = false;         // of some body
-  bool gyroscopic = false;   // some body has unequal moments
+  bool bodies = false;                      // some move
+  bool drag = false;                        // of some body
+  bool gyroscopic = false;                  // some body has unequal moments
   bool joints = false;
   bool shapes = false;       // some pair could ever touch
   bool contacts = false;     // some do in this step

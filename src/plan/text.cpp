@@ -6,9 +6,15 @@
 namespace pcphys {
 
 const char* name(Place place) { return place == Place::cpu ? "cpu" : "gl"; }
-std::string_view kernel_name(const PlanEntry& entry) { return entry.kind == PlanEntry::Kind::kernel ? schema(entry.kernel).name : std::string_view(); }
-std::string_view buffer_name(const PlanEntry& entry) { return entry.kind == PlanEntry::Kind::kernel ? std::string_view() : schema(entry.buffer).name; }
-std::string_view stage_name(const PlanEntry& entry) { return entry.kind == PlanEntry::Kind::kernel ? name(schema(entry.kernel).stage) : std::string_view("transfer"); }
+std::string_view kernel_name(const PlanEntry& entry) {
+  return entry.kind == PlanEntry::Kind::kernel ? schema(entry.kernel).name : std::string_view();
+}
+std::string_view buffer_name(const PlanEntry& entry) {
+  return entry.kind == PlanEntry::Kind::kernel ? std::string_view() : schema(entry.buffer).name;
+}
+std::string_view stage_name(const PlanEntry& entry) {
+  return entry.kind == PlanEntry::Kind::kernel ? name(schema(entry.kernel).stage) : std::string_view("transfer");
+}
 std::string_view phase_name(const PlanEntry& entry) {
   constexpr std::string_view names[phase_count] = {"first", "biased", "relax"};
   return names[std::size_t(entry.phase)];
@@ -22,9 +28,7 @@ std::vector<std::string_view> accessed(const PlanEntry& entry, bool write) {
     if (a.write == write) names.push_back(schema(a.buffer).name);
   return names;
 }
-void pad(std::string& line, std::size_t column) {
-  line.resize(line.size() < column ? column : line.size() + 1, ' ');
-}
+void pad(std::string& line, std::size_t column) { line.resize(line.size() < column ? column : line.size() + 1, ' '); }
 std::string join(const std::vector<std::string_view>& names) {
   std::string s;
   for (std::string_view n : names) s += (s.empty() ? "" : " ") + std::string(n);

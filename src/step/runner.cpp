@@ -58,7 +58,8 @@ Status Runner::prepare(const StepSettings& s, Precision precision) {
   for (Place place : {Place::cpu, Place::gl}) {
     Device& d = at(place);
     if (s.integrate != place && s.joints != place && s.impulses != place) continue;
-    const bool fits = d.backend && d.precision == precision && (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
+    const bool fits = d.backend && d.precision == precision &&
+                      (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
     if (fits) continue;
     auto made = place == Place::cpu ? make_cpu_backend(precision, s.lanes) : make_gl_backend(precision, s.device, s.host_context);
     if (!made) return made.error();
@@ -99,9 +100,13 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
       if (done) continue;
       done = true;
       Status ok;
-      if (a.buffer < Buffer::table_buffers) ok = attach(entry.place, a.buffer, state.tables.bytes(a.buffer).data(), state.tables.bytes(a.buffer).size());
-      else if (std::vector<std::uint32_t>* list = list_of(a.buffer, schedule)) ok = attach(entry.place, a.buffer, list->data(), list->size() * 4);
-      else ok = at(entry.place).backend->reserve(a.buffer, (k.domain == Domain::joint ? schedule.joints : schedule.contacts).slots());
+      if (a.buffer < Buffer::table_buffers)
+        ok = attach(entry.place, a.buffer, state.tables.bytes(a.buffer).data(), state.tables.bytes(a.buffer).size());
+      else if (std::vector<std::uint32_t>* list = list_of(a.buffer, schedule))
+        ok = attach(entry.place, a.buffer, list->data(), list->size() * 4);
+      else
+        ok =
+            at(entry.place).backend->reserve(a.buffer, (k.domain == Domain::joint ? schedule.joints : schedule.contacts).slots());
       if (!ok) return ok;
     }
   }
@@ -142,7 +147,8 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
   return ok;
 }
 
-Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos, StepReport& report) {
+Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
+                   StepReport& report) {
   for (Device& d : devices_)
     if (d.backend)
       if (Status ok = d.backend->set_infos(infos, phase_count); !ok) return ok;
@@ -151,11 +157,15 @@ Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldStat
   for (std::size_t i = 0; i < plan.entries.size(); i++) {
     const PlanEntry& entry = plan.entries[i];
     Status ok;
-    if (entry.kind == PlanEntry::Kind::kernel) ok = kernel(entry, state, schedule, report);
-    else if (entry.kind == PlanEntry::Kind::download) ok = transfer(entry, state, report);
-    else ok = upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
+    if (entry.kind == PlanEntry::Kind::kernel)
+      ok = kernel(entry, state, schedule, report);
+    else if (entry.kind == PlanEntry::Kind::download)
+      ok = transfer(entry, state, report);
+    else
+      ok = upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
     if (!ok) return ok;
-    const bool last_of_kind = i + 1 == plan.entries.size() || timer_of(plan.entries[i + 1]) != timer_of(entry) || plan.entries[i + 1].place != entry.place;
+    const bool last_of_kind = i + 1 == plan.entries.size() || timer_of(plan.entries[i + 1]) != timer_of(entry) ||
+                              plan.entries[i + 1].place != entry.place;
     if (!settings.timings || !last_of_kind) continue;
     if (gl)
       if (Status done = at(Place::gl).backend->finish(); !done) return done;

@@ -18,7 +18,8 @@ class Runner {
   Status prepare(const StepSettings& settings, Precision precision);
   /// Everything a plan binds: lists and colours packed for their backends, buffers attached.
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
-  Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos, StepReport& report);
+  Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
+             StepReport& report);
 
   /// Another world comes: what the device holds is not its data.
   void forget();

@@ -41,8 +41,8 @@ class Schedule {
   void update_structure(const WorldState& state);
   void update_contacts(const WorldState& state) { contacts.colour(state, state.contacts.ends, 1); }
 
-  std::vector<std::uint32_t> bodies;  // rows that move, padded with row 0 to a multiple of `padding`
-  std::uint32_t moving = 0;           // without the padding
+  std::vector<std::uint32_t> bodies;      // rows that move, padded with row 0 to a multiple of `padding`
+  std::uint32_t moving = 0;               // without the padding
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
   std::uint64_t bodies_version = 0;
   ColouredSlots joints, contacts;

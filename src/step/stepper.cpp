@@ -22,12 +22,21 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 Status check_settings(const StepSettings& s) {
-  if (s.substeps < 1 || s.substeps > 1000) return Error{ErrorCode::bad_time_step, "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
+  if (s.substeps < 1 || s.substeps > 1000)
+    return Error{ErrorCode::bad_time_step,
+                 "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
   if (s.threads != 1) return Error{ErrorCode::unavailable, "More than one thread is not there yet; set threads to 1."};
   for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
-    if (!std::isfinite(x) || x < 0) return Error{ErrorCode::bad_argument, "Push speed, restitution threshold and contact margin must be finite and not below zero."};
-  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8) return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(s.lanes) + " lanes; use 1, 4, 8 (float only), or 0 for the widest that the processor has."};
-  if (s.narrow == NarrowPhase::fcl && !fcl_hook()) return Error{ErrorCode::unavailable, "FCL is not in use: link pcphys::fcl and call pcphys::use_fcl() (libfcl-dev, a build with it), or use the native narrow phase."};
+    if (!std::isfinite(x) || x < 0)
+      return Error{ErrorCode::bad_argument,
+                   "Push speed, restitution threshold and contact margin must be finite and not below zero."};
+  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8)
+    return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(s.lanes) +
+                                             " lanes; use 1, 4, 8 (float only), or 0 for the widest that the processor has."};
+  if (s.narrow == NarrowPhase::fcl && !fcl_hook())
+    return Error{ErrorCode::unavailable,
+                 "FCL is not in use: link pcphys::fcl and call pcphys::use_fcl() (libfcl-dev, a build with it), or use the "
+                 "native narrow phase."};
   return {};
 }
 
@@ -39,8 +48,12 @@ std::string scientific(double x) {
 
 Status check_dt(double dt) {
   if (dt >= constants::shortest_step && dt <= constants::longest_step) return {};
-  if (std::isfinite(dt) && dt > 0) return Error{ErrorCode::bad_time_step, "The time step is " + scientific(dt) + " s; it must lie between " + scientific(constants::shortest_step) + " and " + scientific(constants::longest_step) + " s. The world is as it was."};
-  return Error{ErrorCode::bad_time_step, "The time step is " + std::to_string(dt) + " s; it must be finite and above zero. The world is as it was."};
+  if (std::isfinite(dt) && dt > 0)
+    return Error{ErrorCode::bad_time_step, "The time step is " + scientific(dt) + " s; it must lie between " +
+                                               scientific(constants::shortest_step) + " and " +
+                                               scientific(constants::longest_step) + " s. The world is as it was."};
+  return Error{ErrorCode::bad_time_step,
+               "The time step is " + std::to_string(dt) + " s; it must be finite and above zero. The world is as it was."};
 }
 
 }  // namespace
@@ -74,7 +87,11 @@ struct Stepper::Inside {
   Detector::Options detection() const { return {settings.narrow, settings.contact_margin, settings.max_pairs}; }
 
   PlanSignature signature(const WorldState& s, bool restitution) const {
-    return {settings.substeps, {settings.integrate, settings.joints, settings.impulses}, schedule.moving > 0, schedule.drag, schedule.gyroscopic, s.joints.size() > 1, detector.possible(), s.contact_rows() > 1, restitution};
+    return {settings.substeps,   {settings.integrate, settings.joints, settings.impulses},
+            schedule.moving > 0, schedule.drag,
+            schedule.gyroscopic, s.joints.size() > 1,
+            detector.possible(), s.contact_rows() > 1,
+            restitution};
   }
 
   const StepPlan& find_plan(const PlanSignature& wanted) {

@@ -16,7 +16,9 @@ Result<MassProperties> mass_of(const BodyDef& def) {
   }
   if (def.shapes.empty()) return Error{ErrorCode::bad_mass, "A dynamic body without shapes needs a mass and moments of inertia."};
   if (def.shapes.size() > 1 || def.shapes[0].local != Pose{})
-    return Error{ErrorCode::bad_mass, "A body's frame is its principal frame; pass a body of several or displaced shapes through make_compound first, or give mass and moments."};
+    return Error{ErrorCode::bad_mass,
+                 "A body's frame is its principal frame; pass a body of several or displaced shapes through make_compound first, "
+                 "or give mass and moments."};
   Result<MassProperties> m = mass_properties(def.shapes[0], def.density);
   if (!m || !def.mass) return m;
   const double scale = *def.mass / m->mass;
@@ -53,7 +55,8 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
 Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
   orientation = def.pose.orientation;
   Status ok;
-  if (def.kind > BodyKind::dynamic) ok = Error{ErrorCode::bad_argument, "A body is of no known kind; use BodyKind::fixed, kinematic or dynamic."};
+  if (def.kind > BodyKind::dynamic)
+    ok = Error{ErrorCode::bad_argument, "A body is of no known kind; use BodyKind::fixed, kinematic or dynamic."};
   if (ok) ok = check_finite(def.pose.position, "position of a body");
   if (ok) ok = check_unit(orientation, "orientation of a body");
   if (ok) ok = check_finite(def.velocity, "velocity of a body");
@@ -61,10 +64,12 @@ Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
   if (ok) ok = check(def.material);
   if (ok) ok = check_finite(def.linear_drag, "linear drag of a body");
   if (ok) ok = check_finite(def.angular_drag, "angular drag of a body");
-  if (ok && (def.linear_drag < 0 || def.angular_drag < 0)) ok = Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
+  if (ok && (def.linear_drag < 0 || def.angular_drag < 0))
+    ok = Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
   for (const ShapeDef& shape : def.shapes) {
     if (ok) ok = check(shape);
-    if (ok && shape.kind == ShapeKind::plane && def.kind != BodyKind::fixed) ok = Error{ErrorCode::degenerate_shape, "A plane is infinite; use it on fixed bodies only."};
+    if (ok && shape.kind == ShapeKind::plane && def.kind != BodyKind::fixed)
+      ok = Error{ErrorCode::degenerate_shape, "A plane is infinite; use it on fixed bodies only."};
   }
   if (!ok) return ok.error();
   if (def.kind != BodyKind::dynamic) return MassProperties{};
@@ -133,7 +138,8 @@ Status World::destroy(BodyId body) {
     s.shapes[shape].alive = false;
     s.free_shapes.push_back(shape);
   }
-  std::erase_if(s.no_collide, [&](const auto& pair) { return pair.first >> 32 == body.index || (pair.first & 0xffffffffu) == body.index; });
+  std::erase_if(s.no_collide,
+                [&](const auto& pair) { return pair.first >> 32 == body.index || (pair.first & 0xffffffffu) == body.index; });
   s.drop_contacts(row, last);
   s.remove_row(Table::body, s.bodies, s.body_ids, row);
   return {};
@@ -164,7 +170,8 @@ Result<Pose> World::pose(BodyId body) const {
 
 Status World::set_pose(BodyId body, const Pose& pose) {
   if (!valid(body)) return stale("body");
-  if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground stays at the origin; create a fixed body for anything else."};
+  if (body.index == 0)
+    return Error{ErrorCode::bad_argument, "The ground stays at the origin; create a fixed body for anything else."};
   Quat q = pose.orientation;
   if (Status ok = check_finite(pose.position, "position of a body"); !ok) return ok;
   if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
@@ -190,7 +197,8 @@ Status World::set_velocity(BodyId body, Vec3 velocity) {
   if (!valid(body)) return stale("body");
   if (Status ok = check_finite(velocity, "velocity of a body"); !ok) return ok;
   const std::uint32_t row = state_->body_ids.row(body.index);
-  if (state_->bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
+  if (state_->bodies[row].kind == BodyKind::fixed)
+    return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
   state_->bring_in_phase(row);
   state_->tables.set3(Buffer::motion, row, 0, velocity);
   return {};
@@ -205,7 +213,8 @@ Status World::set_angular_velocity(BodyId body, Vec3 w) {
   if (!valid(body)) return stale("body");
   if (Status ok = check_finite(w, "angular velocity of a body"); !ok) return ok;
   const std::uint32_t row = state_->body_ids.row(body.index);
-  if (state_->bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
+  if (state_->bodies[row].kind == BodyKind::fixed)
+    return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
   state_->bring_in_phase(row);
   state_->set_angular_velocity(row, w);
   return {};
@@ -220,7 +229,8 @@ Result<Vec3> World::angular_momentum(BodyId body) const {
 namespace {
 Status need_substep(const WorldState& s) {
   if (s.last_substep > 0) return {};
-  return Error{ErrorCode::bad_time_step, "Last positions are one sub-step ago, and no step has been made yet; set a velocity instead."};
+  return Error{ErrorCode::bad_time_step,
+               "Last positions are one sub-step ago, and no step has been made yet; set a velocity instead."};
 }
 }  // namespace
 
@@ -237,7 +247,8 @@ Status World::set_position_last(BodyId body, Vec3 position) {
   if (Status ok = check_finite(position, "last position of a body"); !ok) return ok;
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
-  if (s.bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
+  if (s.bodies[row].kind == BodyKind::fixed)
+    return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
   s.tables.set3(Buffer::motion, row, 0, (1 / s.last_substep) * (s.pose(row).position - position));
   s.tables.set3(Buffer::half_change, row, 0, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
@@ -249,7 +260,8 @@ Result<Quat> World::orientation_last(BodyId body) const {
   if (Status ok = need_substep(*state_); !ok) return ok.error();
   const std::uint32_t row = state_->body_ids.row(body.index);
   const Quat q = state_->tables.get4(Buffer::pose, row, 4);
-  const Vec3 pi = rotate(conjugate(q), state_->tables.get3(Buffer::motion, row, 4)), i = state_->tables.get3(Buffer::mass, row, 4);
+  const Vec3 pi = rotate(conjugate(q), state_->tables.get3(Buffer::motion, row, 4)),
+             i = state_->tables.get3(Buffer::mass, row, 4);
   const Vec3 w = rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
   const double speed = length(w);
   if (speed == 0) return q;
@@ -262,7 +274,8 @@ Status World::set_orientation_last(BodyId body, Quat last) {
   if (Status ok = check_unit(last, "last orientation of a body"); !ok) return ok;
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
-  if (s.bodies[row].kind == BodyKind::fixed) return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
+  if (s.bodies[row].kind == BodyKind::fixed)
+    return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
   // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
   Quat d = s.tables.get4(Buffer::pose, row, 4) * conjugate(last);
   if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};

@@ -54,7 +54,8 @@ Result<JointId> World::create_joint(const JointDef& given) {
   WorldState& s = *state_;
   JointDef def = given;
   if (!valid(def.a) || !valid(def.b)) return stale("body");
-  if (def.a == def.b) return Error{ErrorCode::bad_joint, "A joint needs two different bodies; use the world's ground() to hold a body in place."};
+  if (def.a == def.b)
+    return Error{ErrorCode::bad_joint, "A joint needs two different bodies; use the world's ground() to hold a body in place."};
   const std::uint32_t row_a = s.body_ids.row(def.a.index), row_b = s.body_ids.row(def.b.index);
   if (s.bodies[row_a].kind != BodyKind::dynamic && s.bodies[row_b].kind != BodyKind::dynamic)
     return Error{ErrorCode::bad_joint, "Neither body of the joint is dynamic, so it can do nothing; at least one must be."};
@@ -109,8 +110,10 @@ BodyDef bone_body(const RagdollDef& def, const BoneDef& bone, const Pose& frame,
 JointDef bone_joint(const RagdollDef& def, const BoneDef& bone) {
   const Pose &parent = def.bones[bone.parent].pose, &child = bone.pose;
   JointDef joint;
-  joint.frame_a = {rotate(conjugate(parent.orientation), bone.joint - parent.position), conjugate(parent.orientation) * bone.joint_axes};
-  joint.frame_b = {rotate(conjugate(child.orientation), bone.joint - child.position), conjugate(child.orientation) * bone.joint_axes};
+  joint.frame_a = {rotate(conjugate(parent.orientation), bone.joint - parent.position),
+                   conjugate(parent.orientation) * bone.joint_axes};
+  joint.frame_b = {rotate(conjugate(child.orientation), bone.joint - child.position),
+                   conjugate(child.orientation) * bone.joint_axes};
   joint.freedom = bone.freedom;
   return joint;
 }

@@ -39,7 +39,8 @@ Eigen::Matrix3d world_inertia(const MassProperties& m, const Eigen::Quaterniond&
 
 Result<MassProperties> mass_properties(const ShapeDef& shape, double density) {
   if (Status ok = check(shape); !ok) return ok.error();
-  if (!(density > 0) || !std::isfinite(density)) return Error{ErrorCode::bad_mass, "A density must be above zero and finite; it is " + std::to_string(density) + " kg/m^3."};
+  if (!(density > 0) || !std::isfinite(density))
+    return Error{ErrorCode::bad_mass, "A density must be above zero and finite; it is " + std::to_string(density) + " kg/m^3."};
   switch (shape.kind) {
     case ShapeKind::sphere: return of_sphere(shape.size.x, density);
     case ShapeKind::capsule: return of_capsule(shape.size.x, shape.size.y, density);
@@ -67,7 +68,8 @@ Status make_compound(BodyDef& def) {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < parts.size(); i++) {
     const Eigen::Vector3d at = def.shapes[i].local.position, d = at - centre;
-    inertia += world_inertia(parts[i], def.shapes[i].local.orientation) + parts[i].mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
+    inertia += world_inertia(parts[i], def.shapes[i].local.orientation) +
+               parts[i].mass * (d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose());
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
   Eigen::Matrix3d axes = solver.eigenvectors();

@@ -108,12 +108,15 @@ std::uint64_t checksum(std::span<const std::byte> content) {
 void write_table(Writer& w, const Tables& t, Table table, std::uint32_t row) {
   for (const PropertySchema& p : properties())
     if (p.table == table && p.role == Role::state)
-      w.put(t.bytes(p.buffer).data() + row * t.row_bytes(p.buffer) + p.offset * t.real_bytes(), components(p.type) * t.real_bytes());
+      w.put(t.bytes(p.buffer).data() + row * t.row_bytes(p.buffer) + p.offset * t.real_bytes(),
+            components(p.type) * t.real_bytes());
 }
 bool read_table(Reader& r, Tables& t, Table table, std::uint32_t row) {
   for (const PropertySchema& p : properties())
     if (p.table == table && p.role == Role::state)
-      if (!r.get(t.bytes(p.buffer).data() + row * t.row_bytes(p.buffer) + p.offset * t.real_bytes(), components(p.type) * t.real_bytes())) return false;
+      if (!r.get(t.bytes(p.buffer).data() + row * t.row_bytes(p.buffer) + p.offset * t.real_bytes(),
+                 components(p.type) * t.real_bytes()))
+        return false;
   return true;
 }
 std::size_t state_bytes(const Tables& t, Table table) {
@@ -139,14 +142,16 @@ double World::kinetic_energy() const {
 double World::potential_energy() const {
   const WorldState& s = *state_;
   double sum = 0;
-  for (std::uint32_t row = 1; row < s.bodies.size(); row++) sum -= s.tables.get(Buffer::mass, row, 3) * dot(s.gravity, s.pose(row).position);
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++)
+    sum -= s.tables.get(Buffer::mass, row, 3) * dot(s.gravity, s.pose(row).position);
   return sum;
 }
 
 Vec3 World::momentum() const {
   const WorldState& s = *state_;
   Vec3 sum;
-  for (std::uint32_t row = 1; row < s.bodies.size(); row++) sum = sum + s.tables.get(Buffer::mass, row, 3) * s.tables.get3(Buffer::motion, row, 0);
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++)
+    sum = sum + s.tables.get(Buffer::mass, row, 3) * s.tables.get3(Buffer::motion, row, 0);
   return sum;
 }
 
@@ -155,7 +160,8 @@ Vec3 World::angular_momentum() const {
   Vec3 sum;
   for (std::uint32_t row = 1; row < s.bodies.size(); row++)
     if (s.bodies[row].kind == BodyKind::dynamic)
-      sum = sum + s.tables.get3(Buffer::motion, row, 4) + s.tables.get(Buffer::mass, row, 3) * cross(s.pose(row).position, s.tables.get3(Buffer::motion, row, 0));
+      sum = sum + s.tables.get3(Buffer::motion, row, 4) +
+            s.tables.get(Buffer::mass, row, 3) * cross(s.pose(row).position, s.tables.get3(Buffer::motion, row, 0));
   return sum;
 }
 
@@ -165,18 +171,22 @@ Result<PropertyView> World::view(std::string_view property) const {
   const Tables& t = state_->tables;
   for (const PropertySchema& p : properties()) {
     if (p.name != property) continue;
-    return PropertyView{t.bytes(p.buffer).data() + p.offset * t.real_bytes(), t.rows(p.table), t.row_bytes(p.buffer), components(p.type), t.precision()};
+    return PropertyView{t.bytes(p.buffer).data() + p.offset * t.real_bytes(), t.rows(p.table), t.row_bytes(p.buffer),
+                        components(p.type), t.precision()};
   }
   return Error{ErrorCode::unknown_name, "There is no property \"" + std::string(property) + "\"; docs/properties.md lists them."};
 }
 
 std::size_t World::memory_bytes() const {
   const WorldState& s = *state_;
-  return s.tables.memory_bytes() + s.bodies.capacity() * sizeof(BodyRecord) + s.joints.capacity() * sizeof(JointRecord) + s.shapes.capacity() * sizeof(ShapeRecord) +
+  return s.tables.memory_bytes() + s.bodies.capacity() * sizeof(BodyRecord) + s.joints.capacity() * sizeof(JointRecord) +
+         s.shapes.capacity() * sizeof(ShapeRecord) +
          s.contacts.keys.capacity() * (sizeof(ContactKey) + sizeof(s.contacts.ends[0]) + sizeof(s.contacts.features[0]));
 }
 
-std::uint64_t World::hash() const { return precision() == Precision::f32 ? hash_world<float>(*state_) : hash_world<double>(*state_); }
+std::uint64_t World::hash() const {
+  return precision() == Precision::f32 ? hash_world<float>(*state_) : hash_world<double>(*state_);
+}
 
 std::vector<std::byte> World::snapshot() const {
   const WorldState& s = *state_;
@@ -218,16 +228,22 @@ Status World::restore(std::span<const std::byte> snapshot) {
   double substep = 0;
   Vec3 gravity;
   if (!r.get(head) || std::memcmp(head, magic, sizeof magic) != 0 || !r.get(objects)) return cut;
-  if (objects != object_hash(s)) return Error{ErrorCode::bad_snapshot, "The snapshot is of a world with other objects or another precision; restore it into one with the same bodies and joints."};
+  if (objects != object_hash(s))
+    return Error{ErrorCode::bad_snapshot,
+                 "The snapshot is of a world with other objects or another precision; restore it into one with the same bodies "
+                 "and joints."};
   if (!r.get(substep) || !r.get(gravity)) return cut;
 
   // the whole length is checked before anything is written, so that a cut snapshot changes nothing
-  const std::size_t fixed_part = (s.bodies.size() - 1) * (4 + state_bytes(s.tables, Table::body)) + (s.joints.size() - 1) * (4 + state_bytes(s.tables, Table::joint));
+  const std::size_t fixed_part = (s.bodies.size() - 1) * (4 + state_bytes(s.tables, Table::body)) +
+                                 (s.joints.size() - 1) * (4 + state_bytes(s.tables, Table::joint));
   const std::size_t offset = sizeof magic + 8 + 8 + sizeof(Vec3) + fixed_part;
   std::uint32_t contacts = 0;
   if (snapshot.size() < offset + 4) return cut;
   std::memcpy(&contacts, snapshot.data() + offset, 4);
-  if (contacts < 1 || snapshot.size() != offset + 4 + (contacts - 1) * (sizeof(ContactKey) + 16 + state_bytes(s.tables, Table::contact))) return cut;
+  if (contacts < 1 ||
+      snapshot.size() != offset + 4 + (contacts - 1) * (sizeof(ContactKey) + 16 + state_bytes(s.tables, Table::contact)))
+    return cut;
 
   s.last_substep = substep;
   s.gravity = gravity;

@@ -50,7 +50,8 @@ constexpr KernelSchema kernel_schemas[] = {
 };
 
 // GL 4.3 guarantees eight storage blocks to a program, no more.
-#define PC_KERNEL(name, domain, stage, accesses) static_assert(std::size(accesses_##name) <= 8, #name " binds more than eight buffers");
+#define PC_KERNEL(name, domain, stage, accesses) \
+  static_assert(std::size(accesses_##name) <= 8, #name " binds more than eight buffers");
 #include "kernels/kernels.inl"
 #undef PC_KERNEL
 

@@ -59,8 +59,8 @@ inline constexpr std::size_t stage_count = 3;
 
 struct BufferSchema {
   std::string_view name;
-  Table table;           // of a table's buffer
-  std::uint32_t reals;   // per row, or per slot of an array of structures of arrays; 0: unsigned integers
+  Table table;          // of a table's buffer
+  std::uint32_t reals;  // per row, or per slot of an array of structures of arrays; 0: unsigned integers
   std::string_view doc;
 };
 
@@ -71,7 +71,7 @@ struct PropertySchema {
   PropertyType type;
   std::string_view name;
   Role role;
-  double initial;        // of every component; of a quaternion's w
+  double initial;  // of every component; of a quaternion's w
   std::string_view unit, doc;
 };
 

@@ -89,8 +89,10 @@ void WorldState::set_mass(std::uint32_t row, const MassProperties& m) {
   const double low = std::min({i.x, i.y, i.z}), high = std::max({i.x, i.y, i.z});
   const double values[3] = {i.x, i.y, i.z};
   int smallest = 0, largest = 2;
-  for (int k = 2; k >= 0; k--) if (values[k] == low) smallest = k;
-  for (int k = 0; k < 3; k++) if (values[k] == high && k != smallest) largest = k;
+  for (int k = 2; k >= 0; k--)
+    if (values[k] == low) smallest = k;
+  for (int k = 0; k < 3; k++)
+    if (values[k] == high && k != smallest) largest = k;
   tables.set(Buffer::mass, row, 7, 3 - smallest - largest);
 }
 
@@ -108,7 +110,8 @@ void WorldState::sum_forces(std::uint32_t row) {
 void WorldState::change_forces(std::uint32_t row) {
   const Vec3 force = tables.get3(Buffer::force, row, 0), torque = tables.get3(Buffer::force, row, 4);
   sum_forces(row);
-  kick(row, tables.get(Buffer::motion, row, 3) * (tables.get3(Buffer::force, row, 0) - force), tables.get3(Buffer::force, row, 4) - torque);
+  kick(row, tables.get(Buffer::motion, row, 3) * (tables.get3(Buffer::force, row, 0) - force),
+       tables.get3(Buffer::force, row, 4) - torque);
 }
 
 void WorldState::kick(std::uint32_t row, Vec3 acceleration, Vec3 torque) {

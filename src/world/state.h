@@ -42,8 +42,8 @@ struct ContactKey {
   friend auto operator<=>(const ContactKey&, const ContactKey&) = default;
 };
 struct ContactColumns {
-  std::vector<ContactKey> keys;                       // by row; row 0 pads
-  std::vector<std::array<std::uint32_t, 2>> ends;     // body rows
+  std::vector<ContactKey> keys;                    // by row; row 0 pads
+  std::vector<std::array<std::uint32_t, 2>> ends;  // body rows
   std::vector<std::array<std::uint32_t, 4>> features;
 };
 
@@ -63,12 +63,12 @@ struct WorldState {
   double last_substep = 0;  // h of the last step [s]; 0 before the first
 
   IdPool body_ids, joint_ids, force_ids;
-  std::vector<BodyRecord> bodies;    // by row
-  std::vector<JointRecord> joints;   // by row; row 0 pads
-  std::vector<ShapeRecord> shapes;   // by shape index
+  std::vector<BodyRecord> bodies;   // by row
+  std::vector<JointRecord> joints;  // by row; row 0 pads
+  std::vector<ShapeRecord> shapes;  // by shape index
   std::vector<std::uint32_t> free_shapes;
-  std::vector<ForceRecord> forces;   // by force index
-  std::uint32_t callbacks = 0;       // how many of them are callbacks
+  std::vector<ForceRecord> forces;  // by force index
+  std::uint32_t callbacks = 0;      // how many of them are callbacks
   ContactColumns contacts;
   std::unordered_map<std::uint64_t, NoCollide> no_collide;  // by pair_key; only pairs with a reason
 

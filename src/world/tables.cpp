@@ -20,8 +20,10 @@ void Tables::resize(Table table, std::uint32_t rows) {
   for (const PropertySchema& p : properties()) {
     if (p.table != table || p.initial == 0) continue;
     for (std::uint32_t row = before; row < rows; row++) {
-      if (p.type == PropertyType::quat) set(p.buffer, row, p.offset + 3, p.initial);
-      else for (std::uint32_t c = 0; c < components(p.type); c++) set(p.buffer, row, p.offset + c, p.initial);
+      if (p.type == PropertyType::quat)
+        set(p.buffer, row, p.offset + 3, p.initial);
+      else
+        for (std::uint32_t c = 0; c < components(p.type); c++) set(p.buffer, row, p.offset + c, p.initial);
     }
   }
 }
@@ -43,8 +45,10 @@ double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const
 void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
   assert(row < rows(schema(buffer).table));
   const std::size_t i = std::size_t(row) * schema(buffer).reals + offset;
-  if (precision_ == Precision::f32) data<float>(buffer)[i] = float(value);
-  else data<double>(buffer)[i] = value;
+  if (precision_ == Precision::f32)
+    data<float>(buffer)[i] = float(value);
+  else
+    data<double>(buffer)[i] = value;
   touch(buffer);
 }
 Vec3 Tables::get3(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {

@@ -34,7 +34,9 @@ class Tables {
   AlignedBytes& bytes(Buffer buffer) { return bytes_[std::size_t(buffer)]; }
   const AlignedBytes& bytes(Buffer buffer) const { return bytes_[std::size_t(buffer)]; }
   template <class Scalar> Scalar* data(Buffer buffer) { return reinterpret_cast<Scalar*>(bytes(buffer).data()); }
-  template <class Scalar> const Scalar* data(Buffer buffer) const { return reinterpret_cast<const Scalar*>(bytes(buffer).data()); }
+  template <class Scalar> const Scalar* data(Buffer buffer) const {
+    return reinterpret_cast<const Scalar*>(bytes(buffer).data());
+  }
 
   /// Counts the changes of a buffer, so that a device knows when its copy is old.
   std::uint64_t version(Buffer buffer) const { return versions_[std::size_t(buffer)]; }

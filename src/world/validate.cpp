@@ -17,50 +17,66 @@ std::string number(double x) {
 bool sane(double x) { return std::isfinite(x) && std::fabs(x) <= constants::largest_input; }
 
 Status check_extent(double x, const char* what) {
-  if (!std::isfinite(x)) return Error{ErrorCode::not_finite, std::string("The ") + what + " of a shape is not a number; give it a finite length in metres."};
+  if (!std::isfinite(x))
+    return Error{ErrorCode::not_finite,
+                 std::string("The ") + what + " of a shape is not a number; give it a finite length in metres."};
   if (x < constants::smallest_extent || x > constants::largest_extent)
-    return Error{ErrorCode::degenerate_shape, std::string("The ") + what + " of a shape is " + number(x) + " m; it must lie between " + number(constants::smallest_extent) + " and " + number(constants::largest_extent) + " m."};
+    return Error{ErrorCode::degenerate_shape, std::string("The ") + what + " of a shape is " + number(x) +
+                                                  " m; it must lie between " + number(constants::smallest_extent) + " and " +
+                                                  number(constants::largest_extent) + " m."};
   return {};
 }
 
 }  // namespace
 
 const char* name(ErrorCode code) {
-  constexpr const char* names[] = {"none", "not_finite", "bad_mass", "degenerate_shape", "not_unit_quaternion", "bad_time_step", "stale_id", "bad_joint",
-                                   "bad_argument", "unknown_name", "unavailable", "buffer_full", "device_error", "bad_file", "bad_snapshot"};
+  constexpr const char* names[] = {"none",          "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion",
+                                   "bad_time_step", "stale_id",    "bad_joint",    "bad_argument",     "unknown_name",
+                                   "unavailable",   "buffer_full", "device_error", "bad_file",         "bad_snapshot"};
   return names[int(code)];
 }
 
 Error stale(const char* what) {
-  return {ErrorCode::stale_id, std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
+  return {ErrorCode::stale_id,
+          std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
 }
 
 Status check_finite(double value, const char* what) {
-  if (!sane(value)) return Error{ErrorCode::not_finite, std::string("The ") + what + " is " + number(value) + "; it must be finite and no larger than " + number(constants::largest_input) + "."};
+  if (!sane(value))
+    return Error{ErrorCode::not_finite, std::string("The ") + what + " is " + number(value) +
+                                            "; it must be finite and no larger than " + number(constants::largest_input) + "."};
   return {};
 }
 
 Status check_finite(Vec3 value, const char* what) {
   if (!sane(value.x) || !sane(value.y) || !sane(value.z))
-    return Error{ErrorCode::not_finite, std::string("The ") + what + " is (" + number(value.x) + ", " + number(value.y) + ", " + number(value.z) + "); every component must be finite and no larger than " + number(constants::largest_input) + "."};
+    return Error{ErrorCode::not_finite, std::string("The ") + what + " is (" + number(value.x) + ", " + number(value.y) + ", " +
+                                            number(value.z) + "); every component must be finite and no larger than " +
+                                            number(constants::largest_input) + "."};
   return {};
 }
 
 Status check_unit(Quat& value, const char* what) {
-  if (!finite(value)) return Error{ErrorCode::not_finite, std::string("The ") + what + " holds NaN or infinity; give a unit quaternion (x, y, z, w)."};
+  if (!finite(value))
+    return Error{ErrorCode::not_finite,
+                 std::string("The ") + what + " holds NaN or infinity; give a unit quaternion (x, y, z, w)."};
   const double l = length(value);
-  if (std::fabs(l - 1) > constants::unit_tolerance) return Error{ErrorCode::not_unit_quaternion, std::string("The ") + what + " has length " + number(l) + "; normalise it: a rotation is a unit quaternion (x, y, z, w)."};
+  if (std::fabs(l - 1) > constants::unit_tolerance)
+    return Error{ErrorCode::not_unit_quaternion, std::string("The ") + what + " has length " + number(l) +
+                                                     "; normalise it: a rotation is a unit quaternion (x, y, z, w)."};
   value = {value.x / l, value.y / l, value.z / l, value.w / l};
   return {};
 }
 
 Status check(const ShapeDef& shape) {
-  if (shape.kind > ShapeKind::plane) return Error{ErrorCode::bad_argument, "A shape is of no known kind; use ShapeDef::sphere, capsule, box, cylinder or plane."};
+  if (shape.kind > ShapeKind::plane)
+    return Error{ErrorCode::bad_argument, "A shape is of no known kind; use ShapeDef::sphere, capsule, box, cylinder or plane."};
   Status ok;
   if (shape.kind != ShapeKind::plane) ok = check_extent(shape.size.x, shape.kind == ShapeKind::box ? "half extent x" : "radius");
   if (ok && shape.kind == ShapeKind::box) ok = check_extent(shape.size.y, "half extent y");
   if (ok && shape.kind == ShapeKind::box) ok = check_extent(shape.size.z, "half extent z");
-  if (ok && (shape.kind == ShapeKind::capsule || shape.kind == ShapeKind::cylinder)) ok = check_extent(shape.size.y, "half length");
+  if (ok && (shape.kind == ShapeKind::capsule || shape.kind == ShapeKind::cylinder))
+    ok = check_extent(shape.size.y, "half length");
   if (ok) ok = check_finite(shape.local.position, "local position of a shape");
   Quat q = shape.local.orientation;
   if (ok) ok = check_unit(q, "local orientation of a shape");
@@ -69,34 +85,51 @@ Status check(const ShapeDef& shape) {
 
 Status check(const Material& m) {
   for (double x : {m.static_friction, m.kinetic_friction, m.restitution})
-    if (!std::isfinite(x)) return Error{ErrorCode::not_finite, "A coefficient of friction or restitution is not a number; give finite ones."};
-  if (m.static_friction < 0 || m.kinetic_friction < 0) return Error{ErrorCode::bad_argument, "A coefficient of friction is below zero; use 0 for none."};
-  if (m.restitution < 0 || m.restitution > 1) return Error{ErrorCode::bad_argument, "The restitution is " + number(m.restitution) + "; it must lie between 0 (no bounce) and 1 (no loss)."};
+    if (!std::isfinite(x))
+      return Error{ErrorCode::not_finite, "A coefficient of friction or restitution is not a number; give finite ones."};
+  if (m.static_friction < 0 || m.kinetic_friction < 0)
+    return Error{ErrorCode::bad_argument, "A coefficient of friction is below zero; use 0 for none."};
+  if (m.restitution < 0 || m.restitution > 1)
+    return Error{ErrorCode::bad_argument,
+                 "The restitution is " + number(m.restitution) + "; it must lie between 0 (no bounce) and 1 (no loss)."};
   return {};
 }
 
 Status check(const MassProperties& m) {
-  if (!std::isfinite(m.mass) || !finite(m.moments)) return Error{ErrorCode::not_finite, "The mass or a moment of inertia is not a number; give finite ones."};
-  if (!(m.mass > 0)) return Error{ErrorCode::bad_mass, "The mass is " + number(m.mass) + " kg; a dynamic body's must be above zero. Use BodyKind::fixed for a body that never moves."};
+  if (!std::isfinite(m.mass) || !finite(m.moments))
+    return Error{ErrorCode::not_finite, "The mass or a moment of inertia is not a number; give finite ones."};
+  if (!(m.mass > 0))
+    return Error{ErrorCode::bad_mass,
+                 "The mass is " + number(m.mass) +
+                     " kg; a dynamic body's must be above zero. Use BodyKind::fixed for a body that never moves."};
   const Vec3 i = m.moments;
-  if (!(i.x > 0 && i.y > 0 && i.z > 0)) return Error{ErrorCode::bad_mass, "A moment of inertia is not above zero; all three must be."};
+  if (!(i.x > 0 && i.y > 0 && i.z > 0))
+    return Error{ErrorCode::bad_mass, "A moment of inertia is not above zero; all three must be."};
   const double low = constants::smallest_mass, high = constants::largest_mass;
   for (double x : {m.mass, i.x, i.y, i.z})
-    if (x < low || x > high) return Error{ErrorCode::bad_mass, "A mass or moment of inertia is " + number(x) + "; it must lie between " + number(low) + " and " + number(high) + " (kg, kg m^2)."};
+    if (x < low || x > high)
+      return Error{ErrorCode::bad_mass, "A mass or moment of inertia is " + number(x) + "; it must lie between " + number(low) +
+                                            " and " + number(high) + " (kg, kg m^2)."};
   const double slack = 1 + constants::moment_tolerance;
   if (i.x > (i.y + i.z) * slack || i.y > (i.x + i.z) * slack || i.z > (i.x + i.y) * slack)
-    return Error{ErrorCode::bad_mass, "The moments of inertia (" + number(i.x) + ", " + number(i.y) + ", " + number(i.z) + ") belong to no body: none may exceed the sum of the other two."};
+    return Error{ErrorCode::bad_mass, "The moments of inertia (" + number(i.x) + ", " + number(i.y) + ", " + number(i.z) +
+                                          ") belong to no body: none may exceed the sum of the other two."};
   return {};
 }
 
 Status check(AngleFreedom& f) {
-  if (f.kind > AngleFreedom::Kind::pitch_yaw_roll) return Error{ErrorCode::bad_joint, "A joint's freedom is of no known kind; use AngleFreedom::cone_and_twist, between, hinge or locked."};
+  if (f.kind > AngleFreedom::Kind::pitch_yaw_roll)
+    return Error{ErrorCode::bad_joint,
+                 "A joint's freedom is of no known kind; use AngleFreedom::cone_and_twist, between, hinge or locked."};
   if (f.kind == AngleFreedom::Kind::cone_twist) {
-    if (!(f.cone >= 0) || !(f.twist >= 0)) return Error{ErrorCode::bad_joint, "The cone and twist of a joint must be zero or above [rad]."};
+    if (!(f.cone >= 0) || !(f.twist >= 0))
+      return Error{ErrorCode::bad_joint, "The cone and twist of a joint must be zero or above [rad]."};
   } else if (f.kind == AngleFreedom::Kind::pitch_yaw_roll) {
     const double lower[3] = {f.lower.x, f.lower.y, f.lower.z}, upper[3] = {f.upper.x, f.upper.y, f.upper.z};
     for (int k = 0; k < 3; k++)
-      if (!(lower[k] <= upper[k])) return Error{ErrorCode::bad_joint, "An angle limit of a joint has its lower bound above its upper one, or is not a number."};
+      if (!(lower[k] <= upper[k]))
+        return Error{ErrorCode::bad_joint,
+                     "An angle limit of a joint has its lower bound above its upper one, or is not a number."};
   }
   return {};
 }
