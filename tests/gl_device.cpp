@@ -61,20 +61,22 @@ std::string text_of(const std::filesystem::path& path) {
 /// Runs the body kernel `remember` on four bodies; true when it did what it should.
 bool remember_works(Backend& gl) {
   std::vector<std::uint32_t> bodies = {1, 3};
-  std::vector<float> motion(4 * 8), half_change(4 * 8, -1.0f);
+  constexpr std::size_t moves = reals_of(Buffer::motion), parts_each = reals_of(Buffer::velocity_parts);
+  std::vector<float> motion(4 * moves), parts(4 * parts_each, -1.0f);
   for (std::size_t i = 0; i < motion.size(); i++) motion[i] = float(i);
   const InfoOf<float> info;
   const Range all{0, 2};
   parity::require(gl.attach(Buffer::bodies, bodies.data(), bodies.size() * 4));
   parity::require(gl.attach(Buffer::motion, motion.data(), motion.size() * 4));
-  parity::require(gl.attach(Buffer::half_change, half_change.data(), half_change.size() * 4));
-  for (const Buffer buffer : {Buffer::bodies, Buffer::motion, Buffer::half_change}) parity::require(gl.upload(buffer));
+  parity::require(gl.attach(Buffer::velocity_parts, parts.data(), parts.size() * 4));
+  for (const Buffer buffer : {Buffer::bodies, Buffer::motion, Buffer::velocity_parts}) parity::require(gl.upload(buffer));
   parity::require(gl.set_infos(&info, 1));
   parity::require(gl.run(Kernel::remember, 0, {&all, 1}, false));
   parity::require(gl.finish());
-  parity::require(gl.download(Buffer::half_change));
-  for (std::size_t i = 0; i < motion.size(); i++)
-    if (half_change[i] != (i / 8 == 1 || i / 8 == 3 ? float(i) : -1.0f)) return false;
+  parity::require(gl.download(Buffer::velocity_parts));
+  for (std::size_t row = 0; row < 4; row++)
+    for (std::size_t i = 0; i < parts_each; i++)
+      if (parts[row * parts_each + i] != (row % 2 == 1 && i < moves ? motion[row * moves + i] : -1.0f)) return false;
   return true;
 }
 }  // namespace

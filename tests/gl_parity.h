@@ -104,13 +104,15 @@ template <class Scalar> void Maker<Scalar>::body(std::uint32_t row) {
       {either(speed), either(speed), either(speed), dynamic ? 1 / mass : 0, either(spin), either(spin), either(spin),
        dynamic ? double(int(below(3)) - 1) : 0});
   const auto q = ground || rarely() ? std::array<double, 4>{0, 0, 0, 1} : turn(4);
-  const double far = ground ? 0 : mood_.distance, near = ground ? 0 : 3, low = far * std::numeric_limits<Scalar>::epsilon() / 4;
+  const double far = ground ? 0 : mood_.distance, near = ground ? 0 : 3, low = far * std::numeric_limits<Scalar>::epsilon() / 4,
+               unit_low = ground ? 0 : std::numeric_limits<Scalar>::epsilon() / 4;
   put(Buffer::pose, row,
-      {far + either(near), either(near), either(near) - far, 0, q[0], q[1], q[2], q[3], either(low), either(low), either(low),
-       0});
-  const double change = speed / 100;
-  put(Buffer::half_change, row,
-      {either(change), either(change), either(change), 0, either(change), either(change), either(change), 0});
+      {far + either(near), either(near), either(near) - far, 0, q[0], q[1], q[2], q[3], either(low), either(low), either(low), 0,
+       either(unit_low), either(unit_low), either(unit_low), either(unit_low)});
+  const double change = speed / 100, lost = speed * std::numeric_limits<Scalar>::epsilon() / 4;
+  put(Buffer::velocity_parts, row,
+      {either(change), either(change), either(change), 0, either(change), either(change), either(change), 0,  //
+       either(lost), either(lost), either(lost), 0, either(lost), either(lost), either(lost), 0});
   put(Buffer::mass, row,
       {x * moments[0], x * moments[1], x * moments[2], x * mass, dynamic ? 1 / moments[0] : kinematic,
        dynamic ? 1 / moments[1] : kinematic, dynamic ? 1 / moments[2] : kinematic, double(middle)});

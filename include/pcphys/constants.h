@@ -29,6 +29,10 @@ inline constexpr double joint_damping_ratio = 2;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 
+/// A body that a contact holds reads as at rest below this many roundings (of relative size epsilon) of the velocity
+/// that the contact's impulse would give it.
+inline constexpr double rest_roundings = 32;
+
 /// Proxies of the broad phase are fattened by this, so that most steps change no pair [m].
 inline constexpr double broad_margin = 0.05;
 

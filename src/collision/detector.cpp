@@ -151,7 +151,7 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
     ShapeView<Scalar>& view = shapes[i];
-    place_shape(table + std::size_t(i + 1) * 12, proxy.kind, proxy.centred, bodies.orientation(proxy.body), view);
+    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.centred, bodies.orientation(proxy.body), view);
     const Twist& twist = twists_[proxy.body];
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;

@@ -13,9 +13,8 @@ struct Twist {
 };
 
 template <class Scalar> Twist twist_of(const Tables& t, std::uint32_t row) {
-  const Scalar *m = t.data<Scalar>(Buffer::motion) + std::size_t(row) * 8,
-               *i = t.data<Scalar>(Buffer::mass) + std::size_t(row) * 8 + 4;
-  const Scalar* q = t.data<Scalar>(Buffer::pose) + std::size_t(row) * 12 + 4;
+  const auto at = [&](Buffer buffer) { return t.data<Scalar>(buffer) + row * reals_of(buffer); };
+  const Scalar *m = at(Buffer::motion), *i = at(Buffer::mass) + 4, *q = at(Buffer::pose) + 4;
   const float x = float(q[0]), y = float(q[1]), z = float(q[2]), w = float(q[3]);
   const float r[9] = {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
                       2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),

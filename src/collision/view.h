@@ -14,15 +14,16 @@ namespace pcphys {
 template <class Scalar> class BodyReader {
  public:
   explicit BodyReader(const Tables& t) : pose_(t.data<Scalar>(Buffer::pose)) {}
+  static constexpr std::size_t stride = reals_of(Buffer::pose);
 
-  const Scalar* orientation(std::uint32_t row) const { return pose_ + std::size_t(row) * 12 + 4; }
+  const Scalar* orientation(std::uint32_t row) const { return pose_ + row * stride + 4; }
   Vec3 position(std::uint32_t row) const {
-    const Scalar* p = pose_ + std::size_t(row) * 12;
+    const Scalar* p = pose_ + row * stride;
     return {double(p[0]) + double(p[8]), double(p[1]) + double(p[9]), double(p[2]) + double(p[10])};
   }
   /// Adds b's centre as seen from a's.
   void shift(std::uint32_t a, std::uint32_t b, Scalar* p) const {
-    const Scalar *x = pose_ + std::size_t(a) * 12, *y = pose_ + std::size_t(b) * 12;
+    const Scalar *x = pose_ + a * stride, *y = pose_ + b * stride;
     for (int k = 0; k < 3; k++) p[k] += (y[k] - x[k]) + (y[8 + k] - x[8 + k]);
   }
 

@@ -37,6 +37,9 @@ using element_joint_order = uint;
 PC_KERNEL_TEXT(begin) {
 #include "kernels/begin.inl"
 }
+PC_KERNEL_TEXT(begin_drag) {
+#include "kernels/begin_drag.inl"
+}
 PC_KERNEL_TEXT(integrate) {
 #include "kernels/integrate.inl"
 }

@@ -1,12 +1,15 @@
 // Stage 1 of a sub-step: forces and drag. With F the drag, a the acceleration:
 //   u' = u + a h phi(F h) - (1 - e^(-F h)) u,   L' = L + T h phi(G h) - (1 - e^(-G h)) L
 // which is exact for constant a, T (errata vi of the method); then the inertia of the new sub-step.
-// Without drag (PC_DRAG not defined) phi = 1: the same bits, less work.
+// Both are sums of two reals, as positions are: a velocity in one float takes up g h with the rounding of its own
+// last place, the same way each time. Without drag (PC_DRAG not defined) phi = 1: the same bits, less work.
 #include "world_inertia.inl"
 
 PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear = PC_GATHER(motion, i, 0u);
   Quad angular = PC_GATHER(motion, i, 1u);
+  Quad linear_low = PC_GATHER(velocity_parts, i, 2u);
+  Quad angular_low = PC_GATHER(velocity_parts, i, 3u);
   Quad push = PC_GATHER(force, i, 0u);
   Quad turn = PC_GATHER(force, i, 1u);
   Real h = PC_INFO(h);
@@ -21,16 +24,22 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Decay calm = pc_decay(y);
   precise Real kick = slow.phi * h;
   precise Real twist = calm.phi * h;
-  precise Vec3 u = linear.v + (acceleration * kick - linear.v * slow.loss);
-  precise Vec3 l = angular.v + (turn.v * twist - angular.v * calm.loss);
+  precise Vec3 u_change = (acceleration * kick - linear.v * slow.loss) + linear_low.v;
+  precise Vec3 l_change = (turn.v * twist - angular.v * calm.loss) + angular_low.v;
 #else
-  precise Vec3 u = linear.v + acceleration * h;
-  precise Vec3 l = angular.v + turn.v * h;
+  precise Vec3 u_change = acceleration * h + linear_low.v;
+  precise Vec3 l_change = turn.v * h + angular_low.v;
 #endif
-  linear.v = pc_select3(dynamic_body, pc_snap3(u), linear.v);
-  angular.v = pc_select3(dynamic_body, pc_snap3(l), angular.v);
+  TwoSum u = pc_two_sum(linear.v, u_change);
+  TwoSum l = pc_two_sum(angular.v, l_change);
+  linear.v = pc_select3(dynamic_body, pc_snap3(u.sum), linear.v);
+  angular.v = pc_select3(dynamic_body, pc_snap3(l.sum), angular.v);
+  linear_low.v = pc_select3(dynamic_body, pc_snap3(u.low), linear_low.v);
+  angular_low.v = pc_select3(dynamic_body, pc_snap3(l.low), angular_low.v);
   angular.s = PC_REAL(0.0);
   PC_SCATTER(motion, i, 0u, linear);
   PC_SCATTER(motion, i, 1u, angular);
+  PC_SCATTER(velocity_parts, i, 2u, linear_low);
+  PC_SCATTER(velocity_parts, i, 3u, angular_low);
   pc_store_inertia(PC_PASS i, linear.s);
 }

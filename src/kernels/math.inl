@@ -30,6 +30,20 @@ PC_FN Vec3 pc_sub(Vec3 a, Vec3 b) { precise Vec3 r = a - b; return r; }
 PC_FN Vec3 pc_scale(Vec3 a, Real s) { precise Vec3 r = a * s; return r; }
 PC_FN Vec3 pc_madd(Vec3 a, Vec3 b, Real s) { precise Vec3 r = a + b * s; return r; }
 PC_FN Vec3 pc_combine(Vec3 a, Real x, Vec3 b, Real y, Vec3 c, Real z) { precise Vec3 r = a * x + b * y + c * z; return r; }
+// The rounded sum of two vectors, and what rounding dropped from it (Knuth's two-sum).
+struct TwoSum { Vec3 sum; Vec3 low; };
+PC_FN Real pc_two_sum_error(Real a, Real b, Real sum) {
+  precise Real bb = sum - a;
+  precise Real aa = sum - bb;
+  precise Real eb = b - bb;
+  precise Real ea = a - aa;
+  precise Real e = ea + eb;
+  return e;
+}
+PC_FN TwoSum pc_two_sum(Vec3 a, Vec3 b) {
+  TwoSum r; r.sum = pc_add(a, b);
+  r.low = Vec3(pc_two_sum_error(a.x, b.x, r.sum.x), pc_two_sum_error(a.y, b.y, r.sum.y), pc_two_sum_error(a.z, b.z, r.sum.z)); return r;
+}
 PC_FN Vec3 pc_negate(Vec3 a) { return Vec3(-a.x, -a.y, -a.z); }
 PC_FN Real pc_inverse_or_zero(Real x) { return pc_select(x > PC_REAL(0.0), pc_div(PC_REAL(1.0), x), PC_REAL(0.0)); }
 PC_FN Real pc_length(Vec3 a) { return pc_sqrt(pc_dot(a, a)); }
@@ -111,7 +125,8 @@ PC_FN Sym3 pc_world_inertia(Quaternion q, Vec3 m) {
 #endif
 PC_FN Real pc_round(Real x) { precise Real a = x + PC_ROUNDER; precise Real b = a - PC_ROUNDER; return b; }
 
-struct SinCos { Real sine; Real cosine; };
+// fall: cosine - 1, with the digits that the difference would lose.
+struct SinCos { Real sine; Real cosine; Real fall; };
 // Cody-Waite reduction by pi/2 in three parts, then minimax polynomials on [-pi/4, pi/4] (the coefficients
 // of the Cephes library, S. Moshier; single and double). |x| up to 1e4.
 // Beyond 3e4 the angle is cut off: the reduction has no digits left there, and the result must stay finite.
@@ -135,7 +150,8 @@ PC_FN SinCos pc_sincos(Real angle) {
   precise Real c0 = (PC_REAL(2.443315711809948e-5) * z - PC_REAL(1.388731625493765e-3)) * z + PC_REAL(4.166664568298827e-2);
 #endif
   precise Real s = r + r * z * s0;
-  precise Real c = PC_REAL(1.0) - PC_REAL(0.5) * z + z * z * c0;
+  precise Real fallen = z * z * c0 - PC_REAL(0.5) * z;
+  precise Real c = PC_REAL(1.0) + fallen;
   // quadrant: k mod 4 in {-2, -1, 0, 1, 2}
   precise Real quarter = k * PC_REAL(0.25); Real whole = pc_round(quarter); precise Real quadrant = k - whole * PC_REAL(4.0);
   precise Real off_odd = pc_abs(quadrant) - PC_REAL(1.0);
@@ -145,20 +161,30 @@ PC_FN SinCos pc_sincos(Real angle) {
   // quadrant 1: (c, -s); -1: (-c, s); 2: (-s, -c)
   Mask negate_sine = pc_or(opposite, quadrant < PC_REAL(-0.5));
   Mask negate_cosine = pc_or(opposite, quadrant > PC_REAL(0.5));
-  SinCos o; o.sine = pc_select(negate_sine, -p, p); o.cosine = pc_select(negate_cosine, -q, q); return o;
+  Real cosine = pc_select(negate_cosine, -q, q); precise Real below = cosine - PC_REAL(1.0);
+  Mask near = pc_abs(quadrant) < PC_REAL(0.5);
+  SinCos o; o.sine = pc_select(negate_sine, -p, p); o.cosine = cosine; o.fall = pc_select(near, fallen, below); return o;
 }
 
-// The rotation by `angle` about the unit vector `axis`.
-PC_FN Quaternion pc_axis_rotation(Vec3 axis, Real angle) {
+// A rotation, and w - 1 beside its w: what it changes is then known to the last digit however small it is.
+struct Turn { Quaternion q; Real fall; };
+// By `angle` about the unit vector `axis`.
+PC_FN Turn pc_axis_turn(Vec3 axis, Real angle) {
   precise Real half_angle = angle * PC_REAL(0.5); SinCos t = pc_sincos(half_angle);
-  return pc_quaternion(pc_scale(axis, t.sine), t.cosine);
+  Turn r; r.q = pc_quaternion(pc_scale(axis, t.sine), t.cosine); r.fall = t.fall; return r;
 }
 // exp of a rotation vector. One whose square would be subnormal is none: some devices flush that square, others
 // keep it, and the axis would differ.
-PC_FN Quaternion pc_rotation(Vec3 vector) {
+PC_FN Turn pc_turn(Vec3 vector) {
   Vec3 phi = pc_snap3(vector);
   Real angle = pc_length(phi);
-  return pc_axis_rotation(pc_scale(phi, pc_inverse_or_zero(angle)), angle);
+  return pc_axis_turn(pc_scale(phi, pc_inverse_or_zero(angle)), angle);
+}
+// What two turns change together: (1 + a) (1 + b) - 1 = a + b + a b.
+PC_FN Turn pc_turn_mul(Turn a, Turn b) {
+  Quaternion x = pc_quaternion(a.q.v, a.fall); Quaternion y = pc_quaternion(b.q.v, b.fall); Quaternion xy = pc_quaternion_mul(x, y);
+  precise Real fall = x.w + y.w + xy.w; precise Vec3 v = x.v + y.v + xy.v; precise Real w = PC_REAL(1.0) + fall;
+  Turn r; r.q = pc_quaternion(v, w); r.fall = fall; return r;
 }
 
 // Angle of the point (x, y) with y >= 0, in [0, pi]: t = min / max, halved once about tan(pi/8), then the

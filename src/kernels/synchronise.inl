@@ -1,14 +1,22 @@
 // After the last sub-step: half of what it changed in the velocities, so that u + half change is the
-// velocity in phase with the position, to second order. A body that a contact touched keeps u itself:
-// at rest that is zero, and an impact is no acceleration.
+// velocity in phase with the position, to second order. A body that a contact touched keeps u itself: an impact is
+// no acceleration. At rest that is zero to the rounding of the impulses that hold it; what is no larger reads zero.
+PC_FN Mask pc_exceeds(Vec3 x, Real limit) { return pc_max(pc_abs(x.x), pc_max(pc_abs(x.y), pc_abs(x.z))) > limit; }
+
 PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear = PC_GATHER(motion, i, 0u);
   Quad angular = PC_GATHER(motion, i, 1u);
-  Quad linear_before = PC_GATHER(half_change, i, 0u);
-  Quad angular_before = PC_GATHER(half_change, i, 1u);
-  Real share = pc_select(angular.s > PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.5));
-  precise Vec3 u = (linear.v - linear_before.v) * share;
-  precise Vec3 l = (angular.v - angular_before.v) * share;
-  PC_SCATTER(half_change, i, 0u, pc_quad(pc_snap3(u), PC_REAL(0.0)));
-  PC_SCATTER(half_change, i, 1u, pc_quad(pc_snap3(l), PC_REAL(0.0)));
+  Quad moments = PC_GATHER(mass, i, 0u);
+  Quad linear_before = PC_GATHER(velocity_parts, i, 0u);
+  Quad angular_before = PC_GATHER(velocity_parts, i, 1u);
+  Mask touched = angular.s > PC_REAL(0.0);
+  precise Vec3 u = (linear.v - linear_before.v) * PC_REAL(0.5);
+  precise Vec3 l = (angular.v - angular_before.v) * PC_REAL(0.5);
+  precise Real noise = angular.s * PC_INFO(rounding); precise Real speed = noise * linear.s;
+  precise Real square = pc_max(moments.v.x, pc_max(moments.v.y, moments.v.z)) * linear.s; precise Real spin = noise * pc_sqrt(square);
+  Vec3 zero = pc_zero3();
+  Vec3 held_u = pc_select3(pc_exceeds(linear.v, speed), zero, pc_negate(linear.v));
+  Vec3 held_l = pc_select3(pc_exceeds(angular.v, spin), zero, pc_negate(angular.v));
+  PC_SCATTER(velocity_parts, i, 0u, pc_quad(pc_snap3(pc_select3(touched, held_u, u)), PC_REAL(0.0)));
+  PC_SCATTER(velocity_parts, i, 1u, pc_quad(pc_snap3(pc_select3(touched, held_l, l)), PC_REAL(0.0)));
 }

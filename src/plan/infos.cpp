@@ -1,5 +1,7 @@
 #include "plan/infos.h"
 
+#include <limits>
+
 #include "pcphys/constants.h"
 
 namespace pcphys {
@@ -34,6 +36,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.gravity_x = Scalar(gravity.x);
   biased.gravity_y = Scalar(gravity.y);
   biased.gravity_z = Scalar(gravity.z);
+  biased.h_before = Scalar(h);
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_mass_scale = Scalar(contact.mass_scale);
@@ -44,10 +47,12 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   biased.restitution_threshold = Scalar(settings.restitution_threshold);
+  biased.rounding = Scalar(constants::rest_roundings) * std::numeric_limits<Scalar>::epsilon();
 
   InfoOf<Scalar>& first = infos[unsigned(Phase::first)];
   first = biased;
   first.h_change = Scalar(1 - ratio);
+  first.h_before = Scalar(h / ratio);
   first.impulse_ratio = Scalar(ratio);
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];

@@ -81,7 +81,7 @@ StepPlan make_plan(const PlanSignature& s) {
   if (!s.bodies) return plan;
 
   Builder b(s, plan);
-  b.kernel(Kernel::begin, Phase::first, 0);
+  b.kernel(s.drag ? Kernel::begin_drag : Kernel::begin, Phase::first, 0);
   if (s.contacts) b.kernel(Kernel::contact_prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);

@@ -108,7 +108,7 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   s.bodies.push_back({index, def.kind, {}});
   s.tables.resize(Table::body, row + 1);
   s.set_position(row, def.pose.position);
-  s.tables.set4(Buffer::pose, row, 4, orientation);
+  s.set_orientation(row, orientation);
   if (def.kind == BodyKind::dynamic) s.set_mass(row, *mass);
   if (def.kind == BodyKind::kinematic) s.tables.set3(Buffer::mass, row, 4, {1, 1, 1});
   if (def.kind != BodyKind::fixed) {
@@ -177,10 +177,10 @@ Status World::set_pose(BodyId body, const Pose& pose) {
   if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
-  const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.tables.get4(Buffer::pose, row, 4));
+  const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.orientation(row));
   const Vec3 w = s.angular_velocity(row);
   s.set_position(row, pose.position);
-  s.tables.set4(Buffer::pose, row, 4, q);
+  s.set_orientation(row, q);
   if (spins) {  // the angular velocity stays, so the momentum changes
     s.bring_in_phase(row);
     s.set_angular_velocity(row, w);
@@ -250,7 +250,7 @@ Status World::set_position_last(BodyId body, Vec3 position) {
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
   s.tables.set3(Buffer::motion, row, 0, (1 / s.last_substep) * (s.pose(row).position - position));
-  s.tables.set3(Buffer::half_change, row, 0, {});
+  for (std::uint32_t part : {0, 8}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
   return {};
 }
@@ -259,7 +259,7 @@ Result<Quat> World::orientation_last(BodyId body) const {
   if (!valid(body)) return stale("body");
   if (Status ok = need_substep(*state_); !ok) return ok.error();
   const std::uint32_t row = state_->body_ids.row(body.index);
-  const Quat q = state_->tables.get4(Buffer::pose, row, 4);
+  const Quat q = state_->orientation(row);
   const Vec3 pi = rotate(conjugate(q), state_->tables.get3(Buffer::motion, row, 4)),
              i = state_->tables.get3(Buffer::mass, row, 4);
   const Vec3 w = rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
@@ -277,12 +277,12 @@ Status World::set_orientation_last(BodyId body, Quat last) {
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
   // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
-  Quat d = s.tables.get4(Buffer::pose, row, 4) * conjugate(last);
+  Quat d = s.orientation(row) * conjugate(last);
   if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
   const double sine = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), angle = 2 * std::atan2(sine, d.w);
   const double rate = sine > 0 ? angle / (sine * s.last_substep) : 0;
   s.set_angular_velocity(row, {rate * d.x, rate * d.y, rate * d.z});
-  s.tables.set3(Buffer::half_change, row, 4, {});
+  for (std::uint32_t part : {4, 12}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
   return {};
 }

@@ -56,7 +56,7 @@ template <class Scalar> std::uint64_t hash_world(const WorldState& s) {
 
 // ---- snapshots -----------------------------------------------------------------------------------------
 
-constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '2'};
+constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '3'};
 
 class Writer {
  public:

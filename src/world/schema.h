@@ -87,6 +87,20 @@ struct KernelSchema {
   std::span<const Access> accesses;
 };
 
+/// Reals in a row of a table's buffer.
+constexpr std::size_t reals_of(Buffer buffer) {
+  constexpr std::size_t quads_of[] = {
+#define PC_TABLE(table, doc)
+#define PC_BUFFER(table, buffer, quads, doc) quads,
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
+#include "kernels/properties.inl"
+#undef PC_TABLE
+#undef PC_BUFFER
+#undef PC_PROPERTY
+  };
+  return 4 * quads_of[std::size_t(buffer)];
+}
+
 const BufferSchema& schema(Buffer buffer);
 const KernelSchema& schema(Kernel kernel);
 std::span<const PropertySchema> properties();

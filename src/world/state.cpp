@@ -37,7 +37,7 @@ WorldState::WorldState(const WorldDef& def) : serial(++worlds_made), tables(def.
 }
 
 Pose WorldState::pose(std::uint32_t row) const {
-  return {tables.get3(Buffer::pose, row, 0) + tables.get3(Buffer::pose, row, 8), tables.get4(Buffer::pose, row, 4)};
+  return {tables.get3(Buffer::pose, row, 0) + tables.get3(Buffer::pose, row, 8), orientation(row)};
 }
 
 void WorldState::set_position(std::uint32_t row, Vec3 position) {
@@ -45,16 +45,27 @@ void WorldState::set_position(std::uint32_t row, Vec3 position) {
   tables.set3(Buffer::pose, row, 8, position - tables.get3(Buffer::pose, row, 0));
 }
 
+Quat WorldState::orientation(std::uint32_t row) const {
+  const Quat q = tables.get4(Buffer::pose, row, 4), low = tables.get4(Buffer::pose, row, 12);
+  return {q.x + low.x, q.y + low.y, q.z + low.z, q.w + low.w};
+}
+
+void WorldState::set_orientation(std::uint32_t row, Quat q) {
+  tables.set4(Buffer::pose, row, 4, q);
+  const Quat high = tables.get4(Buffer::pose, row, 4);
+  tables.set4(Buffer::pose, row, 12, {q.x - high.x, q.y - high.y, q.z - high.z, q.w - high.w});
+}
+
 Vec3 WorldState::velocity(std::uint32_t row) const {
-  return tables.get3(Buffer::motion, row, 0) + tables.get3(Buffer::half_change, row, 0);
+  return tables.get3(Buffer::motion, row, 0) + tables.get3(Buffer::velocity_parts, row, 0);
 }
 
 Vec3 WorldState::momentum_of_rotation(std::uint32_t row) const {
-  return tables.get3(Buffer::motion, row, 4) + tables.get3(Buffer::half_change, row, 4);
+  return tables.get3(Buffer::motion, row, 4) + tables.get3(Buffer::velocity_parts, row, 4);
 }
 
 Vec3 WorldState::angular_velocity(std::uint32_t row) const {
-  const Quat q = tables.get4(Buffer::pose, row, 4);
+  const Quat q = orientation(row);
   const Vec3 pi = rotate(conjugate(q), momentum_of_rotation(row)), i = tables.get3(Buffer::mass, row, 4);
   return rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
 }
@@ -65,8 +76,7 @@ void WorldState::bring_in_phase(std::uint32_t row) {
   tables.set3(Buffer::motion, row, 0, v);
   tables.set3(Buffer::motion, row, 4, l);
   tables.set(Buffer::motion, row, 7, -1);
-  tables.set3(Buffer::half_change, row, 0, {});
-  tables.set3(Buffer::half_change, row, 4, {});
+  for (std::uint32_t part = 0; part < 16; part += 4) tables.set3(Buffer::velocity_parts, row, part, {});
 }
 
 void WorldState::set_angular_velocity(std::uint32_t row, Vec3 w) {
@@ -74,7 +84,7 @@ void WorldState::set_angular_velocity(std::uint32_t row, Vec3 w) {
     tables.set3(Buffer::motion, row, 4, w);
     return;
   }
-  const Quat q = tables.get4(Buffer::pose, row, 4);
+  const Quat q = orientation(row);
   const Vec3 local = rotate(conjugate(q), w), i = tables.get3(Buffer::mass, row, 0);
   tables.set3(Buffer::motion, row, 4, rotate(q, {i.x * local.x, i.y * local.y, i.z * local.z}));
 }
@@ -120,7 +130,7 @@ void WorldState::kick(std::uint32_t row, Vec3 acceleration, Vec3 torque) {
     if (change == Vec3{}) return;
     const Vec3 by = half_kick(drag, last_substep) * change;
     tables.set3(Buffer::motion, row, offset, tables.get3(Buffer::motion, row, offset) + by);
-    tables.set3(Buffer::half_change, row, offset, tables.get3(Buffer::half_change, row, offset) - by);
+    tables.set3(Buffer::velocity_parts, row, offset, tables.get3(Buffer::velocity_parts, row, offset) - by);
   };
   shift(0, acceleration, tables.get(Buffer::force, row, 3));
   shift(4, torque, tables.get(Buffer::force, row, 7));

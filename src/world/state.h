@@ -100,6 +100,8 @@ struct WorldState {
   // borders of a row, in double
   Pose pose(std::uint32_t row) const;
   void set_position(std::uint32_t row, Vec3 position);
+  Quat orientation(std::uint32_t row) const;
+  void set_orientation(std::uint32_t row, Quat q);
   Vec3 velocity(std::uint32_t row) const;
   Vec3 momentum_of_rotation(std::uint32_t row) const;
   Vec3 angular_velocity(std::uint32_t row) const;

@@ -1,0 +1,4 @@
+// Start of a step where some body has drag.
+#define PC_DRAG
+#include "begin.inl"
+#undef PC_DRAG
