@@ -161,10 +161,9 @@ TEST_CASE("A21b: a settled box slides down an incline") {
     }
 }
 
-// Not met: 6.7 times the must with one sub-step, 1.7 times with four, at mu = 0.5; 1.1 times with one at mu = 0.3.
-// Friction goes by the load before the relax pass, from which the soft contact lets off a few percent while the box
-// sinks to the overlap that carries it.
-TEST_CASE("A21b: a box that starts just touching slides down an incline" * doctest::may_fail()) {
+// While the box sinks to the overlap that carries it, the soft rows let go of a few percent of the load: friction by
+// what they leave would be 6.7 times off with one sub-step.
+TEST_CASE("A21b: a box that starts just touching slides down an incline") {
   for (const Mode& mode : precisions())
     for (std::uint32_t substeps : {1u, 4u}) {
       CAPTURE(mode.name());

@@ -192,27 +192,29 @@ void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours
 
 template <class Scalar> void Maker<Scalar>::infos() {
   for (int phase = 0; phase < 2; phase++) {
-    InfoOf<Scalar>& info = state_.infos[std::size_t(phase)];
-    Scalar* field = &info.h;
     const bool relax = phase == 1;
     const double h = 1.0 / 240;
-    const double values[] = {h,
-                             240,
-                             0.3,
-                             -9.81,
-                             0.1,
-                             0.2,
-                             0.8,
-                             relax ? 0.0 : 48,
-                             relax ? 1 : 0.9,
-                             relax ? 0 : 0.1,
-                             4,
-                             relax ? 0.0 : 60,
-                             relax ? 1 : 0.95,
-                             relax ? 0 : 0.05,
-                             8,
-                             1};
-    for (std::size_t i = 0; i < sizeof info / sizeof(Scalar); i++) field[i] = Scalar(i < std::size(values) ? values[i] : 0.5);
+    InfoOf<Scalar> info;
+    info.h = Scalar(h);
+    info.inverse_h = Scalar(1 / h);
+    info.gravity_x = Scalar(0.3);
+    info.gravity_y = Scalar(-9.81);
+    info.gravity_z = Scalar(0.1);
+    info.h_change = Scalar(0.2);
+    info.h_before = Scalar(h / 0.8);
+    info.impulse_ratio = Scalar(0.8);
+    info.contact_rate = Scalar(relax ? 0 : 48);
+    info.contact_mass_scale = Scalar(relax ? 1 : 0.9);
+    info.contact_impulse_scale = Scalar(relax ? 0 : 0.1);
+    info.load_ahead = Scalar(relax ? 1 : 0);
+    info.push_speed = Scalar(4);
+    info.joint_rate = Scalar(relax ? 0 : 60);
+    info.joint_mass_scale = Scalar(relax ? 1 : 0.95);
+    info.joint_impulse_scale = Scalar(relax ? 0 : 0.05);
+    info.joint_push_speed = Scalar(8);
+    info.restitution_threshold = Scalar(1);
+    info.rounding = Scalar(1e-3);
+    state_.infos[std::size_t(phase)] = info;
   }
 }
 

@@ -36,7 +36,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
   precise Real load = l0 + l1 + l2 + l3;
-  Friction f = pc_friction(PC_PASS m, v, load, mass_scale);
+  // the soft rows have let go of a share of the load, which the rigid ones of the relax pass will take up again
+  precise Real coming = load - v.vn * pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)) * mass_scale * PC_INFO(load_ahead);
+  Friction f = pc_friction(PC_PASS m, v, pc_select(load > PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)), load), mass_scale);
   PC_ST(contact_impulses, m, IMPULSE_T, f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, f.next_twist);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 

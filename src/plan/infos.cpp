@@ -59,6 +59,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   relax = biased;
   relax.contact_rate = relax.joint_rate = 0;
   relax.contact_mass_scale = relax.joint_mass_scale = 1;
+  relax.load_ahead = 1;
   relax.contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
