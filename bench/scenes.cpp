@@ -68,13 +68,16 @@ void compare(benchmark::State& state, Case scene_case, Variant variant) {
 #endif
 
   std::vector<double> own, peer;
+  scenes::RimWatch rim;
   Error error;
   const int steps = step_count();
   for (auto _ : state) {
     for (int done = 0; done < steps && error.code == ErrorCode::none; done += turn) {
       const int count = std::min(turn, steps - done);
-      for (int k = 0; k < count && error.code == ErrorCode::none; ++k)
+      for (int k = 0; k < count && error.code == ErrorCode::none; ++k) {
         own.push_back(clock_ms([&] { error = stepper.step(world, dt).error; }));
+        rim.look(*scene, world);
+      }
 #ifdef PCPHYS_HAVE_BULLET
       for (int k = 0; k < count; ++k) peer.push_back(clock_ms([&] { bullet.step(dt); }));
 #endif
@@ -83,12 +86,12 @@ void compare(benchmark::State& state, Case scene_case, Variant variant) {
   }
   if (error.code != ErrorCode::none) return state.SkipWithError(error.message.c_str());
 
-  const scenes::Metrics end = scenes::measure(*scene, world);
+  const scenes::Metrics end = scenes::measure(*scene, world, rim);
   state.counters["ms"] = median(own);
   state.counters["overlap_mm"] = 1000 * end.penetration.max;
   if (!scene->joints.empty()) state.counters["joint_mm"] = 1000 * end.separation.max;
-  if (end.escaped || end.nonfinite || end.drift.fallen)
-    state.counters["lost"] = double(end.escaped + end.nonfinite + end.drift.fallen);
+  if (end.escapes.through || end.nonfinite || end.drift.fallen)
+    state.counters["lost"] = double(end.escapes.through + end.nonfinite + end.drift.fallen);
   std::string label = stepper.device(variant.place);
 #ifdef PCPHYS_HAVE_BULLET
   const std::vector<Pose> poses = bullet.poses();

@@ -132,7 +132,8 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"angular_momentum", vector_json(end.angular_momentum)},
       {"drift", end.drift.sideways},
       {"fallen", end.drift.fallen},
-      {"escaped", end.escaped},
+      {"escaped", end.escapes.through},
+      {"escaped_over_rim", end.escapes.over_the_rim},
       {"nonfinite", end.nonfinite},
       {"overflow", Json::array()},
       {"memory_bytes", simulation.world.memory_bytes()},
@@ -174,7 +175,8 @@ std::string to_text(const Simulation& simulation, const Outcome& outcome) {
     text += format("boxes             moved sideways %.4f m, fallen %d\n", end.drift.sideways, end.drift.fallen);
   text += format("energy            %.6g J at the start, %.6g J at the end, %.6g J at most\n", outcome.start.energy(),
                  end.energy(), outcome.peaks.energy);
-  text += format("lost              %ld escaped, %ld not finite\n", end.escaped, end.nonfinite);
+  text += format("lost              %ld escaped, %ld not finite\n", end.escapes.through, end.nonfinite);
+  if (end.escapes.over_the_rim) text += format("over the rim      %ld thrown out of the open box\n", end.escapes.over_the_rim);
   return text + "hash              " + hash_text(outcome.hash) + "\n";
 }
 
@@ -194,7 +196,7 @@ void StepRows::add(std::uint64_t step, double ms, const StepReport& report) {
 
 std::string unsound(const Outcome& outcome) {
   std::string text;
-  if (outcome.end.escaped) text += std::to_string(outcome.end.escaped) + " bodies escaped";
+  if (outcome.end.escapes.through) text += std::to_string(outcome.end.escapes.through) + " bodies escaped";
   if (outcome.end.nonfinite)
     text += (text.empty() ? "" : ", ") + std::to_string(outcome.end.nonfinite) + " bodies are not finite";
   return text;

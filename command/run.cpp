@@ -57,7 +57,6 @@ Status make_steps(Simulation& simulation, Outcome& outcome, StepRows* rows, Gltf
     watch.after(step);
     progress.show(step);
   }
-  outcome.end = scenes::measure(simulation.scene, simulation.world);
   outcome.hash = simulation.world.hash();
   return {};
 }

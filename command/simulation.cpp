@@ -68,6 +68,7 @@ Watch::Watch(const Simulation& simulation, Outcome& outcome) : simulation_(simul
 
 void Watch::after(std::uint64_t step) {
   const World& world = simulation_.world;
+  rim_.look(simulation_.scene, world);
   const bool small = simulation_.scene.bodies.size() <= small_scene, last = step == simulation_.setup.steps;
   const std::uint64_t every = small ? 20 : 60;
   Peaks& peaks = outcome_.peaks;
@@ -77,6 +78,7 @@ void Watch::after(std::uint64_t step) {
     peaks.potential_low = std::min(peaks.potential_low, potential);
     peaks.potential_high = std::max(peaks.potential_high, potential);
   }
+  if (last) outcome_.end = scenes::measure(simulation_.scene, world, rim_);
   if (!last && step % every != 0) return;
   const std::vector<Pose> poses = scenes::poses(simulation_.scene, world);
   peaks.penetration = std::max(peaks.penetration, scenes::penetration(simulation_.scene, world, poses).max);

@@ -56,7 +56,7 @@ struct Outcome {
   std::uint64_t hash = 0;
 };
 
-/// Samples the extremes: the energy at every step of a small scene, quality every 20 steps.
+/// Samples the extremes, and measures the end: the energy at every step of a small scene, quality every 20 steps.
 class Watch {
  public:
   Watch(const Simulation& simulation, Outcome& outcome);
@@ -65,6 +65,7 @@ class Watch {
  private:
   const Simulation& simulation_;
   Outcome& outcome_;
+  scenes::RimWatch rim_;
 };
 
 }  // namespace pcphys::command

@@ -53,7 +53,7 @@ Result<Measured> measure(const Row& row, Setup setup) {
                   times.max_fps(),
                   times.min_fps(),
                   median(times.step),
-                  end.escaped,
+                  end.escapes.through,
                   end.nonfinite,
                   hash_text(simulation->world.hash()),
                   device_name(*simulation)};

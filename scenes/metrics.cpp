@@ -37,6 +37,12 @@ double excess(const JointDef& joint, Quat qa, Quat qb) {
                    outside(is.yaw, freedom.lower.z, freedom.upper.z)});
 }
 
+/// Beyond the walls of the open-lidded box, or below its floor.
+bool outside(const Scene& scene, Vec3 p) {
+  const double half = 0.5 * scene.inner_width;
+  return p.y < 0 || std::fabs(p.x) > half || std::fabs(p.z) > half;
+}
+
 }  // namespace
 
 std::vector<Pose> poses(const Scene& scene, const World& world) {
@@ -73,20 +79,34 @@ double limit_excess(const Scene& scene, const World& world) {
   return worst;
 }
 
-long escaped(const Scene& scene, std::span<const Pose> poses) {
+void RimWatch::look(const Scene& scene, const World& world) {
+  if (scene.inner_width == 0) return;
+  above_.resize(scene.bodies.size());
+  for (std::size_t i = 0; i < above_.size(); ++i) {
+    if (scene.bodies[i].kind != BodyKind::dynamic) continue;
+    const auto pose = world.pose(scene.bodies[i].id);
+    if (!pose) continue;
+    if (pose->position.y > scene.wall_height)
+      above_[i] = true;
+    else if (!outside(scene, pose->position))
+      above_[i] = false;
+  }
+}
+
+Escapes escapes(const Scene& scene, std::span<const Pose> poses, const RimWatch& rim) {
   constexpr double below_floor = 1, far_away = 1000;  // [m]
-  const double half = 0.5 * scene.inner_width;
-  long count = 0;
+  Escapes result;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     if (scene.bodies[i].kind != BodyKind::dynamic) continue;
     const Vec3 p = poses[i].position;
     if (!finite(p)) continue;  // counted by nonfinite()
-    const bool out = scene.inner_width > 0 ? p.y < 0 || std::fabs(p.x) > half || std::fabs(p.z) > half
-                                           : (scene.floor && p.y < *scene.floor - below_floor) ||
-                                                 length(p - scene.bodies[i].start.position) > far_away;
-    count += out;
+    if (scene.inner_width > 0)
+      (rim.went_over(i) ? result.over_the_rim : result.through) += outside(scene, p);
+    else
+      result.through +=
+          (scene.floor && p.y < *scene.floor - below_floor) || length(p - scene.bodies[i].start.position) > far_away;
   }
-  return count;
+  return result;
 }
 
 long nonfinite(const Scene& scene, const World& world, std::span<const Pose> poses) {
@@ -114,13 +134,13 @@ Drift drift(const Scene& scene, std::span<const Pose> poses) {
   return result;
 }
 
-Metrics measure(const Scene& scene, const World& world) {
+Metrics measure(const Scene& scene, const World& world, const RimWatch& rim) {
   const std::vector<Pose> now = poses(scene, world);
   Metrics result;
   result.penetration = penetration(scene, world, now);
   result.separation = joint_separation(scene, world);
   result.limit_excess = limit_excess(scene, world);
-  result.escaped = escaped(scene, now);
+  result.escapes = escapes(scene, now, rim);
   result.nonfinite = nonfinite(scene, world, now);
   result.drift = drift(scene, now);
   result.kinetic = world.kinetic_energy();

@@ -36,9 +36,23 @@ Penetration penetration(const Scene& scene, const World& world, std::span<const 
 Separation joint_separation(const Scene& scene, const World& world);
 /// How far the worst joint is beyond its cone, twist, pitch, yaw or roll limit; 0 within all limits [rad].
 double limit_excess(const Scene& scene, const World& world);
-/// Bodies outside of the open-lidded box's walls or below its floor; in a scene without the box, below its
-/// floor by more than 1 m or further than 1 km from where it started.
-long escaped(const Scene& scene, std::span<const Pose> poses);
+/// Which bodies went over the rim of the open-lidded box: others threw them out, no wall let them through.
+class RimWatch {
+ public:
+  /// To be called after each step.
+  void look(const Scene& scene, const World& world);
+  bool went_over(std::size_t body) const { return body < above_.size() && above_[body]; }
+
+ private:
+  std::vector<bool> above_;  // the rim, when last seen, or since it was last seen below it within the walls
+};
+
+/// Bodies that are outside of the open-lidded box's walls or below its floor; in a scene without the box, below its
+/// floor by more than 1 m or further than 1 km from where they started.
+struct Escapes {
+  long through = 0, over_the_rim = 0;
+};
+Escapes escapes(const Scene& scene, std::span<const Pose> poses, const RimWatch& rim = {});
 /// Bodies whose pose or velocity holds NaN or infinity.
 long nonfinite(const Scene& scene, const World& world, std::span<const Pose> poses);
 Drift drift(const Scene& scene, std::span<const Pose> poses);
@@ -47,7 +61,8 @@ struct Metrics {
   Penetration penetration;
   Separation separation;
   double limit_excess = 0;  // [rad]
-  long escaped = 0, nonfinite = 0;
+  Escapes escapes;
+  long nonfinite = 0;
   Drift drift;
   double kinetic = 0, potential = 0;  // velocities in phase with positions [J]
   Vec3 momentum, angular_momentum;    // [kg m/s], about the origin [kg m^2/s]
@@ -55,6 +70,6 @@ struct Metrics {
   double energy() const { return kinetic + potential; }
 };
 
-Metrics measure(const Scene& scene, const World& world);
+Metrics measure(const Scene& scene, const World& world, const RimWatch& rim = {});
 
 }  // namespace pcphys::scenes

@@ -18,6 +18,7 @@ struct SceneRun {
   double separation = 0, limit = 0;                  // largest from step 240 on
   long escaped = 0, nonfinite = 0;
   scenes::Metrics end;
+  scenes::RimWatch rim;
 
   SceneRun(const Mode& mode, const char* name, int count, long steps = 600, double ratio = 100) : run(mode, {}, 4) {
     scenes::SceneOptions options;
@@ -31,9 +32,10 @@ struct SceneRun {
     height = low;
     for (long i = 1; i <= steps; i++) {
       run.step(1.0 / 60);
+      rim.look(scene, run.world);
       sample(i);
     }
-    end = scenes::measure(scene, run.world);
+    end = scenes::measure(scene, run.world, rim);
   }
 
   void sample(long step) {
@@ -43,7 +45,7 @@ struct SceneRun {
     highest = std::max(highest, potential + run.world.kinetic_energy());
     if (step % 10 == 0) {
       const std::vector<Pose> poses = scenes::poses(scene, run.world);
-      escaped = std::max(escaped, scenes::escaped(scene, poses));
+      escaped = std::max(escaped, scenes::escapes(scene, poses, rim).through);
       nonfinite = std::max(nonfinite, scenes::nonfinite(scene, run.world, poses));
     }
     if (step < 240 || scene.joints.empty()) return;

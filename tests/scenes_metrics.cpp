@@ -39,7 +39,7 @@ TEST_CASE("metrics: scenes start without overlap, separation or violated limit, 
     CHECK(metrics.penetration.max < 1e-9);
     CHECK(metrics.separation.max < 1e-12);
     CHECK(metrics.limit_excess < 1e-7);
-    CHECK(metrics.escaped == 0);
+    CHECK(metrics.escapes.through == 0);
     CHECK(metrics.nonfinite == 0);
     CHECK(metrics.drift.fallen == 0);
   }
@@ -58,10 +58,23 @@ TEST_CASE("metrics: overlap of balls with each other, floor and walls") {
   built.put(5, {0.5 * built.scene.inner_width - a + 0.01, 10, 0});
   built.put(6, {0, 15, 0});
   CHECK(built.measure().penetration.max == Approx(0.01));
-  CHECK(built.measure().escaped == 0);
+  CHECK(built.measure().escapes.through == 0);
   built.put(5, {0.5 * built.scene.inner_width + 0.01, 10, 0});
   built.put(6, {0, -0.01, 0});
-  CHECK(built.measure().escaped == 2);
+  CHECK(built.measure().escapes.through == 2);
+  // thrown over the rim, or not
+  scenes::RimWatch rim;
+  built.put(5, {0, built.scene.wall_height + 1, 0});
+  rim.look(built.scene, built.world);
+  built.put(5, {built.scene.inner_width, 3, 0});
+  rim.look(built.scene, built.world);
+  const scenes::Escapes thrown = scenes::escapes(built.scene, scenes::poses(built.scene, built.world), rim);
+  CHECK(thrown.through == 1);
+  CHECK(thrown.over_the_rim == 1);
+  built.put(5, {0, 10, 0});
+  rim.look(built.scene, built.world);
+  built.put(5, {built.scene.inner_width, 3, 0});
+  CHECK(scenes::escapes(built.scene, scenes::poses(built.scene, built.world), rim).through == 2);
 }
 
 TEST_CASE("metrics: overlap of capsules that cross, and none of adjacent bones") {
@@ -97,9 +110,9 @@ TEST_CASE("metrics: supports, drift and fall of a stack") {
   CHECK(metrics.drift.fallen == 1);
   built.put(1, {0, 0.5 * std::numbers::sqrt2, 0}, axis_angle({0, 0, 1}, std::numbers::pi / 4));  // on its edge
   CHECK(built.measure().penetration.max < std::numbers::sqrt2);
-  CHECK(built.measure().escaped == 0);
+  CHECK(built.measure().escapes.through == 0);
   built.put(3, {3, -1.5, 0});
-  CHECK(built.measure().escaped == 1);
+  CHECK(built.measure().escapes.through == 1);
 }
 
 TEST_CASE("metrics: joint separation") {
