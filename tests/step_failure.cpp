@@ -86,12 +86,6 @@ SceneWorld busy_world(Precision precision) {
   return s;
 }
 
-Status step_status(Stepper& stepper, World& world) {
-  const StepReport& report = stepper.step(world, frame);
-  if (report) return {};
-  return report.error;
-}
-
 /// Fails in every call of a step in turn, one step later each time; returns how many there were.
 int fail_everywhere(const Mix& mix, Precision precision, bool late) {
   SceneWorld tried = busy_world(precision), wanted = busy_world(precision);
