@@ -52,6 +52,19 @@ function(pcphys_set_lane_flags)
   endforeach()
 endfunction()
 
+# Writes kernel_texts.inl, which includes every kernel of the list, so that a new one needs no line in src/cpu.
+function(pcphys_list_kernels)
+  set(list ${PROJECT_SOURCE_DIR}/src/kernels/kernels.inl)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${list})
+  file(STRINGS ${list} kernels REGEX "^PC_KERNEL\\(")
+  set(texts "// Generated from src/kernels/kernels.inl.\n")
+  foreach(kernel IN LISTS kernels)
+    string(REGEX REPLACE "^PC_KERNEL\\(([A-Za-z0-9_]+),.*" "\\1" name "${kernel}")
+    string(APPEND texts "namespace ${name} {\n#include \"kernels/${name}.inl\"\n}\n")
+  endforeach()
+  file(CONFIGURE OUTPUT ${PCPHYS_GENERATED}/kernel_texts.inl CONTENT "${texts}" @ONLY)  # written only when it changed
+endfunction()
+
 # Puts the text of the files into the library as `pcphys::embedded_source(name)`, so that a host ships no shader files.
 # The value of `out` is the generated source; any edit of a file regenerates it.
 function(pcphys_embed out)

@@ -1,12 +1,8 @@
 // The sub-commands. Each prints its result, and returns the exit code of the program.
 #pragma once
-#include <nlohmann/json.hpp>
-
 #include "options.h"
 
 namespace pcphys::command {
-
-using Json = nlohmann::ordered_json;
 
 struct OutputOptions {
   std::string json, csv;

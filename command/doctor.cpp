@@ -95,9 +95,8 @@ void print_device(const GlReport& r) {
 }  // namespace
 
 int doctor(const OutputOptions& options) {
-  auto json = OutputFile::open(options.json), csv = OutputFile::open(options.csv);
-  if (!json) return fail(json.error());
-  if (!csv) return fail(csv.error());
+  auto files = ResultFiles::open(options.json, options.csv);
+  if (!files) return fail(files.error());
   const std::vector<GlReport> reports = gl_reports();
   Json devices = Json::array(), missing = Json::array();
   std::string table = "device,usable,renderer,version,float_parity,double_parity\n";
@@ -119,10 +118,8 @@ int doctor(const OutputOptions& options) {
                     {"fcl", has_fcl()},
                     {"missing", missing}};
 
-  if (auto status = csv->write(table); !status) return fail(status.error());
-  if (*json) {
-    if (auto status = json->write(report.dump(2) + "\n"); !status) return fail(status.error());
-  } else if (!csv->standard_output()) {
+  if (auto status = files->write(report, table); !status) return fail(status.error());
+  if (files->printed()) {
     std::printf("pcphys %s\nCPU: %s\n  lanes: float %s, double %s\nOpenGL through EGL:\n", PCPHYS_VERSION, processor().c_str(),
                 report["lanes_float"].dump().c_str(), report["lanes_double"].dump().c_str());
     for (const GlReport& r : reports) print_device(r);

@@ -63,6 +63,18 @@ Status OutputFile::write(const std::string& content) {
   return {};
 }
 
+Result<ResultFiles> ResultFiles::open(const std::string& json, const std::string& csv) {
+  auto json_file = OutputFile::open(json), csv_file = OutputFile::open(csv);
+  if (!json_file) return json_file.error();
+  if (!csv_file) return csv_file.error();
+  return ResultFiles{std::move(*json_file), std::move(*csv_file)};
+}
+
+Status ResultFiles::write(const Json& as_json, const std::string& as_csv) {
+  if (auto status = csv.write(as_csv); !status) return status;
+  return json.write(as_json.dump(2) + "\n");
+}
+
 Progress::Progress(std::string label, std::uint64_t total)
     : label_(std::move(label)), total_(total), started_(now()), shown_(started_), terminal_(isatty(STDERR_FILENO) != 0) {}
 

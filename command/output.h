@@ -1,11 +1,14 @@
 // Where results go: standard output, or files that are known to be writable before a long run starts.
 #pragma once
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "pcphys/result.h"
 
 namespace pcphys::command {
+
+using Json = nlohmann::ordered_json;
 
 /// A file that the result will be written to at the end. Opening it checks that this will be possible; when
 /// nothing is written in the end, a file that was not there before is not there after.
@@ -27,6 +30,16 @@ class OutputFile {
  private:
   std::string path_;
   bool created_ = false;
+};
+
+/// Where --json and --csv of a sub-command go.
+struct ResultFiles {
+  OutputFile json, csv;
+
+  static Result<ResultFiles> open(const std::string& json, const std::string& csv);
+  /// Whether the result is printed for people: nothing else goes to standard output, and there is no JSON.
+  bool printed() const { return !json && !csv.standard_output(); }
+  Status write(const Json& as_json, const std::string& as_csv);
 };
 
 /// A line on standard error that counts up while a long run is under way, on a terminal only.

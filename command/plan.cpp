@@ -64,9 +64,8 @@ std::string plan_csv(const StepPlan& plan) {
 int plan(const RunOptions& options) {
   const auto setup = resolve(options, 0);
   if (!setup) return fail(setup.error());
-  auto json = OutputFile::open(options.json), csv = OutputFile::open(options.csv);
-  if (!json) return fail(json.error());
-  if (!csv) return fail(csv.error());
+  auto files = ResultFiles::open(options.json, options.csv);
+  if (!files) return fail(files.error());
   auto simulation = Simulation::make(*setup);
   if (!simulation) return fail(simulation.error());
   for (std::uint64_t step = 0; step < setup->steps; ++step)
@@ -74,12 +73,8 @@ int plan(const RunOptions& options) {
   const auto plan = simulation->stepper.plan_for(simulation->world, setup->dt);
   if (!plan) return fail(plan.error());
 
-  if (auto status = csv->write(plan_csv(*plan)); !status) return fail(status.error());
-  if (*json) {
-    if (auto status = json->write(plan_json(*simulation, *plan).dump(2) + "\n"); !status) return fail(status.error());
-  } else if (!csv->standard_output()) {
-    std::cout << to_text(*plan);
-  }
+  if (auto status = files->write(plan_json(*simulation, *plan), plan_csv(*plan)); !status) return fail(status.error());
+  if (files->printed()) std::cout << to_text(*plan);
   return exit_ok;
 }
 

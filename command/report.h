@@ -1,13 +1,11 @@
 // What a run found, as JSON, as a table for people, and as CSV rows.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "output.h"
 #include "simulation.h"
 
 namespace pcphys::command {
-
-using Json = nlohmann::ordered_json;
 
 std::string hash_text(std::uint64_t hash);
 

@@ -109,10 +109,9 @@ void print_row(const Measured& m) {
 int tables(const RunOptions& options) {
   const auto setup = resolve(options, 600);
   if (!setup) return fail(setup.error());
-  auto json = OutputFile::open(options.json), csv = OutputFile::open(options.csv);
-  if (!json) return fail(json.error());
-  if (!csv) return fail(csv.error());
-  const bool print = !*json && !csv->standard_output();
+  auto files = ResultFiles::open(options.json, options.csv);
+  if (!files) return fail(files.error());
+  const bool print = files->printed();
   std::vector<Measured> all;
   bool sound = true;
   for (const Row& row : rows) {
@@ -127,9 +126,7 @@ int tables(const RunOptions& options) {
     sound = sound && measured->escaped == 0 && measured->nonfinite == 0;
     all.push_back(std::move(*measured));
   }
-  if (auto status = csv->write(to_csv(all)); !status) return fail(status.error());
-  if (*json)
-    if (auto status = json->write(to_json(*setup, all).dump(2) + "\n"); !status) return fail(status.error());
+  if (auto status = files->write(to_json(*setup, all), to_csv(all)); !status) return fail(status.error());
   if (sound) return exit_ok;
   std::cerr << "pcphys: bodies escaped or are not finite in a run of the tables; see --json.\n";
   return exit_unsound;

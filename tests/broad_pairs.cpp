@@ -3,27 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
-#include <random>
 
+#include "broad_support.h"
 #include "collision/pair_cache.h"
 
-using namespace pcphys;
+using namespace broad_test;
 
 namespace {
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
-
-Aabb cube(float x, float y, float z, float half) { return {{x - half, y - half, z - half}, {x + half, y + half, z + half}}; }
-
-struct Random {
-  std::mt19937 engine;
-  explicit Random(unsigned seed) : engine(seed) {}
-  float operator()(float from, float to) { return std::uniform_real_distribution<float>(from, to)(engine); }
-  std::uint32_t below(std::size_t end) { return static_cast<std::uint32_t>(engine() % end); }
-};
 
 // A cache beside what it should know: per pair a number that must follow the pair until it breaks.
 struct Watched {

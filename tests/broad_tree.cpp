@@ -3,35 +3,24 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
-#include <random>
 #include <set>
 
+#include "broad_support.h"
 #include "collision/kd_tree.h"
 
-using namespace pcphys;
+using namespace broad_test;
 
 namespace {
 
 using Boxes = std::vector<Aabb>;
 using PairSet = std::set<std::pair<std::uint32_t, std::uint32_t>>;
-constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float not_a_number = std::numeric_limits<float>::quiet_NaN();
-
-Aabb cube(float x, float y, float z, float half) { return {{x - half, y - half, z - half}, {x + half, y + half, z + half}}; }
 
 std::vector<std::uint32_t> everyone(std::size_t count) {
   std::vector<std::uint32_t> all(count);
   std::iota(all.begin(), all.end(), 0u);
   return all;
 }
-
-struct Random {
-  std::mt19937 engine;
-  explicit Random(unsigned seed) : engine(seed) {}
-  float operator()(float from, float to) { return std::uniform_real_distribution<float>(from, to)(engine); }
-};
 
 Boxes cloud(std::size_t count, unsigned seed, float x, float y, float z, float half) {
   Random random(seed);

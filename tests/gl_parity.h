@@ -16,6 +16,7 @@
 
 #include "cpu/kernels.h"
 #include "step/backend.h"
+#include "step/processor_state.h"
 #include "world/schema.h"
 
 namespace parity {
@@ -278,18 +279,6 @@ template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<
 }
 
 // ---- running one kernel -----------------------------------------------------------------------------
-/// CPU stepping flushes subnormals, as some GPUs do.
-class FlushSubnormals {
- public:
-#ifdef __SSE__
-  FlushSubnormals() : before_(__builtin_ia32_stmxcsr()) { __builtin_ia32_ldmxcsr(before_ | 0x8040u); }
-  ~FlushSubnormals() { __builtin_ia32_ldmxcsr(before_); }
-
- private:
-  unsigned before_;
-#endif
-};
-
 template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, std::size_t info, State<Scalar>& state) {
   struct alignas(64) Line {
     char bytes[64];
@@ -308,7 +297,7 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
                  true);
   }
   {
-    FlushSubnormals flush;
+    const FlushSubnormals flush;  // as stepping does, and some GPUs
     for (const Range& range : ranges_of(kernel, state, kernels.lanes))
       kernels.run[std::size_t(kernel)]({buffers, &state.infos[info], range.begin, range.end});
   }

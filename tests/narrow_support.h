@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <set>
 #include <string>
 
 #include "collision/narrow.h"
@@ -58,6 +59,11 @@ template <class S> double deepest(const Manifold<S>& m) {
   double s = 1e30;
   for (std::uint32_t i = 0; i < m.count; i++) s = std::min(s, double(m.points[i].separation));
   return s;
+}
+template <class S> std::set<std::uint32_t> features(const Manifold<S>& m) {
+  std::set<std::uint32_t> f;
+  for (std::uint32_t i = 0; i < m.count; i++) f.insert(m.points[i].feature);
+  return f;
 }
 template <class S> bool finite(const Manifold<S>& m) {
   bool ok = m.count <= 4;

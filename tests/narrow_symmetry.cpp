@@ -4,7 +4,6 @@
 
 #include <cstring>
 #include <limits>
-#include <set>
 #include <vector>
 
 #include "tests/narrow_support.h"
@@ -15,11 +14,6 @@ namespace {
 constexpr double margin = 0.05;
 constexpr int per_stratum = 150;
 
-std::set<std::uint32_t> features(const Manifold<double>& m) {
-  std::set<std::uint32_t> f;
-  for (std::uint32_t i = 0; i < m.count; i++) f.insert(m.points[i].feature);
-  return f;
-}
 template <class S> bool same_bits(const Manifold<S>& m, const Manifold<S>& o) {
   bool same = m.count == o.count && (m.count == 0 || std::memcmp(m.normal, o.normal, sizeof m.normal) == 0);
   for (std::uint32_t i = 0; same && i < m.count; i++)  // not the padding between points

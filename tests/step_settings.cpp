@@ -12,12 +12,6 @@ using namespace worldtest;
 
 namespace {
 
-Status step_status(Stepper& stepper, World& world, double dt = frame) {
-  const StepReport& report = stepper.step(world, dt);
-  if (report) return {};
-  return report.error;
-}
-
 StepSettings with(auto&& change) {
   StepSettings s;
   s.timings = false;

@@ -54,6 +54,12 @@ void run(World& world, Stepper& stepper, int steps, double dt) {
   }
 }
 
+Status step_status(Stepper& stepper, World& world, double dt) {
+  const StepReport& report = stepper.step(world, dt);
+  if (report) return {};
+  return report.error;
+}
+
 void require_gl() {
   const GlReport report = probe_gl(-1);
   if (!report.usable)

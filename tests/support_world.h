@@ -36,6 +36,8 @@ StepSettings lanes(std::uint32_t lanes);
 
 /// Takes the steps; a refused one fails the test with its sentence.
 void run(World& world, Stepper& stepper, int steps, double dt = frame);
+/// One step; its error where it was refused.
+Status step_status(Stepper& stepper, World& world, double dt = frame);
 /// A test must not pass because there was nothing to test: llvmpipe comes with the scripts.
 void require_gl();
 

@@ -2,6 +2,8 @@
 // anything moves and may read the world, a callback that fails leaves the world alone.
 #include <cmath>
 #include <limits>
+#include <map>
+#include <random>
 
 #include "support_world.h"
 #include "world/state.h"
@@ -82,6 +84,43 @@ TEST_CASE("forces follow a body to another row") {
   run(world, stepper, 1);
   CHECK(calls == 60);
   CHECK(stored(world, last, "force") == Vec3{});
+}
+
+TEST_CASE("constant forces of many bodies: sums in ascending order of force indices, whatever came and went") {
+  struct Added {
+    ForceId id;
+    std::size_t body;
+    Wrench wrench;
+  };
+  World world(WorldDef{Precision::f64, {}});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 12; i++) bodies.push_back(must(world.create_body(unit_body({3.0 * i, 0, 0}))));
+  std::map<std::uint32_t, Added> forces;  // by index
+  for (int round = 0; round < 600; round++) {
+    const std::size_t b = random() % bodies.size();
+    if (round % 3 == 2 && !forces.empty()) {
+      const auto gone = std::next(forces.begin(), long(random() % forces.size()));
+      must(world.remove(gone->second.id));
+      forces.erase(gone);
+    } else if (round % 50 == 10) {  // its forces go with it, and the last row moves
+      must(world.destroy(bodies[b]));
+      std::erase_if(forces, [&](const auto& f) { return f.second.body == b; });
+      bodies[b] = must(world.create_body(unit_body({3.0 * double(b), 0, 0})));
+    } else {
+      const Wrench wrench{{any(random), any(random), any(random)}, {any(random), any(random), any(random)}};
+      const ForceId id = must(world.add_force(bodies[b], wrench));
+      CHECK(forces.emplace(id.index, Added{id, b, wrench}).second);
+    }
+    for (std::size_t k = 0; k < bodies.size(); k++) {
+      Vec3 force, torque;
+      for (const auto& [index, f] : forces)
+        if (f.body == k) force = force + f.wrench.force, torque = torque + f.wrench.torque;
+      CHECK(stored(world, bodies[k], "force") == force);
+      CHECK(stored(world, bodies[k], "torque") == torque);
+    }
+  }
 }
 
 TEST_CASE("callbacks: a magnet that depends on the distance") {
@@ -169,12 +208,7 @@ TEST_CASE("a callback that is not finite: a named error, and the world as it was
   Stepper stepper;
   run(world, stepper, 2);
   broken = true;
-  const auto step = [&]() -> Status {
-    const StepReport& report = stepper.step(world, frame);
-    if (report) return {};
-    return report.error;
-  };
-  CHECK_REFUSED(world, step(), ErrorCode::not_finite, "The force of a callback is (nan, 0, 0)");
+  CHECK_REFUSED(world, step_status(stepper, world), ErrorCode::not_finite, "The force of a callback is (nan, 0, 0)");
   broken = false;
   run(world, stepper, 1);
 }

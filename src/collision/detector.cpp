@@ -178,10 +178,7 @@ void Detector::put_back(WorldState& s) {
 
 Status Detector::find_contacts(WorldState& s, double dt, const Options& options, Found& found) {
   replaced_ = false;
-  if (!possible_) {
-    if (s.contact_rows() > 1) s.tables.resize(Table::contact, 1);
-    return {};
-  }
+  if (!possible_ && s.contact_rows() == 1) return {};
   return s.tables.precision() == Precision::f32 ? narrow_all(s, dt, options, scratch<float>(), found)
                                                 : narrow_all(s, dt, options, scratch<double>(), found);
 }

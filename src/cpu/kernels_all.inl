@@ -33,53 +33,8 @@ using element_joint_order = uint;
 #undef PC_WRITE
 #undef PC_KERNEL
 
-#define PC_KERNEL_TEXT(name) namespace name
-PC_KERNEL_TEXT(begin) {
-#include "kernels/begin.inl"
-}
-PC_KERNEL_TEXT(begin_drag) {
-#include "kernels/begin_drag.inl"
-}
-PC_KERNEL_TEXT(integrate) {
-#include "kernels/integrate.inl"
-}
-PC_KERNEL_TEXT(integrate_drag) {
-#include "kernels/integrate_drag.inl"
-}
-PC_KERNEL_TEXT(remember) {
-#include "kernels/remember.inl"
-}
-PC_KERNEL_TEXT(advance) {
-#include "kernels/advance.inl"
-}
-PC_KERNEL_TEXT(advance_round) {
-#include "kernels/advance_round.inl"
-}
-PC_KERNEL_TEXT(synchronise) {
-#include "kernels/synchronise.inl"
-}
-PC_KERNEL_TEXT(joint_prepare) {
-#include "kernels/joint_prepare.inl"
-}
-PC_KERNEL_TEXT(joint_solve) {
-#include "kernels/joint_solve.inl"
-}
-PC_KERNEL_TEXT(contact_prepare) {
-#include "kernels/contact_prepare.inl"
-}
-PC_KERNEL_TEXT(contact_warm) {
-#include "kernels/contact_warm.inl"
-}
-PC_KERNEL_TEXT(contact_solve) {
-#include "kernels/contact_solve.inl"
-}
-PC_KERNEL_TEXT(contact_restitution) {
-#include "kernels/contact_restitution.inl"
-}
-PC_KERNEL_TEXT(contact_store) {
-#include "kernels/contact_store.inl"
-}
-#undef PC_KERNEL_TEXT
+// each kernel's text in the namespace of its name; written by pcphys_list_kernels, as C++ cannot include by a macro list
+#include "kernel_texts.inl"
 
 // loops, by domain
 #define PC_LOOP_body for (uint k = call.begin; k < call.end; k += PC_LANES) pc_kernel(io, pc_index(io.bodies + k));

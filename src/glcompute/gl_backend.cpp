@@ -30,8 +30,8 @@ class GlBackend final : public Backend {
   std::uint32_t width() const override { return gl_width; }
   Status attach(Buffer buffer, void* host, std::size_t bytes) override;
   Status reserve(Buffer buffer, std::size_t slots) override;
-  Status upload(Buffer buffer) override;
-  Status download(Buffer buffer) override;
+  Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
+  Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
   Status set_infos(const void* infos, std::size_t count) override;
   Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) override;
   Status finish() override;
@@ -39,7 +39,8 @@ class GlBackend final : public Backend {
  private:
   GlBuffer& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
   std::size_t real_bytes() const { return options_.precision == Precision::f64 ? sizeof(std::uint64_t) : sizeof(std::uint32_t); }
-  Status transferable(Buffer buffer);
+  Status resize(Buffer buffer, std::size_t bytes);
+  Status transfer(Buffer buffer, void (GlBuffer::*copy)() const);
   void settle();
   Status hold();
   void release();
@@ -89,26 +90,20 @@ GlBackend::~GlBackend() {
 }
 
 // ---- memory -----------------------------------------------------------------------------------------
-Status GlBackend::attach(Buffer buffer, void* host, std::size_t bytes) {
+Status GlBackend::resize(Buffer buffer, std::size_t bytes) {
   GlScope scope(*context_);
   if (!scope.status()) return scope.status();
-  if (Status status = at(buffer).resize(schema(buffer).name, bytes, context_->report().limits.storage_block_bytes); !status)
-    return status;
+  return at(buffer).resize(schema(buffer).name, bytes, context_->report().limits.storage_block_bytes);
+}
+
+Status GlBackend::attach(Buffer buffer, void* host, std::size_t bytes) {
+  if (Status status = resize(buffer, bytes); !status) return status;
   at(buffer).attach(host, bytes);
   return {};
 }
 
 Status GlBackend::reserve(Buffer buffer, std::size_t slots) {
-  GlScope scope(*context_);
-  if (!scope.status()) return scope.status();
-  return at(buffer).resize(schema(buffer).name, slots * schema(buffer).reals * real_bytes(),
-                           context_->report().limits.storage_block_bytes);
-}
-
-Status GlBackend::transferable(Buffer buffer) {
-  if (at(buffer).attached() && at(buffer).transferable()) return {};
-  return Error{ErrorCode::bad_argument,
-               "The buffer `" + std::string(schema(buffer).name) + "` has no memory on the host; attach it before a transfer."};
+  return resize(buffer, slots * schema(buffer).reals * real_bytes());
 }
 
 /// What dispatches wrote becomes visible to transfers, and to dispatches after them: a plan counts a download
@@ -118,21 +113,14 @@ void GlBackend::settle() {
   writes_pending_ = false;
 }
 
-Status GlBackend::upload(Buffer buffer) {
+Status GlBackend::transfer(Buffer buffer, void (GlBuffer::*copy)() const) {
   GlScope scope(*context_);
   if (!scope.status()) return scope.status();
-  if (Status status = transferable(buffer); !status) return status;
+  if (!at(buffer).attached() || !at(buffer).transferable())
+    return Error{ErrorCode::bad_argument,
+                 "The buffer `" + std::string(schema(buffer).name) + "` has no memory on the host; attach it before a transfer."};
   settle();
-  at(buffer).upload();
-  return {};
-}
-
-Status GlBackend::download(Buffer buffer) {
-  GlScope scope(*context_);
-  if (!scope.status()) return scope.status();
-  if (Status status = transferable(buffer); !status) return status;
-  settle();
-  at(buffer).download();
+  (at(buffer).*copy)();
   return {};
 }
 

@@ -23,6 +23,8 @@ Place place_of(const StepSettings& s, Stage stage) {
   return places[std::size_t(stage)];
 }
 
+bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
+
 /// The list or slot array behind a buffer that is no table's, or null.
 std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
   switch (buffer) {
@@ -49,19 +51,26 @@ std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule&
 
 }  // namespace
 
+GlBackendMaker& gl_backend_maker() {
+  static GlBackendMaker maker = make_gl_backend;
+  return maker;
+}
+
 std::string Runner::device(Place place) const {
   const Device& d = devices_[std::size_t(place)];
   return d.backend ? d.backend->device() : std::string();
 }
 
 Status Runner::prepare(const StepSettings& s, Precision precision) {
+  gl_ = takes_part(Place::gl, s);
   for (Place place : {Place::cpu, Place::gl}) {
     Device& d = at(place);
-    if (s.integrate != place && s.joints != place && s.impulses != place) continue;
+    if (!takes_part(place, s)) continue;
     const bool fits = d.backend && d.precision == precision &&
                       (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
     if (fits) continue;
-    auto made = place == Place::cpu ? make_cpu_backend(precision, s.lanes) : make_gl_backend(precision, s.device, s.host_context);
+    auto made =
+        place == Place::cpu ? make_cpu_backend(precision, s.lanes) : gl_backend_maker()(precision, s.device, s.host_context);
     if (!made) return made.error();
     d = {};
     d.backend = std::move(*made);
@@ -74,8 +83,17 @@ Status Runner::prepare(const StepSettings& s, Precision precision) {
 }
 
 void Runner::forget() {
-  for (Device& d : devices_)
-    for (Copy& copy : d.copies) copy.version = 0;
+  for (Device& d : devices_) d.copies = {};
+}
+
+void Runner::keep(const WorldState& state, Buffer buffer) {
+  if (gl_ && schema(buffer).table != Table::contact) rollback_.keep(state.tables, buffer);
+}
+
+void Runner::undo(WorldState& state) {
+  if (gl_) (void)at(Place::gl).backend->finish();  // lets go of the context and of errors that are of this step
+  rollback_.put_back(state.tables);
+  forget();  // kernels have written what the devices hold
 }
 
 Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes) {
@@ -126,6 +144,7 @@ Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& r
   Device& d = at(Place::gl);
   Copy& copy = d.copies[std::size_t(entry.buffer)];
   report.transfer_bytes += copy.bytes;
+  keep(state, entry.buffer);
   if (Status ok = d.backend->download(entry.buffer); !ok) return ok;
   state.tables.touch(entry.buffer);
   copy.version = state.tables.version(entry.buffer) + 1;
@@ -140,19 +159,20 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
   if (k.domain == Domain::contact) ranges = schedule.contacts.ranges();
   const Range all{0, ranges.back().end};
   if (k.domain != Domain::body && !needs_colours(k)) ranges = std::span<const Range>(&all, 1);
-  Status ok = at(entry.place).backend->run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
   if (entry.place == Place::cpu)
     for (const Access& a : k.accesses)
-      if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
-  return ok;
+      if (a.write && a.buffer < Buffer::table_buffers) {
+        keep(state, a.buffer);
+        state.tables.touch(a.buffer);
+      }
+  return at(entry.place).backend->run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
 }
 
 Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
                    StepReport& report) {
-  for (Device& d : devices_)
-    if (d.backend)
-      if (Status ok = d.backend->set_infos(infos, phase_count); !ok) return ok;
-  const bool gl = settings.integrate == Place::gl || settings.joints == Place::gl || settings.impulses == Place::gl;
+  for (Place place : {Place::cpu, Place::gl})
+    if (takes_part(place, settings))
+      if (Status ok = at(place).backend->set_infos(infos, phase_count); !ok) return ok;
   auto began = Clock::now();
   for (std::size_t i = 0; i < plan.entries.size(); i++) {
     const PlanEntry& entry = plan.entries[i];
@@ -167,13 +187,16 @@ Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldStat
     const bool last_of_kind = i + 1 == plan.entries.size() || timer_of(plan.entries[i + 1]) != timer_of(entry) ||
                               plan.entries[i + 1].place != entry.place;
     if (!settings.timings || !last_of_kind) continue;
-    if (gl)
+    if (gl_)
       if (Status done = at(Place::gl).backend->finish(); !done) return done;
     const auto now = Clock::now();
     report.ms[std::size_t(timer_of(entry))] += std::chrono::duration<double, std::milli>(now - began).count();
     began = now;
   }
-  return gl ? at(Place::gl).backend->finish() : Status();
+  if (gl_)
+    if (Status done = at(Place::gl).backend->finish(); !done) return done;
+  rollback_.drop();
+  return {};
 }
 
 }  // namespace pcphys

@@ -7,6 +7,7 @@
 #include "pcphys/step.h"
 #include "plan/plan.h"
 #include "step/backend.h"
+#include "step/rollback.h"
 #include "step/schedule.h"
 #include "world/state.h"
 
@@ -21,7 +22,12 @@ class Runner {
   Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
              StepReport& report);
 
-  /// Another world comes: what the device holds is not its data.
+  /// Before a step changes a buffer of a table, so that `undo` can put it back. On the CPU alone nothing fails, so
+  /// nothing is copied; nor are contacts, whose last list the detector has.
+  void keep(const WorldState& state, Buffer buffer);
+  /// The step failed: the tables as they were before it, and a device that is asked for nothing more of it.
+  void undo(WorldState& state);
+  /// What the devices hold is not the data of the world that comes.
   void forget();
   std::string device(Place place) const;
 
@@ -47,6 +53,8 @@ class Runner {
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
   std::array<Device, 2> devices_;  // by Place
+  Rollback rollback_;
+  bool gl_ = false;  // takes part
 };
 
 }  // namespace pcphys

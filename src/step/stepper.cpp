@@ -126,6 +126,7 @@ struct Stepper::Inside {
   /// Forces of callbacks on top of the constant ones.
   void add_called(WorldState& s) {
     if (called.empty()) return;
+    runner.keep(s, Buffer::force);
     for (const ForceRecord& f : s.forces)
       if (f.callback) s.sum_forces(s.body_ids.row(f.body));
     std::size_t i = 0;
@@ -156,7 +157,7 @@ struct Stepper::Inside {
     lap(Timer::broad);
     add_called(s);
     Detector::Found found;
-    if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return ok;
+    if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
     remember(s);
@@ -173,8 +174,9 @@ struct Stepper::Inside {
     return {};
   }
 
-  /// The world as it was: what a device computed is on the device, the contacts are the last step's again.
+  /// The world as it was: what the step wrote into its tables goes back, and the contacts are the last step's again.
   Status undo(WorldState& s, const Status& failed) {
+    runner.undo(s);
     detector.put_back(s);
     s.contacts_version++;
     return failed;

@@ -105,7 +105,7 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   WorldState& s = *state_;
   const std::uint32_t row = std::uint32_t(s.bodies.size());
   const std::uint32_t index = s.body_ids.allocate(row);
-  s.bodies.push_back({index, def.kind, {}});
+  s.bodies.push_back({index, def.kind, {}, {}});
   s.tables.resize(Table::body, row + 1);
   s.set_position(row, def.pose.position);
   s.set_orientation(row, orientation);
@@ -131,9 +131,8 @@ Status World::destroy(BodyId body) {
   for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
     if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index)
       (void)destroy(s.joint_ids.id<JointId>(s.joints[row].index));
-  for (std::uint32_t f = 0; f < s.forces.size(); f++)
-    if (s.force_ids.alive(f) && s.forces[f].body == body.index) (void)remove(s.force_ids.id<ForceId>(f));
   const std::uint32_t row = s.body_ids.row(body.index), last = std::uint32_t(s.bodies.size()) - 1;
+  for (std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
   for (std::uint32_t shape : s.bodies[row].shapes) {
     s.shapes[shape].alive = false;
     s.free_shapes.push_back(shape);

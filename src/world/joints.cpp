@@ -160,10 +160,13 @@ namespace {
 ForceId new_force(WorldState& s, ForceRecord record) {
   const std::uint32_t index = s.force_ids.allocate(0);
   if (index == s.forces.size()) s.forces.emplace_back();
+  const std::uint32_t row = s.body_ids.row(record.body);
   if (record.callback) s.callbacks++;
-  if (record.callback) s.bring_in_phase(s.body_ids.row(record.body));  // what it will answer is not known yet
+  if (record.callback) s.bring_in_phase(row);  // what it will answer is not known yet
   s.forces[index] = std::move(record);
-  s.change_forces(s.body_ids.row(s.forces[index].body));
+  std::vector<std::uint32_t>& own = s.bodies[row].forces;
+  own.insert(std::ranges::lower_bound(own, index), index);
+  s.change_forces(row);
   return s.force_ids.id<ForceId>(index);
 }
 }  // namespace
@@ -184,10 +187,10 @@ Result<ForceId> World::add_force(BodyId body, ForceCallback callback) {
 Status World::remove(ForceId force) {
   WorldState& s = *state_;
   if (!s.force_ids.valid(force)) return stale("force");
-  if (s.forces[force.index].callback) s.callbacks--;
-  s.force_ids.release(force.index);
-  s.change_forces(s.body_ids.row(s.forces[force.index].body));
-  s.forces[force.index] = {};
+  const std::uint32_t row = s.body_ids.row(s.forces[force.index].body);
+  std::erase(s.bodies[row].forces, force.index);
+  s.drop_force(force.index);
+  s.change_forces(row);
   return {};
 }
 

@@ -29,7 +29,7 @@ double half_kick(double drag, double h) {
 WorldState::WorldState(const WorldDef& def) : serial(++worlds_made), tables(def.precision), gravity(def.gravity) {
   // the ground: id index 0, row 0
   body_ids.allocate(0);
-  bodies.push_back({0, BodyKind::fixed, {}});
+  bodies.push_back({0, BodyKind::fixed, {}, {}});
   joints.emplace_back();
   contacts.keys.resize(1);
   contacts.ends.resize(1);
@@ -106,10 +106,16 @@ void WorldState::set_mass(std::uint32_t row, const MassProperties& m) {
   tables.set(Buffer::mass, row, 7, 3 - smallest - largest);
 }
 
+void WorldState::drop_force(std::uint32_t force) {
+  if (forces[force].callback) callbacks--;
+  forces[force] = {};
+  force_ids.release(force);
+}
+
 void WorldState::sum_forces(std::uint32_t row) {
   Vec3 force, torque;
-  for (std::uint32_t f = 0; f < forces.size(); f++) {
-    if (!force_ids.alive(f) || forces[f].body != bodies[row].index || forces[f].callback) continue;
+  for (std::uint32_t f : bodies[row].forces) {
+    if (forces[f].callback) continue;
     force = force + forces[f].wrench.force;
     torque = torque + forces[f].wrench.torque;
   }

@@ -16,6 +16,7 @@ struct BodyRecord {
   std::uint32_t index = 0;  // of its id
   BodyKind kind = BodyKind::fixed;
   std::vector<std::uint32_t> shapes;  // shape indices
+  std::vector<std::uint32_t> forces;  // force indices, ascending: sums are taken in this order
 };
 struct JointRecord {
   std::uint32_t index = 0;
@@ -109,6 +110,8 @@ struct WorldState {
   void bring_in_phase(std::uint32_t row);
   void set_angular_velocity(std::uint32_t row, Vec3 w);
   void set_mass(std::uint32_t row, const MassProperties& mass);
+  /// Takes a force out of the world's list, not out of its body's.
+  void drop_force(std::uint32_t force);
   /// Writes the sum of a body's constant forces into the table.
   void sum_forces(std::uint32_t row);
   /// The same when the host has changed them: they act from now on.
