@@ -42,23 +42,32 @@ Colouring coloured(const Graph& graph) {
   return colouring;
 }
 
-// Word for word: the lowest colour free on both units; from 64 on the one after the last on either.
+// Word for word: the lowest colour free on both units; from 64 on the one after the last on either. Constraints with
+// a fixed unit come after all others, above their colours.
 std::vector<std::uint32_t> naive_greedy(const Graph& graph) {
   std::vector<std::uint32_t> order(graph.priorities.size()), colours(order.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return graph.priorities[i]; });
-  std::vector<std::set<std::uint32_t>> taken(graph.unit_count);
-  for (const std::uint32_t i : order) {
-    const std::uint32_t ends[2] = {graph.units[2 * i], graph.units[2 * i + 1]};
-    std::uint32_t colour = 0;
-    const auto is_taken = [&](std::uint32_t end) { return end != fixed_unit && taken[end].contains(colour); };
-    while (colour < 64 && (is_taken(ends[0]) || is_taken(ends[1]))) ++colour;
-    if (colour == 64)
+  const auto is_fixed = [&](std::uint32_t i) { return graph.units[2 * i] == fixed_unit || graph.units[2 * i + 1] == fixed_unit; };
+  std::uint32_t first = 0;
+  for (const bool with_fixed : {false, true}) {
+    std::vector<std::set<std::uint32_t>> taken(graph.unit_count);
+    std::uint32_t above = first;
+    for (const std::uint32_t i : order) {
+      if (is_fixed(i) != with_fixed) continue;
+      const std::uint32_t ends[2] = {graph.units[2 * i], graph.units[2 * i + 1]};
+      std::uint32_t colour = 0;
+      const auto is_taken = [&](std::uint32_t end) { return end != fixed_unit && taken[end].contains(colour); };
+      while (colour < 64 && (is_taken(ends[0]) || is_taken(ends[1]))) ++colour;
+      if (colour == 64)
+        for (const std::uint32_t end : ends)
+          if (end != fixed_unit && !taken[end].empty()) colour = std::max(colour, *taken[end].rbegin() + 1);
       for (const std::uint32_t end : ends)
-        if (end != fixed_unit && !taken[end].empty()) colour = std::max(colour, *taken[end].rbegin() + 1);
-    for (const std::uint32_t end : ends)
-      if (end != fixed_unit) taken[end].insert(colour);
-    colours[i] = colour;
+        if (end != fixed_unit) taken[end].insert(colour);
+      colours[i] = first + colour;
+      above = std::max(above, colours[i] + 1);
+    }
+    first = above;
   }
   return colours;
 }

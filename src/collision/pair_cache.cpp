@@ -177,6 +177,9 @@ bool PairCache::keeps(const Pair& pair) const {
 // Old pairs and found ones are both in order. Of an old pair with a moved proxy only the memory is used.
 void PairCache::merge(PairReport& report) {
   const std::size_t old_count = pairs_.size(), most = old_count + found_.size();
+  // the two lists change places: room for one is room for the other, or every other step would allocate
+  next_pairs_.reserve(pairs_.capacity());
+  next_previous_.reserve(previous_.capacity());
   next_pairs_.resize(most);
   next_previous_.resize(most);
   Pair* out = next_pairs_.data();

@@ -8,10 +8,19 @@
 
 namespace pcphys {
 
+namespace {
+/// As assign, but with room to grow: a contact or a colour more than ever before then allocates nothing.
+template <class T> void assign_with_room(std::vector<T>& values, std::size_t count, T value) {
+  if (count > values.capacity()) values.reserve(count + count / 2 + 64);
+  values.assign(count, value);
+}
+}  // namespace
+
 void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities) {
   assert(units.size() == 2 * priorities.size());
   sort_by_priority(priorities);
-  choose(unit_count, units);
+  colour_of_.resize(order_.size());
+  choose(unit_count, units, true, choose(unit_count, units, false, 0));
   group();
 }
 
@@ -25,26 +34,25 @@ void Colouring::sort_by_priority(std::span<const std::uint32_t> priorities) {
 }
 
 // Row `unit_count` stands for all fixed units: its mask is cleared whenever it was set.
-void Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units) {
+std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, bool with_fixed,
+                                std::uint32_t first) {
   taken_.assign(std::size_t{unit_count} + 1, 0);
   next_above_.clear();
-  colour_of_.resize(order_.size());
+  std::uint32_t above = first;
   std::uint64_t* taken = taken_.data();
   for (const std::uint64_t item : order_) {
     const auto i = static_cast<std::uint32_t>(item);
     const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count),
                         b = std::min(units[2 * std::size_t{i} + 1], unit_count);
-    const std::uint64_t free = ~(taken[a] | taken[b]);
-    if (free == 0) {
-      colour_of_[i] = choose_above(a, b, unit_count);
-      continue;
-    }
-    const std::uint64_t lowest = free & (0 - free);
+    if ((a == unit_count || b == unit_count) != with_fixed) continue;
+    const std::uint64_t free = ~(taken[a] | taken[b]), lowest = free & (0 - free);
     taken[a] |= lowest;
     taken[b] |= lowest;
     taken[unit_count] = 0;
-    colour_of_[i] = static_cast<std::uint32_t>(std::countr_zero(free));
+    colour_of_[i] = first + (free ? static_cast<std::uint32_t>(std::countr_zero(free)) : choose_above(a, b, unit_count));
+    above = std::max(above, colour_of_[i] + 1);
   }
+  return above;
 }
 
 std::uint32_t Colouring::choose_above(std::uint32_t a, std::uint32_t b, std::uint32_t unit_count) {
@@ -58,10 +66,11 @@ std::uint32_t Colouring::choose_above(std::uint32_t a, std::uint32_t b, std::uin
 void Colouring::group() {
   std::uint32_t colours = 0;
   for (const std::uint32_t colour : colour_of_) colours = std::max(colours, colour + 1);
-  offsets_.assign(std::size_t{colours} + 1, 0);
+  assign_with_room(offsets_, std::size_t{colours} + 1, 0u);
   for (const std::uint32_t colour : colour_of_) ++offsets_[colour + 1];
   for (std::uint32_t c = 0; c < colours; ++c) offsets_[c + 1] += offsets_[c];
-  cursor_.assign(offsets_.begin(), offsets_.end());
+  assign_with_room(cursor_, offsets_.size(), 0u);
+  std::ranges::copy(offsets_, cursor_.begin());
   list_.resize(colour_of_.size());
   for (std::uint32_t i = 0; i < colour_of_.size(); ++i) list_[cursor_[colour_of_[i]]++] = i;
 }
@@ -70,15 +79,15 @@ void pack_slots(const Colouring& colouring, std::uint32_t width, std::span<const
                 std::span<const std::uint32_t> rows, std::vector<std::uint32_t>& out_ends, std::vector<std::uint32_t>& out_order,
                 std::vector<Range>& out_ranges) {
   assert(width > 0 && ends.size() == 2 * rows.size() && rows.size() == colouring.constraints());
-  out_ranges.resize(colouring.colours());
+  assign_with_room(out_ranges, colouring.colours(), Range{});
   std::uint32_t blocks = 0;
   for (std::uint32_t c = 0; c < colouring.colours(); ++c) {
     const std::uint32_t first = blocks;
     blocks += (static_cast<std::uint32_t>(colouring.of_colour(c).size()) + width - 1) / width;
     out_ranges[c] = {first, blocks};
   }
-  out_order.assign(std::size_t{blocks} * width, 0);
-  out_ends.assign(std::size_t{blocks} * width * 2, 0);
+  assign_with_room(out_order, std::size_t{blocks} * width, 0u);
+  assign_with_room(out_ends, std::size_t{blocks} * width * 2, 0u);
   for (std::uint32_t c = 0; c < colouring.colours(); ++c) {
     std::size_t slot = std::size_t{out_ranges[c].begin} * width, lane = 0;
     for (const std::uint32_t i : colouring.of_colour(c)) {

@@ -2,7 +2,9 @@
 // by side, in any order, with the same result.
 //
 // Sequential greedy in order of priority: each constraint gets the lowest colour that is free on both of its
-// units. That result is unique, so any executor that computes it agrees (Jones-Plassmann on the GPU: in each
+// units. Constraints with a fixed unit do so after all others, above their colours: a solver that visits colours in
+// turn then leaves floor and walls with the last word, and less is pressed through them (docs/impulses.md).
+// That result is unique, so any executor that computes it agrees (Jones-Plassmann on the GPU: in each
 // round the constraints of highest priority on both units choose; M. Jones and P. Plassmann, A Parallel Graph
 // Coloring Heuristic, 1993). Priorities are hashes of ids: what happens elsewhere renumbers nothing here.
 #pragma once
@@ -36,7 +38,7 @@ class Colouring {
 
   /// Constraint i acts on units[2i] and units[2i + 1], each below `unit_count` or `fixed_unit`. Lower
   /// priorities choose first; of equal ones the constraint with the lower index.
-  /// The first 64 colours are greedy exactly. What finds none of them free goes on above: it takes the colour
+  /// The first 64 colours of either kind are greedy exactly. What finds none of them free goes on above: it takes the colour
   /// after the last one above 63 on either unit. Only a unit with more than 64 constraints comes to that.
   void build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities);
 
@@ -54,7 +56,8 @@ class Colouring {
   static constexpr std::uint32_t mask_colours = 64;
 
   void sort_by_priority(std::span<const std::uint32_t> priorities);
-  void choose(std::uint32_t unit_count, std::span<const std::uint32_t> units);
+  /// Colours the constraints with a fixed unit, or those without, from `first` on; the first colour above them.
+  std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, bool with_fixed, std::uint32_t first);
   std::uint32_t choose_above(std::uint32_t a, std::uint32_t b, std::uint32_t unit_count);
   void group();
 
