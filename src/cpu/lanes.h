@@ -27,6 +27,7 @@ PC_INLINE Real pc_div(Real a, Real b) { return a.v / b.v; }
 PC_INLINE Real pc_load(const Scalar* p) { return *reinterpret_cast<const Real::Vector*>(p); }
 PC_INLINE void pc_store(Scalar* p, Real x) { *reinterpret_cast<Real::Vector*>(p) = x.v; }
 PC_INLINE Index pc_index(const uint* p) { return {p}; }
+PC_INLINE Mask pc_mask(uint flag) { return Real(Scalar(flag)) > Real(Scalar(0)); }
 
 // pc_transpose_in: four consecutive reals of each lane's row become four Reals; pc_transpose_out reverses it.
 #if !defined(PC_DOUBLE) && PC_LANES == 4

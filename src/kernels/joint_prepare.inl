@@ -2,11 +2,9 @@
 //
 // Pin (section 9.3 of the original; errata v): K = (1/m_a + 1/m_b) 1 - [r_a] I_a^-1 [r_a] - [r_b] I_b^-1 [r_b].
 // Both arms end in the midpoint of the two pins, so impulses conserve angular momentum exactly.
-// Angles (section 9.4): R = axes_a* axes_b is split into a swing and a roll about x, R = swing * roll:
-//   roll = 2 atan(R_x / R_w); swing = 2 atan(|S_yz| / S_w) (S_y, S_z) / |S_yz| = (pitch, yaw).
-// A cone limits the angle between the two x axes. Every row is a slack >= 0, measured from the nearer
-// limit, or a locked angle.
+// Angles: joint_angles.inl. Every row is a slack >= 0, measured from the nearer limit, or a locked angle.
 #include "body_state.inl"
+#include "joint_angles.inl"
 #include "joint_rows.inl"
 
 PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
@@ -24,35 +22,6 @@ PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
   precise Real yz = pc_dot(ay, iaz) + pc_dot(by, ibz);
   precise Real zz = k + pc_dot(az, iaz) + pc_dot(bz, ibz);
   Sym3 m; m.xx = xx; m.xy = xy; m.xz = xz; m.yy = yy; m.yz = yz; m.zz = zz; return m;
-}
-
-struct Angles { Vec3 value; Vec3 roll_axis; Vec3 second_axis; Vec3 third_axis; };
-PC_FN Angles pc_joint_angles(Quaternion fa, Quaternion fb, Mask is_cone) {
-  Quaternion r0 = pc_quaternion_mul(pc_conjugate(fa), fb);
-  Real flip = pc_select(r0.w < PC_REAL(0.0), PC_REAL(-1.0), PC_REAL(1.0));
-  Vec3 rv = pc_scale(r0.v, flip); precise Real rw = r0.w * flip;
-  // roll
-  precise Real xw = rv.x * rv.x + rw * rw; Real n = pc_sqrt(xw); Real inverse_n = pc_inverse_or_zero(n);
-  precise Real half_roll = pc_angle(pc_abs(rv.x), rw) * PC_REAL(2.0);
-  Real roll = pc_select(rv.x < PC_REAL(0.0), -half_roll, half_roll);
-  // swing
-  precise Real tx = rv.x * inverse_n; precise Real tw = rw * inverse_n;
-  precise Real sy = rv.y * tw - rv.z * tx; precise Real sz = rv.z * tw + rv.y * tx;
-  precise Real ss = sy * sy + sz * sz; Real s = pc_sqrt(ss);
-  precise Real swing = pc_angle(s, n) * PC_REAL(2.0);
-  Real rate = pc_select(s > PC_REAL(1e-6), pc_div(swing, pc_max(s, PC_TINY)), PC_REAL(2.0));
-  precise Real pitch = sy * rate; precise Real yaw = sz * rate;
-  // axes
-  Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));
-  Vec3 xa = pc_rotate(fa, x); Vec3 xb = pc_rotate(fb, x);
-  Vec3 cone_axis = pc_unit_or_zero(pc_cross(xa, xb));
-  precise Real cosine_sum = pc_dot(xa, xb) + PC_REAL(1.0); Vec3 sum = pc_add(xa, xb);
-  Vec3 pitch_axis = pc_rotate(fa, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
-  Vec3 yaw_axis = pc_rotate(fa, Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(1.0)));
-  Angles o; o.value = Vec3(roll, pc_select(is_cone, swing, pitch), pc_select(is_cone, PC_REAL(0.0), yaw));
-  o.roll_axis = pc_scale(sum, pc_div(PC_REAL(1.0), pc_max(cosine_sum, PC_REAL(0.1))));
-  o.second_axis = pc_select3(is_cone, cone_axis, pitch_axis);
-  o.third_axis = pc_select3(is_cone, pc_zero3(), yaw_axis); return o;
 }
 
 // One angle row at its nearer limit; writes it and returns its impulse and the couple of the warm start.

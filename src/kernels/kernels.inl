@@ -3,7 +3,8 @@
 //
 //   PC_KERNEL(name, domain, stage, accesses)
 //
-// domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once).
+// domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once), tree (a joint
+// tree a lane, blocks of trees of one shape).
 // stage: whose backend runs it. accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in
 // GLSL; PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum).
 // Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
@@ -15,6 +16,7 @@
 PC_ROWS(contact, contact_rows, 60)
 PC_ROWS(contact, contact_impulses, 12)
 PC_ROWS(joint, joint_rows, 36)
+PC_ROWS(joint, tree_rows, 140)
 #endif
 
 #ifdef PC_KERNEL
@@ -28,6 +30,10 @@ PC_KERNEL(advance_round, body, integrate, PC_READ(bodies) PC_READ(motion) PC_REA
 PC_KERNEL(synchronise, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_WRITE(velocity_parts))
 PC_KERNEL(joint_prepare, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_frame) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(joint_rows))
 PC_KERNEL(joint_solve, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
+PC_KERNEL(tree_prepare, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(joint_frame) PC_READ(joint_impulse) PC_WRITE(tree_rows))
+PC_KERNEL(tree_solve, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
+PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse))
+PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(joint_frame) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
 PC_KERNEL(contact_warm, contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))

@@ -66,7 +66,8 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.bodies) out("integrate", "no body moves");
   if (s.bodies && !s.drag) out("drag", "no body has any");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
-  if (!s.joints) out("joints", "the world has no joints");
+  if (!s.joints && !s.trees) out("joints", "the world has no joints");
+  if (!s.joints && s.trees) out("joint rows", "no joint closes a loop");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.contacts && !s.restitution) out("restitution", "no contact has a restitution above zero");
@@ -86,12 +87,16 @@ StepPlan make_plan(const PlanSignature& s) {
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);
     b.kernel(s.drag ? Kernel::integrate_drag : Kernel::integrate, Phase::biased, k);
+    if (s.trees) b.kernel(Kernel::tree_prepare, Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
+    if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::biased, k);
+    if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
     b.kernel(s.gyroscopic ? Kernel::advance : Kernel::advance_round, Phase::biased, k);
+    if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::relax, k);
   }

@@ -15,10 +15,11 @@ struct PlanSignature {
   bool bodies = false;                      // some move
   bool drag = false;                        // of some body
   bool gyroscopic = false;                  // some body has unequal moments
-  bool joints = false;
-  bool shapes = false;       // some pair could ever touch
-  bool contacts = false;     // some do in this step
-  bool restitution = false;  // some contact bounces
+  bool trees = false;                       // joints that stand in a tree
+  bool joints = false;                      // joints that close a loop
+  bool shapes = false;                      // some pair could ever touch
+  bool contacts = false;                    // some do in this step
+  bool restitution = false;                 // some contact bounces
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 

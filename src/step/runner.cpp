@@ -31,6 +31,9 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::bodies: return &schedule.bodies;
     case Buffer::joint_ends: return &schedule.joints.ends();
     case Buffer::joint_order: return &schedule.joints.order();
+    case Buffer::tree_blocks: return &schedule.trees.lists().blocks;
+    case Buffer::tree_parents: return &schedule.trees.lists().parents;
+    case Buffer::tree_ends: return &schedule.trees.lists().ends;
     case Buffer::contact_ends: return &schedule.contacts.ends();
     case Buffer::contact_order: return &schedule.contacts.order();
     default: return nullptr;
@@ -42,11 +45,16 @@ bool needs_colours(const KernelSchema& k) {
     if (a.write && a.buffer < Buffer::table_buffers && schema(a.buffer).table == Table::body) return true;
   return false;
 }
+std::size_t slots_of(Domain domain, const Schedule& schedule) {
+  if (domain == Domain::tree) return schedule.trees.slots();
+  return (domain == Domain::joint ? schedule.joints : schedule.contacts).slots();
+}
 std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule& schedule) {
   if (buffer < Buffer::table_buffers) return state.tables.version(buffer) + 1;
   if (buffer == Buffer::bodies) return schedule.bodies_version + 1;
   if (buffer == Buffer::joint_ends || buffer == Buffer::joint_order) return schedule.joints.version() + 1;
-  return schedule.contacts.version() + 1;
+  if (buffer == Buffer::contact_ends || buffer == Buffer::contact_order) return schedule.contacts.version() + 1;
+  return schedule.trees.version() + 1;
 }
 
 }  // namespace
@@ -113,6 +121,7 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
     const KernelSchema& k = schema(entry.kernel);
     if (k.domain == Domain::joint) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
     if (k.domain == Domain::contact) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
+    if (k.domain == Domain::tree) schedule.trees.pack(at(place_of(settings, k.stage)).backend->width());
     for (const Access& a : k.accesses) {
       bool& done = bound[std::size_t(entry.place)][std::size_t(a.buffer)];
       if (done) continue;
@@ -123,8 +132,7 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
       else if (std::vector<std::uint32_t>* list = list_of(a.buffer, schedule))
         ok = attach(entry.place, a.buffer, list->data(), list->size() * 4);
       else
-        ok =
-            at(entry.place).backend->reserve(a.buffer, (k.domain == Domain::joint ? schedule.joints : schedule.contacts).slots());
+        ok = at(entry.place).backend->reserve(a.buffer, slots_of(k.domain, schedule));
       if (!ok) return ok;
     }
   }
@@ -157,8 +165,9 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
   std::span<const Range> ranges(&moving, 1);
   if (k.domain == Domain::joint) ranges = schedule.joints.ranges();
   if (k.domain == Domain::contact) ranges = schedule.contacts.ranges();
+  if (k.domain == Domain::tree) ranges = schedule.trees.ranges();
   const Range all{0, ranges.back().end};
-  if (k.domain != Domain::body && !needs_colours(k)) ranges = std::span<const Range>(&all, 1);
+  if ((k.domain == Domain::joint || k.domain == Domain::contact) && !needs_colours(k)) ranges = std::span<const Range>(&all, 1);
   if (entry.place == Place::cpu)
     for (const Access& a : k.accesses)
       if (a.write && a.buffer < Buffer::table_buffers) {

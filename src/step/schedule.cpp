@@ -1,15 +1,27 @@
 #include "step/schedule.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace pcphys {
 
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind) {
+  rows_.resize(ends.size() - 1);
+  std::iota(rows_.begin(), rows_.end(), 1u);
+  colour_rows(state, ends, kind);
+}
+
+void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
+                           std::span<const std::uint32_t> rows, std::uint32_t kind) {
+  rows_.assign(rows.begin(), rows.end());
+  colour_rows(state, ends, kind);
+}
+
+void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind) {
   units_.clear();
   priorities_.clear();
   ends_.clear();
-  rows_.clear();
-  for (std::uint32_t row = 1; row < ends.size(); row++) {
+  for (const std::uint32_t row : rows_) {
     std::uint32_t ids[2];
     for (int side = 0; side < 2; side++) {
       const BodyRecord& body = state.bodies[ends[row][side]];
@@ -18,7 +30,6 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
       ends_.push_back(ends[row][side]);
     }
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
-    rows_.push_back(row);
   }
   colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_);
   width_ = 0;
@@ -29,6 +40,30 @@ void ColouredSlots::pack(std::uint32_t width) {
   width_ = width;
   version_++;
   pack_slots(colouring_, width, ends_, rows_, slots_);
+}
+
+void TreeSlots::build(const WorldState& state) {
+  std::vector<JointLink> links;
+  for (std::uint32_t row = 1; row < state.joints.size(); row++) {
+    const JointRecord& joint = state.joints[row];
+    links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index});
+  }
+  std::vector<double> masses(state.bodies.size());
+  std::vector<std::uint32_t> ids(state.bodies.size());
+  for (std::uint32_t row = 0; row < state.bodies.size(); row++) {
+    masses[row] = state.bodies[row].kind == BodyKind::dynamic ? state.tables.get(Buffer::mass, row, 3) : 0;
+    ids[row] = state.bodies[row].index;
+  }
+  forest_.build(links, masses, ids);
+  width_ = 0;
+}
+
+void TreeSlots::pack(std::uint32_t width) {
+  if (width_ == width) return;
+  width_ = width;
+  version_++;
+  pack_trees(forest_, width, blocks_);
+  all_ = {0, blocks_.count()};
 }
 
 void Schedule::update_structure(const WorldState& state) {
@@ -47,7 +82,8 @@ void Schedule::update_structure(const WorldState& state) {
   joint_ends_.assign(state.joints.size(), {0, 0});
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     joint_ends_[row] = {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)};
-  joints.colour(state, joint_ends_, 0);
+  trees.build(state);
+  joints.colour(state, joint_ends_, trees.forest().closing(), 0);
 }
 
 }  // namespace pcphys

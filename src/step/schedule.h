@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plan/coloring.h"
+#include "plan/forest.h"
 #include "step/backend.h"
 #include "world/state.h"
 
@@ -14,12 +15,16 @@ namespace pcphys {
 /// Constraints of one domain, grouped into colours: two of one colour share no body that moves.
 class ColouredSlots {
  public:
-  /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ.
+  /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ. Of all
+  /// rows but 0, or of those in `rows`.
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind);
+  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::span<const std::uint32_t> rows,
+              std::uint32_t kind);
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
   std::uint32_t colours() const { return colouring_.colours(); }
+  std::uint32_t constraints() const { return colouring_.constraints(); }
   std::size_t slots() const { return slots_.order.size(); }
   std::span<const Range> ranges() const { return slots_.ranges; }
   std::vector<std::uint32_t>& ends() { return slots_.ends; }
@@ -30,7 +35,29 @@ class ColouredSlots {
  private:
   Colouring colouring_;
   Slots slots_;
+  void colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind);
+
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_;
+  std::uint32_t width_ = 0;
+  std::uint64_t version_ = 0;
+};
+
+/// Joint trees, one a lane, for a backend's width.
+class TreeSlots {
+ public:
+  void build(const WorldState& state);
+  void pack(std::uint32_t width);
+
+  const Forest& forest() const { return forest_; }
+  std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
+  std::span<const Range> ranges() const { return {&all_, 1}; }
+  TreeBlocks& lists() { return blocks_; }
+  std::uint64_t version() const { return version_; }
+
+ private:
+  Forest forest_;
+  TreeBlocks blocks_;
+  Range all_{0, 0};
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
 };
@@ -45,7 +72,8 @@ class Schedule {
   std::uint32_t moving = 0;               // without the padding
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
   std::uint64_t bodies_version = 0;
-  ColouredSlots joints, contacts;
+  ColouredSlots joints, contacts;  // joints: those that stand in no tree
+  TreeSlots trees;
 
   static constexpr std::uint32_t padding = 32;  // the widest backend
 

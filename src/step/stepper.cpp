@@ -87,10 +87,15 @@ struct Stepper::Inside {
   Detector::Options detection() const { return {settings.narrow, settings.contact_margin, settings.max_pairs}; }
 
   PlanSignature signature(const WorldState& s, bool restitution) const {
-    return {settings.substeps,   {settings.integrate, settings.joints, settings.impulses},
-            schedule.moving > 0, schedule.drag,
-            schedule.gyroscopic, s.joints.size() > 1,
-            detector.possible(), s.contact_rows() > 1,
+    return {settings.substeps,
+            {settings.integrate, settings.joints, settings.impulses},
+            schedule.moving > 0,
+            schedule.drag,
+            schedule.gyroscopic,
+            schedule.trees.forest().trees() > 0,
+            schedule.joints.constraints() > 0,
+            detector.possible(),
+            s.contact_rows() > 1,
             restitution};
   }
 

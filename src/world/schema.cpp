@@ -18,6 +18,9 @@ constexpr BufferSchema buffer_schemas[] = {
     {"contact_order", Table::contact, 0, "the contact of a slot"},
     {"joint_ends", Table::joint, 0, "the two body rows of a slot"},
     {"joint_order", Table::joint, 0, "the joint of a slot"},
+    {"tree_blocks", Table::joint, 0, "of a block of trees its first node and their number"},
+    {"tree_parents", Table::joint, 0, "of a node twice its parent's place, and 1 where the joint's body a is the child"},
+    {"tree_ends", Table::joint, 0, "body row and joint row of a node"},
 #define PC_ROWS(domain, buffer, reals) {#buffer, Table::domain, reals, "scratch of the solver"},
 #include "kernels/kernels.inl"
 #undef PC_ROWS

@@ -33,6 +33,9 @@ enum class Buffer : std::uint8_t {
   contact_order,
   joint_ends,
   joint_order,
+  tree_blocks,
+  tree_parents,
+  tree_ends,
 #define PC_ROWS(domain, buffer, reals) buffer,
 #include "kernels/kernels.inl"
 #undef PC_ROWS
@@ -46,7 +49,7 @@ enum class Kernel : std::uint8_t {
   count
 };
 
-enum class Domain : std::uint8_t { body, contact, joint };
+enum class Domain : std::uint8_t { body, contact, joint, tree };
 enum class Stage : std::uint8_t { integrate, joints, impulses };
 enum class PropertyType : std::uint8_t { real, vec3, quat, sym3 };
 enum class Role : std::uint8_t { input, state, derived, scratch };

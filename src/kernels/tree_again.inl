@@ -1,0 +1,52 @@
+// After the contacts: the pins once more at the new prediction, with the same factor (Newton's second step, and what the
+// contacts have undone); then the push that closes the gaps left over, which the relax phase takes back once the
+// bodies have moved by it.
+#include "body_state.inl"
+#include "tree_rows.inl"
+#include "tree_store.inl"
+#include "tree_sweep.inl"
+
+// Limits keep what they carry; locked rows are corrected like pins.
+PC_FN void pc_again_rates(PC_IO Slot n, Slot up) {
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  for (uint i = 0u; i < 3u; i++) {
+    precise Real soft_rate = PC_LD(tree_rows, n, TREE_SLACK + i) * PC_INFO(joint_rate);
+    Real wanted = pc_clamp(soft_rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed));
+    precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + wanted;
+    PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, PC_REAL(0.0)));
+  }
+}
+// Speed at which a gap closes: within the sub-step, but not faster than joint_push_speed.
+PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
+  precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
+  Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
+}
+// Remembers what acted on the joint: pin and angle impulses of the sub-step.
+PC_FN void pc_remember_joint(PC_IO Tree t, Slot n, uint k) {
+  Real flip = pc_select(PC_IS(pc_is_flipped(PC_PASS t, k)), PC_REAL(-1.0), PC_REAL(1.0)); Index joint = PC_ENDS(tree_ends, n, 1u);
+  precise Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN) * flip;
+  Vec3 s = pc_ld3_tree(PC_PASS n, TREE_LIMIT);
+  precise Real r0 = s.x * PC_LD(tree_rows, n, TREE_SIGN); precise Real r1 = s.y * PC_LD(tree_rows, n, TREE_SIGN + 1u); precise Real r2 = s.z * PC_LD(tree_rows, n, TREE_SIGN + 2u);
+  PC_SCATTER(joint_impulse, joint, 0u, pc_quad(pc_snap3(pin), PC_REAL(0.0)));
+  PC_SCATTER(joint_impulse, joint, 1u, pc_quad(pc_snap3(Vec3(r0, r1, r2)), PC_REAL(0.0)));
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
+  pc_tree_residual(PC_PASS m, t);
+  for (uint k = 1u; k < t.count; k++) pc_again_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, one);
+  pc_tree_torques(PC_PASS m, t, TREE_PUSH, one);
+  pc_tree_apply(PC_PASS m, t);
+  for (uint k = 1u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
+    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_ld3_tree(PC_PASS n, TREE_F + 3u)));
+    pc_remember_joint(PC_PASS t, n, k);
+    pc_st3_tree(PC_PASS n, TREE_C, pc_closing(PC_PASS pc_ld3_tree(PC_PASS n, TREE_GAP)));
+  }
+  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
+  pc_tree_torques(PC_PASS m, t, TREE_PUSH, PC_REAL(0.0));
+  for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
+  pc_tree_apply(PC_PASS m, t);
+}

@@ -1,0 +1,40 @@
+// The factor of a tree, leaves to root (see tree_sweep.inl).
+PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
+  Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
+  Mat3 ct = pc_transpose(h.c);
+  // U = H S
+  Vec3 u0 = pc_add(h.c.a, pc_cross(pc_row0(h.l), rc)); Vec3 u1 = pc_add(h.c.b, pc_cross(pc_row1(h.l), rc)); Vec3 u2 = pc_add(h.c.c, pc_cross(pc_row2(h.l), rc));
+  Vec3 u3 = pc_add(pc_row0(h.a), pc_cross(ct.a, rc)); Vec3 u4 = pc_add(pc_row1(h.a), pc_cross(ct.b, rc)); Vec3 u5 = pc_add(pc_row2(h.a), pc_cross(ct.c, rc));
+  // S^T U, then the springs of the angle rows: as stiff as the joint's own inertia about their axis, many times
+  precise Real xx = u3.x + u1.x * rc.z - u2.x * rc.y; precise Real xy = u3.y + u1.y * rc.z - u2.y * rc.y; precise Real xz = u3.z + u1.z * rc.z - u2.z * rc.y;
+  precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
+  Sym3 freedom = pc_sym3(xx, xy, xz, yy, yz, zz); Sym3 loose = pc_sym_inverse(freedom);
+  for (uint i = 0u; i < 3u; i++) {
+    Vec3 j = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
+    Real stiffness = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));
+    precise Real spring = stiffness * PC_LD(tree_rows, n, TREE_ON + i) * pc_inverse_or_zero(pc_dot(j, pc_sym_mul(loose, j)));
+    PC_ST(tree_rows, n, TREE_SPRING + i, spring); freedom = pc_sym_outer(freedom, j, spring);
+  }
+  Sym3 inverse = pc_sym_inverse(freedom);
+  Vec3 w0 = pc_sym_mul(inverse, u0); Vec3 w1 = pc_sym_mul(inverse, u1); Vec3 w2 = pc_sym_mul(inverse, u2); Vec3 w3 = pc_sym_mul(inverse, u3); Vec3 w4 = pc_sym_mul(inverse, u4); Vec3 w5 = pc_sym_mul(inverse, u5);
+  pc_sts_tree(PC_PASS n, TREE_D, inverse);
+  pc_stm_tree(PC_PASS n, TREE_W, pc_mat3(w0, w1, w2)); pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_mat3(w3, w4, w5));
+  // H - W U^T, and what of it the parent carries
+  Sym6 rest; rest.l = pc_sym_sub(h.l, pc_products(w0, w1, w2, u0, u1, u2)); rest.a = pc_sym_sub(h.a, pc_products(w3, w4, w5, u3, u4, u5));
+  rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(w0, u3), pc_dot(w0, u4), pc_dot(w0, u5))), pc_sub(h.c.b, Vec3(pc_dot(w1, u3), pc_dot(w1, u4), pc_dot(w1, u5))), pc_sub(h.c.c, Vec3(pc_dot(w2, u3), pc_dot(w2, u4), pc_dot(w2, u5))));
+  pc_sts_tree(PC_PASS n, TREE_A, rest.l); pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c);
+  pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
+}
+PC_FN void pc_factor(PC_IO Slot m, Tree t) {
+  Vec3 z = pc_zero3();
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Sym6 h; h.l = pc_diagonal(PC_LD(tree_rows, n, TREE_MASS)); h.c = pc_mat3(z, z, z); h.a = pc_lds_tree(PC_PASS n, TREE_INERTIA);
+    pc_sth_tree(PC_PASS n, TREE_H, h);
+  }
+  for (uint i = 1u; i < t.count; i++) { uint k = t.count - i; pc_factor_node(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k))); }
+  // a fixed root answers nothing
+  Slot root = PC_NODE(m, t.first); Sym6 h = pc_sym6_inverse(pc_ldh_tree(PC_PASS root, TREE_H)); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
+  Sym6 r; Sym3 none = pc_diagonal(PC_REAL(0.0)); r.l = pc_sym_select(free, h.l, none); r.a = pc_sym_select(free, h.a, none);
+  r.c = pc_mat3(pc_select3(free, h.c.a, z), pc_select3(free, h.c.b, z), pc_select3(free, h.c.c, z));
+  pc_sth_tree(PC_PASS root, TREE_H, r);
+}

@@ -1,0 +1,59 @@
+// Small matrices of the tree solve: 3 x 3, and 6-vectors of a linear and an angular part.
+struct Mat3 { Vec3 a; Vec3 b; Vec3 c; };   // rows
+struct Six { Vec3 l; Vec3 a; };            // linear, angular
+struct Sym6 { Sym3 l; Mat3 c; Sym3 a; };   // [l c; c^T a]
+
+PC_FN Mat3 pc_mat3(Vec3 a, Vec3 b, Vec3 c) { Mat3 m; m.a = a; m.b = b; m.c = c; return m; }
+PC_FN Six pc_six(Vec3 l, Vec3 a) { Six x; x.l = l; x.a = a; return x; }
+PC_FN Sym3 pc_sym3(Real xx, Real xy, Real xz, Real yy, Real yz, Real zz) { Sym3 m; m.xx = xx; m.xy = xy; m.xz = xz; m.yy = yy; m.yz = yz; m.zz = zz; return m; }
+PC_FN Sym3 pc_diagonal(Real d) { Real o = PC_REAL(0.0); return pc_sym3(d, o, o, d, o, d); }
+PC_FN Vec3 pc_row0(Sym3 m) { return Vec3(m.xx, m.xy, m.xz); }
+PC_FN Vec3 pc_row1(Sym3 m) { return Vec3(m.xy, m.yy, m.yz); }
+PC_FN Vec3 pc_row2(Sym3 m) { return Vec3(m.xz, m.yz, m.zz); }
+PC_FN Mat3 pc_transpose(Mat3 m) { return pc_mat3(Vec3(m.a.x, m.b.x, m.c.x), Vec3(m.a.y, m.b.y, m.c.y), Vec3(m.a.z, m.b.z, m.c.z)); }
+PC_FN Vec3 pc_mat_mul(Mat3 m, Vec3 v) { return Vec3(pc_dot(m.a, v), pc_dot(m.b, v), pc_dot(m.c, v)); }
+PC_FN Vec3 pc_mat_tmul(Mat3 m, Vec3 v) { return pc_combine(m.a, v.x, m.b, v.y, m.c, v.z); }
+PC_FN Six pc_sym6_mul(Sym6 h, Six x) {
+  return pc_six(pc_add(pc_sym_mul(h.l, x.l), pc_mat_mul(h.c, x.a)), pc_add(pc_mat_tmul(h.c, x.l), pc_sym_mul(h.a, x.a)));
+}
+PC_FN Sym3 pc_sym_sub(Sym3 a, Sym3 b) {
+  precise Real xx = a.xx - b.xx; precise Real xy = a.xy - b.xy; precise Real xz = a.xz - b.xz;
+  precise Real yy = a.yy - b.yy; precise Real yz = a.yz - b.yz; precise Real zz = a.zz - b.zz;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
+}
+PC_FN Sym3 pc_sym_select(Mask m, Sym3 a, Sym3 b) {
+  return pc_sym3(pc_select(m, a.xx, b.xx), pc_select(m, a.xy, b.xy), pc_select(m, a.xz, b.xz), pc_select(m, a.yy, b.yy), pc_select(m, a.yz, b.yz), pc_select(m, a.zz, b.zz));
+}
+PC_FN Sym6 pc_sym6_add(Sym6 x, Sym6 y) {
+  Sym6 r; r.l = pc_sym_add(x.l, y.l); r.c = pc_mat3(pc_add(x.c.a, y.c.a), pc_add(x.c.b, y.c.b), pc_add(x.c.c, y.c.c)); r.a = pc_sym_add(x.a, y.a); return r;
+}
+// The symmetric matrix of dot products of the vectors u with the vectors v, where these commute.
+PC_FN Sym3 pc_products(Vec3 u0, Vec3 u1, Vec3 u2, Vec3 v0, Vec3 v1, Vec3 v2) {
+  return pc_sym3(pc_dot(u0, v0), pc_dot(u0, v1), pc_dot(u0, v2), pc_dot(u1, v1), pc_dot(u1, v2), pc_dot(u2, v2));
+}
+// a + sum of s_i x_i x_i^T
+PC_FN Sym3 pc_sym_outer(Sym3 a, Vec3 x, Real s) {
+  Vec3 y = pc_scale(x, s);
+  precise Real xx = a.xx + x.x * y.x; precise Real xy = a.xy + x.x * y.y; precise Real xz = a.xz + x.x * y.z;
+  precise Real yy = a.yy + x.y * y.y; precise Real yz = a.yz + x.y * y.z; precise Real zz = a.zz + x.z * y.z;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
+}
+// Inverse by blocks: with W = l^-1 c and S = a - c^T W.
+PC_FN Sym6 pc_sym6_inverse(Sym6 h) {
+  Sym3 li = pc_sym_inverse(h.l); Mat3 ct = pc_transpose(h.c);
+  Vec3 w0 = pc_sym_mul(li, ct.a); Vec3 w1 = pc_sym_mul(li, ct.b); Vec3 w2 = pc_sym_mul(li, ct.c);  // columns of W
+  Sym3 si = pc_sym_inverse(pc_sym_sub(h.a, pc_products(ct.a, ct.b, ct.c, w0, w1, w2)));
+  Mat3 w = pc_transpose(pc_mat3(w0, w1, w2));
+  Vec3 c0 = pc_sym_mul(si, w.a); Vec3 c1 = pc_sym_mul(si, w.b); Vec3 c2 = pc_sym_mul(si, w.c);  // rows of W S^-1
+  Sym6 r; r.l = pc_sym_add(li, pc_products(c0, c1, c2, w.a, w.b, w.c)); r.c = pc_mat3(pc_negate(c0), pc_negate(c1), pc_negate(c2)); r.a = si; return r;
+}
+// X^T h X, where X x = (l + a x d, a) moves a motion along the arm d.
+PC_FN Sym6 pc_sym6_shift(Sym6 h, Vec3 d) {
+  Sym6 r; r.l = h.l;
+  r.c = pc_mat3(pc_sub(h.c.a, pc_cross(pc_row0(h.l), d)), pc_sub(h.c.b, pc_cross(pc_row1(h.l), d)), pc_sub(h.c.c, pc_cross(pc_row2(h.l), d)));
+  Mat3 ct = pc_transpose(h.c);
+  Vec3 e0 = pc_sub(pc_row0(h.a), pc_cross(ct.a, d)); Vec3 e1 = pc_sub(pc_row1(h.a), pc_cross(ct.b, d)); Vec3 e2 = pc_sub(pc_row2(h.a), pc_cross(ct.c, d));
+  precise Real xx = e0.x + d.y * r.c.c.x - d.z * r.c.b.x; precise Real xy = e0.y + d.y * r.c.c.y - d.z * r.c.b.y; precise Real xz = e0.z + d.y * r.c.c.z - d.z * r.c.b.z;
+  precise Real yy = e1.y + d.z * r.c.a.y - d.x * r.c.c.y; precise Real yz = e1.z + d.z * r.c.a.z - d.x * r.c.c.z; precise Real zz = e2.z + d.x * r.c.b.z - d.y * r.c.a.z;
+  r.a = pc_sym3(xx, xy, xz, yy, yz, zz); return r;
+}

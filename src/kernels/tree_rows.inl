@@ -1,0 +1,43 @@
+// What the tree solve keeps of a node: a body, and the joint to its parent (docs/joints.md). Nodes of a tree stand one
+// after the other, parents before children; node 0 is the root, of which only the fields of a body are used.
+#include "tree_math.inl"
+
+const uint TREE_RC = 0u;        // arm from the body's centre to the pin, start of the sub-step
+const uint TREE_RP = 3u;        // the same of the parent
+const uint TREE_GAP = 6u;       // pin of the body minus pin of the parent
+const uint TREE_AXIS = 9u;      // three axes: the slack of row i grows with axis_i . (w - w_parent)
+const uint TREE_SLACK = 18u;
+const uint TREE_SIGN = 21u;     // +1 at a lower limit, -1 at an upper one
+const uint TREE_KIND = 24u;     // 0 no row, 1 a limit, 2 locked
+const uint TREE_ON = 27u;       // 1 where the row acts
+const uint TREE_SPRING = 30u;   // its stiffness in impulse per velocity
+const uint TREE_RATE = 33u;     // rate of slack that it undoes
+const uint TREE_C = 36u;        // right-hand side of the pin
+const uint TREE_F = 39u;        // impulses: collected on the way up; afterwards the torque on the body
+const uint TREE_X = 45u;        // change of the velocities
+const uint TREE_H = 51u;        // articulated inertia, 21; of the root its inverse
+const uint TREE_A = 72u;        // inertia as the parent sees it: linear 6, mixed 9
+const uint TREE_D = 87u;        // inverse inertia of the joint's freedom
+const uint TREE_W = 93u;        // six rows U D^-1
+const uint TREE_PIN = 111u;     // impulse of the pin on the body
+const uint TREE_PUSH = 114u;    // that which closes the gap, taken back in the relax phase
+const uint TREE_PUSH_COUPLE = 117u;
+const uint TREE_PUSH_SPEED = 120u;
+const uint TREE_MASS = 123u;    // 0 for a fixed root
+const uint TREE_INERTIA = 124u; // world axes, with the geometric stiffness
+const uint TREE_TURN = 130u;    // where the sub-step will turn the body: vector and w - 1
+const uint TREE_LIMIT = 134u;   // impulses of the three angle rows, in the joint's sense; 137..139 spare
+
+PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
+PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }
+PC_FN Sym3 pc_lds_tree(PC_IO Slot n, uint f) {
+  return pc_sym3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u), PC_LD(tree_rows, n, f + 3u), PC_LD(tree_rows, n, f + 4u), PC_LD(tree_rows, n, f + 5u));
+}
+PC_FN Mat3 pc_ldm_tree(PC_IO Slot n, uint f) { return pc_mat3(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u), pc_ld3_tree(PC_PASS n, f + 6u)); }
+PC_FN Sym6 pc_ldh_tree(PC_IO Slot n, uint f) { Sym6 h; h.l = pc_lds_tree(PC_PASS n, f); h.c = pc_ldm_tree(PC_PASS n, f + 6u); h.a = pc_lds_tree(PC_PASS n, f + 15u); return h; }
+// where a tree's nodes stand, and its topology
+struct Tree { uint first; uint count; };
+PC_FN Tree pc_tree(PC_IO Slot m) { uint block = PC_BLOCK(m); uint at = block * 2u; Tree t; t.first = PC_UINT(tree_blocks, at); t.count = PC_UINT(tree_blocks, at + 1u); return t; }
+PC_FN uint pc_parent(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) >> 1u; }
+// whether the joint's body a is the child
+PC_FN uint pc_is_flipped(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) & 1u; }

@@ -1,0 +1,53 @@
+// The direct solve of a joint tree: its factor, and the impulses that keep every gap over the sub-step. Which angle
+// rows act is found by an active set: those violated at the predicted pose enter, those that would pull leave, and the
+// tree is factored anew, a few times at most.
+#include "body_state.inl"
+#include "tree_rows.inl"
+#include "tree_store.inl"
+#include "tree_factor.inl"
+#include "tree_sweep.inl"
+
+// Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
+PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  for (uint i = 0u; i < 3u; i++) {
+    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
+    precise Real gap_rate = slack * PC_INFO(inverse_h); precise Real soft_rate = slack * PC_INFO(joint_rate);
+    Real wanted = pc_select(open, gap_rate, pc_clamp(soft_rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)));
+    precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + wanted;
+    PC_ST(tree_rows, n, TREE_RATE + i, rate);
+    Real on = PC_LD(tree_rows, n, TREE_ON + i);
+    PC_ST(tree_rows, n, TREE_ON + i, pc_select(pc_and(kind > PC_REAL(0.5), rate < PC_REAL(0.0)), PC_REAL(1.0), on));
+  }
+}
+// After a sweep: rows that pull leave, and in the first round those enter that it violates. 1 where any did.
+PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real changed = PC_REAL(0.0); Real one = PC_REAL(1.0);
+  for (uint i = 0u; i < 3u; i++) {
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Real on = PC_LD(tree_rows, n, TREE_ON + i); Real impulse = pc_row_impulse(PC_PASS n, i, turn, one);
+    precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
+    Mask leaves = pc_and(is_limit, pc_and(on > PC_REAL(0.5), impulse < PC_REAL(0.0)));
+    Mask enters = pc_and(pc_and(is_limit, may_enter > PC_REAL(0.5)), pc_and(on < PC_REAL(0.5), rate < PC_REAL(-0.05)));
+    PC_ST(tree_rows, n, TREE_ON + i, pc_select(leaves, PC_REAL(0.0), pc_select(enters, one, on)));
+    changed = pc_select(pc_or(leaves, enters), one, changed);
+  }
+  return changed;
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
+  pc_tree_residual(PC_PASS m, t);
+  for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  for (uint turn = 0u; turn < 4u; turn++) {
+    pc_factor(PC_PASS m, t);
+    pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
+    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(turn), PC_REAL(0.0), one);
+    for (uint k = 1u; k < t.count; k++) changed = pc_max(changed, pc_tree_revise(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), may_enter));
+    if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
+  }
+  pc_tree_torques(PC_PASS m, t, TREE_PIN, one);
+  for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_ld3_tree(PC_PASS n, TREE_F + 3u)); }
+  pc_tree_apply(PC_PASS m, t);
+}

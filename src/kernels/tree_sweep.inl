@@ -1,0 +1,120 @@
+// Solving with a tree's factor, and what its impulses do to the bodies.
+//
+// A child moves as x = X x_parent + S q - (c, 0): X x = (l + a x d, a) with d = r_p - r_c, S q = (r_c x q, q), q the
+// relative rotation and c what the pin must undo. With H the articulated inertia (R. Featherstone, Rigid Body Dynamics
+// Algorithms, 2008, chapter 7), U = H S, D = S^T U + springs, W = U D^-1, H' = H - W U^T:
+//   up:   t = S^T F + springs' push, F_parent += X^T (F - W t + H' (c, 0))
+//   down: a = X x_parent - (c, 0), q = D^-1 t - W^T a, x = a + S q; pin impulse = linear part of H' a + W t - F
+// The root: x = H^-1 F, or 0 where it is fixed.
+
+PC_FN Six pc_w_mul(PC_IO Slot n, Vec3 t) {
+  return pc_six(Vec3(pc_dot(pc_ld3_tree(PC_PASS n, TREE_W), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 3u), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 6u), t)),
+                Vec3(pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 9u), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 12u), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 15u), t)));
+}
+PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
+  Vec3 l = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W), a.l.x, pc_ld3_tree(PC_PASS n, TREE_W + 3u), a.l.y, pc_ld3_tree(PC_PASS n, TREE_W + 6u), a.l.z);
+  Vec3 r = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W + 9u), a.a.x, pc_ld3_tree(PC_PASS n, TREE_W + 12u), a.a.y, pc_ld3_tree(PC_PASS n, TREE_W + 15u), a.a.z);
+  return pc_add(l, r);
+}
+// t of a node: what is collected there, and the springs of its angle rows where `limits` is 1.
+PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
+  precise Real s0 = PC_LD(tree_rows, n, TREE_SPRING) * PC_LD(tree_rows, n, TREE_RATE) * limits;
+  precise Real s1 = PC_LD(tree_rows, n, TREE_SPRING + 1u) * PC_LD(tree_rows, n, TREE_RATE + 1u) * limits;
+  precise Real s2 = PC_LD(tree_rows, n, TREE_SPRING + 2u) * PC_LD(tree_rows, n, TREE_RATE + 2u) * limits;
+  Vec3 push = pc_combine(pc_ld3_tree(PC_PASS n, TREE_AXIS), s0, pc_ld3_tree(PC_PASS n, TREE_AXIS + 3u), s1, pc_ld3_tree(PC_PASS n, TREE_AXIS + 6u), s2);
+  precise Vec3 t = f.a + pc_cross(f.l, rc) - push; return t;
+}
+// Fills TREE_X of all nodes and, at `pin`, the impulses of the pins, from the right-hand sides at `c`.
+PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
+  for (uint k = 0u; k < t.count; k++) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_F, pc_six(pc_zero3(), pc_zero3()));
+  for (uint i = 1u; i < t.count; i++) {
+    uint k = t.count - i; Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 gap = pc_ld3_tree(PC_PASS n, c);
+    Six w = pc_w_mul(PC_PASS n, pc_joint_push(PC_PASS n, f, rc, limits));
+    precise Vec3 l = f.l - w.l + pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), gap);
+    precise Vec3 a = f.a - w.a + pc_mat_tmul(pc_ldm_tree(PC_PASS n, TREE_A + 6u), gap);
+    Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); Six sum = pc_ld6_tree(PC_PASS up, TREE_F);
+    precise Vec3 sum_a = sum.a + a + pc_cross(d, l);
+    pc_st6_tree(PC_PASS up, TREE_F, pc_six(pc_add(sum.l, l), sum_a));
+  }
+  Slot root = PC_NODE(m, t.first);
+  pc_st6_tree(PC_PASS root, TREE_X, pc_sym6_mul(pc_ldh_tree(PC_PASS root, TREE_H), pc_ld6_tree(PC_PASS root, TREE_F)));
+  for (uint k = 1u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Six above = pc_ld6_tree(PC_PASS up, TREE_X);
+    Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
+    precise Vec3 l = above.l + pc_cross(above.a, d) - pc_ld3_tree(PC_PASS n, c); Six a = pc_six(l, above.a);
+    Vec3 push = pc_joint_push(PC_PASS n, f, rc, limits);
+    Vec3 q = pc_sub(pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_D), push), pc_w_tmul(PC_PASS n, a));
+    pc_st6_tree(PC_PASS n, TREE_X, pc_six(pc_add(l, pc_cross(rc, q)), pc_add(above.a, q)));
+    Six w = pc_w_mul(PC_PASS n, push);
+    precise Vec3 impulse = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), l) + pc_mat_mul(pc_ldm_tree(PC_PASS n, TREE_A + 6u), above.a) + w.l - f.l;
+    pc_st3_tree(PC_PASS n, pin, impulse);
+  }
+}
+
+// Impulse of angle row i after a sweep, along its axis: -spring (rate + change of rate).
+PC_FN Real pc_row_impulse(PC_IO Slot n, uint i, Vec3 turn, Real limits) {
+  precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) * limits + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  precise Real impulse = -PC_LD(tree_rows, n, TREE_SPRING + i) * rate; return impulse;
+}
+
+// The impulses of a sweep on the bodies: torques into TREE_F (of the angle rows their own behind it), couples of the
+// angle rows into TREE_PUSH_COUPLE.
+// A pin's impulse acts in one common point of both bodies, at their arms half-way through what the sweep itself
+// changes (the geometric stiffness, exactly): both momenta are conserved to rounding, see docs/joints.md.
+PC_FN void pc_tree_torques(PC_IO Slot m, Tree t, uint pin, Real limits) {
+  precise Real half_h = PC_INFO(h) * PC_REAL(0.5);
+  for (uint k = 0u; k < t.count; k++) pc_st3_tree(PC_PASS PC_NODE(m, t.first + k), TREE_F, pc_zero3());
+  for (uint k = 1u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    Six x = pc_ld6_tree(PC_PASS n, TREE_X); Six y = pc_ld6_tree(PC_PASS up, TREE_X); Vec3 f = pc_ld3_tree(PC_PASS n, pin);
+    Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 rp = pc_ld3_tree(PC_PASS n, TREE_RP);
+    Vec3 swing_c = pc_cross(x.a, rc); Vec3 swing_p = pc_cross(y.a, rp);
+    precise Vec3 apart = pc_ld3_tree(PC_PASS n, TREE_GAP) + ((x.l - y.l) + (swing_c - swing_p)) * half_h;
+    precise Vec3 arm_c = rc + swing_c * half_h - apart * PC_REAL(0.5); precise Vec3 arm_p = rp + swing_p * half_h + apart * PC_REAL(0.5);
+    Vec3 turn = pc_sub(x.a, y.a);
+    Real s0 = pc_row_impulse(PC_PASS n, 0u, turn, limits); Real s1 = pc_row_impulse(PC_PASS n, 1u, turn, limits); Real s2 = pc_row_impulse(PC_PASS n, 2u, turn, limits);
+    Vec3 couple = pc_combine(pc_ld3_tree(PC_PASS n, TREE_AXIS), s0, pc_ld3_tree(PC_PASS n, TREE_AXIS + 3u), s1, pc_ld3_tree(PC_PASS n, TREE_AXIS + 6u), s2);
+    pc_st3_tree(PC_PASS n, TREE_PUSH_COUPLE, couple);
+    pc_st3_tree(PC_PASS n, TREE_F + 3u, Vec3(s0, s1, s2));
+    precise Vec3 torque_c = pc_ld3_tree(PC_PASS n, TREE_F) + pc_cross(arm_c, f) + couple; precise Vec3 torque_p = pc_ld3_tree(PC_PASS up, TREE_F) - pc_cross(arm_p, f) - couple;
+    pc_st3_tree(PC_PASS n, TREE_F, torque_c); pc_st3_tree(PC_PASS up, TREE_F, torque_p);
+  }
+}
+PC_FN void pc_tree_apply(PC_IO Slot m, Tree t) {
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
+    Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
+    linear.v = pc_add(linear.v, pc_ld3_tree(PC_PASS n, TREE_X)); angular.v = pc_add(angular.v, pc_ld3_tree(PC_PASS n, TREE_F));
+    PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 0u, linear);
+    PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 1u, angular);
+  }
+}
+
+// Right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
+// A body turns by h w + h^2 / 2 w', with w' = I^-1 (L x w).
+PC_FN void pc_tree_predict(PC_IO Slot m, Tree t) {
+  Real h = PC_INFO(h); precise Real half_hh = h * h * PC_REAL(0.5);
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
+    Vec3 w = pc_angular_velocity(b); Vec3 w_change = pc_scale(pc_sym_mul(b.inertia, pc_cross(b.l, w)), b.response);
+    precise Vec3 turn = w * h + w_change * half_hh; Turn r = pc_turn(turn);
+    pc_st3_tree(PC_PASS n, TREE_TURN, r.q.v); PC_ST(tree_rows, n, TREE_TURN + 3u, r.fall);
+    pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, w));
+  }
+}
+// An arm turned, minus the arm.
+PC_FN Vec3 pc_swing(PC_IO Slot n, Vec3 r) {
+  Vec3 q = pc_ld3_tree(PC_PASS n, TREE_TURN); precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(1.0);
+  precise Vec3 s = pc_cross(q, r) * PC_REAL(2.0); precise Vec3 d = s * w + pc_cross(q, s); return d;
+}
+PC_FN void pc_tree_residual(PC_IO Slot m, Tree t) {
+  pc_tree_predict(PC_PASS m, t);
+  for (uint k = 1u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    Vec3 moved = pc_sub(pc_swing(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_RC)), pc_swing(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_RP)));
+    precise Vec3 c = (pc_ld3_tree(PC_PASS n, TREE_X) - pc_ld3_tree(PC_PASS up, TREE_X)) + moved * PC_INFO(inverse_h);
+    pc_st3_tree(PC_PASS n, TREE_C, c);
+  }
+}

@@ -1,0 +1,99 @@
+#include "plan/forest.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+namespace pcphys {
+
+void Forest::build(std::span<const JointLink> links, std::span<const double> masses, std::span<const std::uint32_t> ids) {
+  links_.assign(links.begin(), links.end());
+  std::ranges::sort(links_, {}, &JointLink::id);
+  masses_.assign(masses.begin(), masses.end());
+  begin_.assign(masses.size() + 1, 0);
+  for (const JointLink& l : links_) begin_[l.a + 1]++, begin_[l.b + 1]++;
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  links_of_.resize(begin_.back());
+  std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+  for (std::uint32_t i = 0; i < links_.size(); i++) links_of_[next[links_[i].a]++] = i, links_of_[next[links_[i].b]++] = i;
+
+  reached_.assign(masses.size(), 0);
+  used_.assign(links_.size(), 0);
+  nodes_.clear();
+  first_.assign(1, 0);
+  constexpr std::uint32_t none = 0xffffffffu;
+  // trees that hang on something fixed, by the lowest joint that holds them
+  for (std::uint32_t i = 0; i < links_.size(); i++) {
+    const JointLink& l = links_[i];
+    const bool fixed_a = masses[l.a] == 0, fixed_b = masses[l.b] == 0;
+    if (fixed_a == fixed_b || reached_[fixed_a ? l.b : l.a]) continue;
+    grow(fixed_a ? l.a : l.b, i);
+  }
+  // free ones, from their heaviest body; of equal ones from the lowest id
+  std::vector<std::uint32_t> rows(masses.size());
+  std::iota(rows.begin(), rows.end(), 0u);
+  std::ranges::sort(
+      rows, [&](std::uint32_t x, std::uint32_t y) { return masses[x] != masses[y] ? masses[x] > masses[y] : ids[x] < ids[y]; });
+  for (const std::uint32_t row : rows)
+    if (masses[row] > 0 && !reached_[row] && begin_[row] != begin_[row + 1]) grow(row, none);
+
+  closing_.clear();
+  for (std::uint32_t i = 0; i < links_.size(); i++)
+    if (!used_[i]) closing_.push_back(links_[i].row);
+  std::ranges::sort(closing_);
+}
+
+void Forest::grow(std::uint32_t root, std::uint32_t anchor) {
+  const std::size_t start = nodes_.size();
+  const auto visit = [&](std::uint32_t link, std::uint32_t from, std::uint32_t parent) {
+    const JointLink& l = links_[link];
+    const std::uint32_t child = l.a == from ? l.b : l.a;
+    if (used_[link] || masses_[child] == 0 || reached_[child]) return;
+    used_[link] = reached_[child] = 1;
+    nodes_.push_back({child, l.row, parent, l.a == child});
+  };
+  nodes_.push_back({root, 0, 0, false});
+  if (masses_[root] > 0)
+    reached_[root] = 1;
+  else
+    visit(anchor, root, 0);
+  for (std::size_t k = start + (masses_[root] == 0); k < nodes_.size(); k++)
+    for (std::uint32_t at = begin_[nodes_[k].body]; at < begin_[nodes_[k].body + 1]; at++)
+      visit(links_of_[at], nodes_[k].body, std::uint32_t(k - start));
+  first_.push_back(std::uint32_t(nodes_.size()));
+}
+
+void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
+  std::map<std::vector<std::uint32_t>, std::size_t> shapes;  // parents and sides of all nodes
+  std::vector<std::vector<std::size_t>> alike;               // trees of each shape, in the order of the forest
+  std::vector<std::uint32_t> shape;
+  for (std::size_t i = 0; i < forest.trees(); i++) {
+    shape.clear();
+    for (const TreeNode& node : forest.tree(i)) shape.push_back(node.parent << 1 | std::uint32_t(node.flipped));
+    const auto [at, is_new] = shapes.try_emplace(shape, alike.size());
+    if (is_new) alike.emplace_back();
+    alike[at->second].push_back(i);
+  }
+  out.blocks.clear();
+  out.parents.clear();
+  out.ends.clear();
+  for (const std::vector<std::size_t>& trees : alike)
+    for (std::size_t begin = 0; begin < trees.size(); begin += width) {
+      const std::size_t lanes = std::min<std::size_t>(width, trees.size() - begin), count = forest.tree(trees[begin]).size();
+      out.blocks.push_back(std::uint32_t(out.parents.size()));
+      out.blocks.push_back(std::uint32_t(count));
+      for (std::size_t k = 0; k < count; k++) {
+        const TreeNode& like = forest.tree(trees[begin])[k];
+        out.parents.push_back(like.parent << 1 | std::uint32_t(like.flipped));
+        const std::size_t at = out.ends.size();
+        out.ends.resize(at + 2 * width, 0);
+        for (std::size_t lane = 0; lane < lanes; lane++) {
+          const TreeNode& node = forest.tree(trees[begin + lane])[k];
+          out.ends[at + lane] = node.body;
+          out.ends[at + width + lane] = node.joint;
+        }
+      }
+    }
+}
+
+}  // namespace pcphys

@@ -1,0 +1,57 @@
+// Joint trees: a spanning forest of the joint graph. Each tree is solved directly (docs/joints.md); joints that close a
+// loop, or tie a tree to a second fixed body, are left over for rows.
+//
+// A tree with a joint to a fixed or kinematic body has that body as its root; any other has its heaviest body. From
+// there breadth first, joints in the order of their ids: trees that were made alike come out alike.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace pcphys {
+
+/// A joint as the forest sees it: body rows, and its id for the order.
+struct JointLink {
+  std::uint32_t row, a, b, id;
+};
+
+struct TreeNode {
+  std::uint32_t body, joint;  // rows; of the root the joint is 0
+  std::uint32_t parent;       // position in the tree, before this node's
+  bool flipped;               // the joint's body a is the child
+};
+
+class Forest {
+ public:
+  /// `links` in any order; `masses` and `ids` by body row, mass 0 for bodies that nothing moves.
+  void build(std::span<const JointLink> links, std::span<const double> masses, std::span<const std::uint32_t> ids);
+
+  std::size_t trees() const { return first_.empty() ? 0 : first_.size() - 1; }
+  /// Parents before children; the first is the root.
+  std::span<const TreeNode> tree(std::size_t i) const { return std::span(nodes_).subspan(first_[i], first_[i + 1] - first_[i]); }
+  /// Rows of the joints that stand in no tree, ascending.
+  std::span<const std::uint32_t> closing() const { return closing_; }
+
+ private:
+  void grow(std::uint32_t root, std::uint32_t anchor);
+
+  std::vector<JointLink> links_;                 // by id
+  std::vector<std::uint32_t> begin_, links_of_;  // of each body row, its links by id
+  std::vector<char> reached_, used_;             // by body row; by link
+  std::vector<double> masses_;
+  std::vector<TreeNode> nodes_;
+  std::vector<std::uint32_t> first_, closing_;
+};
+
+/// The forest laid out for `width` lanes: trees of one shape share blocks, one tree a lane; what is left over of a block
+/// is padding (rows 0).
+struct TreeBlocks {
+  std::vector<std::uint32_t> blocks;   // of each block its first node and their number
+  std::vector<std::uint32_t> parents;  // of each node parent << 1 | flipped
+  std::vector<std::uint32_t> ends;     // ends[(node * 2 + side) * width + lane]: body row, joint row
+
+  std::uint32_t count() const { return std::uint32_t(blocks.size() / 2); }
+};
+void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out);
+
+}  // namespace pcphys
