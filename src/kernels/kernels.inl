@@ -16,7 +16,7 @@
 PC_ROWS(contact, contact_rows, 60)
 PC_ROWS(contact, contact_impulses, 12)
 PC_ROWS(joint, joint_rows, 36)
-PC_ROWS(joint, tree_rows, 140)
+PC_ROWS(joint, tree_rows, 160)
 #endif
 
 #ifdef PC_KERNEL
@@ -33,7 +33,7 @@ PC_KERNEL(joint_solve, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) P
 PC_KERNEL(tree_prepare, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(joint_frame) PC_READ(joint_impulse) PC_WRITE(tree_rows))
 PC_KERNEL(tree_solve, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse))
-PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(joint_frame) PC_WRITE(tree_rows) PC_WRITE(motion))
+PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
 PC_KERNEL(contact_warm, contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))

@@ -35,18 +35,17 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
   pc_tree_residual(PC_PASS m, t);
   for (uint k = 1u; k < t.count; k++) pc_again_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  for (uint k = 0u; k < t.count; k++) pc_st3_tree(PC_PASS PC_NODE(m, t.first + k), TREE_DAMPING, pc_zero3());
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, one);
-  pc_tree_torques(PC_PASS m, t, TREE_PUSH, one);
-  pc_tree_apply(PC_PASS m, t);
   for (uint k = 1u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k);
     pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
-    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_ld3_tree(PC_PASS n, TREE_F + 3u)));
+    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k, one)));
     pc_remember_joint(PC_PASS t, n, k);
     pc_st3_tree(PC_PASS n, TREE_C, pc_closing(PC_PASS pc_ld3_tree(PC_PASS n, TREE_GAP)));
   }
-  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
-  pc_tree_torques(PC_PASS m, t, TREE_PUSH, PC_REAL(0.0));
-  for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
   pc_tree_apply(PC_PASS m, t);
+  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
+  pc_tree_apply(PC_PASS m, t);
+  for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
 }

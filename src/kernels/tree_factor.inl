@@ -8,7 +8,9 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
   // S^T U, then the springs of the angle rows: as stiff as the joint's own inertia about their axis, many times
   precise Real xx = u3.x + u1.x * rc.z - u2.x * rc.y; precise Real xy = u3.y + u1.y * rc.z - u2.y * rc.y; precise Real xz = u3.z + u1.z * rc.z - u2.z * rc.y;
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
-  Sym3 freedom = pc_sym3(xx, xy, xz, yy, yz, zz); Sym3 loose = pc_sym_inverse(freedom);
+  // a light body's spin between heavy ones is lost in the rounding of their inertia: a little is added (docs/joints.md)
+  precise Real floor = (xx + yy + zz) * PC_INFO(spin_floor); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
+  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
   for (uint i = 0u; i < 3u; i++) {
     Vec3 j = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
     Real stiffness = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));

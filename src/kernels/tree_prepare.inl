@@ -50,6 +50,7 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Vec3 rc = pc_rotate(qc, anchor_c.v); Vec3 rp = pc_rotate(qp, anchor_p.v);
   Vec3 apart = pc_add(pc_sub(place_c.v, place_p.v), pc_sub(low_c.v, low_p.v));
   pc_st3_tree(PC_PASS n, TREE_RC, rc); pc_st3_tree(PC_PASS n, TREE_RP, rp); pc_st3_tree(PC_PASS n, TREE_GAP, pc_add(apart, pc_sub(rc, rp)));
+  pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_ld3_tree(PC_PASS up, TREE_PLACE), apart));
 
   Mask any = head.s > PC_REAL(0.5); Mask is_cone = pc_and(any, head.s < PC_REAL(1.5)); Mask is_angles = head.s > PC_REAL(1.5);
   Quaternion fc = pc_quaternion_mul(qc, pc_quaternion(axes_c.v, axes_c.s)); Quaternion fp = pc_quaternion_mul(qp, pc_quaternion(axes_p.v, axes_p.s));
@@ -70,12 +71,20 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
   for (uint k = 0u; k < t.count; k++) pc_sts_tree(PC_PASS PC_NODE(m, t.first + k), TREE_INERTIA, pc_diagonal(PC_REAL(0.0)));
+  pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3());
   for (uint k = 1u; k < t.count; k++) pc_tree_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
-    Quad turned = PC_GATHER(pose, body, 1u); Quad moments = PC_GATHER(mass, body, 0u);
+    Quad turned = PC_GATHER(pose, body, 1u); Quad moments = PC_GATHER(mass, body, 0u); Quad inverse = PC_GATHER(mass, body, 1u);
+    pc_st3_tree(PC_PASS n, TREE_FACING, turned.v); PC_ST(tree_rows, n, TREE_FACING + 3u, turned.s);
+    pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
     Sym3 inertia = pc_world_inertia(pc_quaternion(turned.v, turned.s), moments.v);
-    pc_sts_tree(PC_PASS n, TREE_INERTIA, pc_stiffened(PC_PASS inertia, pc_lds_tree(PC_PASS n, TREE_INERTIA)));
+    Sym3 stiff = pc_stiffened(PC_PASS inertia, pc_lds_tree(PC_PASS n, TREE_INERTIA));
+    pc_sts_tree(PC_PASS n, TREE_INERTIA, stiff); pc_sts_tree(PC_PASS n, TREE_BODY, inertia);
+    // h^2 K / (4 I), about
+    precise Real own = inertia.xx + inertia.yy + inertia.zz; precise Real more = (stiff.xx + stiff.yy + stiff.zz - own) * PC_REAL(0.5); precise Real all = own + more;
+    precise Real damp = more * pc_inverse_or_zero(all) * PC_INFO(tree_damping);
+    PC_ST(tree_rows, n, TREE_DAMP, damp);
     PC_ST(tree_rows, n, TREE_MASS, moments.s);
   }
 }

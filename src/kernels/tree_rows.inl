@@ -20,13 +20,19 @@ const uint TREE_A = 72u;        // inertia as the parent sees it: linear 6, mixe
 const uint TREE_D = 87u;        // inverse inertia of the joint's freedom
 const uint TREE_W = 93u;        // six rows U D^-1
 const uint TREE_PIN = 111u;     // impulse of the pin on the body
-const uint TREE_PUSH = 114u;    // that which closes the gap, taken back in the relax phase
-const uint TREE_PUSH_COUPLE = 117u;
-const uint TREE_PUSH_SPEED = 120u;
+const uint TREE_PUSH = 114u;    // that of a later sweep
+const uint TREE_CHANGE = 117u;  // change of the angular momentum
+const uint TREE_PUSH_SPEED = 120u; // change of velocity that closes the gaps, taken back in the relax phase
 const uint TREE_MASS = 123u;    // 0 for a fixed root
 const uint TREE_INERTIA = 124u; // world axes, with the geometric stiffness
 const uint TREE_TURN = 130u;    // where the sub-step will turn the body: vector and w - 1
-const uint TREE_LIMIT = 134u;   // impulses of the three angle rows, in the joint's sense; 137..139 spare
+const uint TREE_LIMIT = 134u;   // impulses of the three angle rows, in the joint's sense
+const uint TREE_FACING = 138u;  // orientation
+const uint TREE_MOMENTS = 142u; // inverse principal moments, and which is the middle one
+const uint TREE_BODY = 146u;    // inertia, world axes
+const uint TREE_DAMP = 152u;    // share of the unresolved rotation that is taken out
+const uint TREE_DAMPING = 153u; // the impulse that does it
+const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's; 159 spare
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }

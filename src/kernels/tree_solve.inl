@@ -40,6 +40,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
   pc_tree_residual(PC_PASS m, t);
   for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Sym3 stiffness = pc_sym_sub(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_lds_tree(PC_PASS n, TREE_BODY));
+    precise Real share = PC_LD(tree_rows, n, TREE_DAMP) * PC_REAL(-2.0); pc_st3_tree(PC_PASS n, TREE_DAMPING, pc_scale(pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), share));
+  }
   for (uint turn = 0u; turn < 4u; turn++) {
     pc_factor(PC_PASS m, t);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
@@ -47,7 +51,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     for (uint k = 1u; k < t.count; k++) changed = pc_max(changed, pc_tree_revise(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), may_enter));
     if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
   }
-  pc_tree_torques(PC_PASS m, t, TREE_PIN, one);
-  for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_ld3_tree(PC_PASS n, TREE_F + 3u)); }
+  for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
   pc_tree_apply(PC_PASS m, t);
 }

@@ -1,3 +1,6 @@
+#include "free_rotation.inl"
+#include "tree_momentum.inl"
+
 // Solving with a tree's factor, and what its impulses do to the bodies.
 //
 // A child moves as x = X x_parent + S q - (c, 0): X x = (l + a x d, a) with d = r_p - r_c, S q = (r_c x q, q), q the
@@ -26,7 +29,9 @@ PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
 }
 // Fills TREE_X of all nodes and, at `pin`, the impulses of the pins, from the right-hand sides at `c`.
 PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
-  for (uint k = 0u; k < t.count; k++) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_F, pc_six(pc_zero3(), pc_zero3()));
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Vec3 damping = pc_scale(pc_ld3_tree(PC_PASS n, TREE_DAMPING), limits); pc_st6_tree(PC_PASS n, TREE_F, pc_six(pc_zero3(), damping));
+  }
   for (uint i = 1u; i < t.count; i++) {
     uint k = t.count - i; Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 gap = pc_ld3_tree(PC_PASS n, c);
@@ -59,49 +64,39 @@ PC_FN Real pc_row_impulse(PC_IO Slot n, uint i, Vec3 turn, Real limits) {
   precise Real impulse = -PC_LD(tree_rows, n, TREE_SPRING + i) * rate; return impulse;
 }
 
-// The impulses of a sweep on the bodies: torques into TREE_F (of the angle rows their own behind it), couples of the
-// angle rows into TREE_PUSH_COUPLE.
-// A pin's impulse acts in one common point of both bodies, at their arms half-way through what the sweep itself
-// changes (the geometric stiffness, exactly): both momenta are conserved to rounding, see docs/joints.md.
-PC_FN void pc_tree_torques(PC_IO Slot m, Tree t, uint pin, Real limits) {
-  precise Real half_h = PC_INFO(h) * PC_REAL(0.5);
-  for (uint k = 0u; k < t.count; k++) pc_st3_tree(PC_PASS PC_NODE(m, t.first + k), TREE_F, pc_zero3());
-  for (uint k = 1u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    Six x = pc_ld6_tree(PC_PASS n, TREE_X); Six y = pc_ld6_tree(PC_PASS up, TREE_X); Vec3 f = pc_ld3_tree(PC_PASS n, pin);
-    Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 rp = pc_ld3_tree(PC_PASS n, TREE_RP);
-    Vec3 swing_c = pc_cross(x.a, rc); Vec3 swing_p = pc_cross(y.a, rp);
-    precise Vec3 apart = pc_ld3_tree(PC_PASS n, TREE_GAP) + ((x.l - y.l) + (swing_c - swing_p)) * half_h;
-    precise Vec3 arm_c = rc + swing_c * half_h - apart * PC_REAL(0.5); precise Vec3 arm_p = rp + swing_p * half_h + apart * PC_REAL(0.5);
-    Vec3 turn = pc_sub(x.a, y.a);
-    Real s0 = pc_row_impulse(PC_PASS n, 0u, turn, limits); Real s1 = pc_row_impulse(PC_PASS n, 1u, turn, limits); Real s2 = pc_row_impulse(PC_PASS n, 2u, turn, limits);
-    Vec3 couple = pc_combine(pc_ld3_tree(PC_PASS n, TREE_AXIS), s0, pc_ld3_tree(PC_PASS n, TREE_AXIS + 3u), s1, pc_ld3_tree(PC_PASS n, TREE_AXIS + 6u), s2);
-    pc_st3_tree(PC_PASS n, TREE_PUSH_COUPLE, couple);
-    pc_st3_tree(PC_PASS n, TREE_F + 3u, Vec3(s0, s1, s2));
-    precise Vec3 torque_c = pc_ld3_tree(PC_PASS n, TREE_F) + pc_cross(arm_c, f) + couple; precise Vec3 torque_p = pc_ld3_tree(PC_PASS up, TREE_F) - pc_cross(arm_p, f) - couple;
-    pc_st3_tree(PC_PASS n, TREE_F, torque_c); pc_st3_tree(PC_PASS up, TREE_F, torque_p);
-  }
+// Impulses of the three angle rows after a sweep.
+PC_FN Vec3 pc_row_impulses(PC_IO Tree t, Slot n, uint k, Real limits) {
+  Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  return Vec3(pc_row_impulse(PC_PASS n, 0u, turn, limits), pc_row_impulse(PC_PASS n, 1u, turn, limits), pc_row_impulse(PC_PASS n, 2u, turn, limits));
 }
+
+// Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
+// between heavy ones as the difference of large numbers.
 PC_FN void pc_tree_apply(PC_IO Slot m, Tree t) {
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
+  }
+  pc_tree_conserve(PC_PASS m, t);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
-    linear.v = pc_add(linear.v, pc_ld3_tree(PC_PASS n, TREE_X)); angular.v = pc_add(angular.v, pc_ld3_tree(PC_PASS n, TREE_F));
+    linear.v = pc_add(linear.v, pc_ld3_tree(PC_PASS n, TREE_X)); angular.v = pc_add(angular.v, pc_ld3_tree(PC_PASS n, TREE_CHANGE));
     PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 0u, linear);
     PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 1u, angular);
   }
 }
 
 // Right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
-// A body turns by h w + h^2 / 2 w', with w' = I^-1 (L x w).
 PC_FN void pc_tree_predict(PC_IO Slot m, Tree t) {
-  Real h = PC_INFO(h); precise Real half_hh = h * h * PC_REAL(0.5);
+  Real h = PC_INFO(h);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
-    Vec3 w = pc_angular_velocity(b); Vec3 w_change = pc_scale(pc_sym_mul(b.inertia, pc_cross(b.l, w)), b.response);
-    precise Vec3 turn = w * h + w_change * half_hh; Turn r = pc_turn(turn);
-    pc_st3_tree(PC_PASS n, TREE_TURN, r.q.v); PC_ST(tree_rows, n, TREE_TURN + 3u, r.fall);
-    pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, w));
+    Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
+    Quad moments = pc_quad(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), PC_LD(tree_rows, n, TREE_MOMENTS + 3u));
+    Quaternion turn = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, h), pc_conjugate(q));
+    pc_st3_tree(PC_PASS n, TREE_TURN, turn.v); PC_ST(tree_rows, n, TREE_TURN + 3u, turn.w);
+    pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, pc_angular_velocity(b)));
   }
 }
 // An arm turned, minus the arm.

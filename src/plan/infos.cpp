@@ -47,6 +47,8 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   biased.limit_stiffness = Scalar(joint.mass_scale / joint.impulse_scale);
+  biased.tree_damping = Scalar(constants::tree_damping);
+  biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
   biased.restitution_threshold = Scalar(settings.restitution_threshold);
   biased.rounding = Scalar(constants::rest_roundings) * std::numeric_limits<Scalar>::epsilon();

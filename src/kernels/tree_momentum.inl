@@ -1,0 +1,26 @@
+// Keeps both momenta of a free tree. What a sweep changes satisfies the pins, but its torques are those of an inertia with
+// geometric stiffness in it, and of arms at the start of the sub-step: the sum of angular momenta is off by a term of
+// second order. It is taken out as a motion of the whole tree as one rigid body, which strains no joint. Before:
+// TREE_X holds the changes of velocity, TREE_CHANGE those of angular momentum, TREE_PLACE where the bodies are.
+PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t) {
+  Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
+  Real mass = PC_REAL(0.0); Vec3 centre = pc_zero3(); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Real own = PC_LD(tree_rows, n, TREE_MASS); Vec3 r = pc_ld3_tree(PC_PASS n, TREE_PLACE); Vec3 p = pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), own);
+    precise Real sum = mass + own; mass = sum; centre = pc_madd(centre, r, own); push = pc_add(push, p);
+    precise Vec3 all = turn + pc_ld3_tree(PC_PASS n, TREE_CHANGE) + pc_cross(r, p); turn = all;
+  }
+  Real share = pc_select(free, pc_inverse_or_zero(mass), PC_REAL(0.0)); centre = pc_scale(centre, share); Vec3 drift = pc_scale(push, share);
+  Sym3 inertia = pc_diagonal(PC_REAL(0.0));
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre); Real own = PC_LD(tree_rows, n, TREE_MASS);
+    precise Real far = pc_dot(r, r) * own; precise Real less = -own;
+    inertia = pc_sym_add(inertia, pc_sym_outer(pc_sym_add(pc_lds_tree(PC_PASS n, TREE_BODY), pc_diagonal(far)), r, less));
+  }
+  Vec3 excess = pc_sym_mul(pc_sym_inverse(inertia), pc_sub(turn, pc_cross(centre, push))); Vec3 w = pc_select3(free, excess, pc_zero3());
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre);
+    precise Vec3 v = pc_ld3_tree(PC_PASS n, TREE_X) - drift - pc_cross(w, r); precise Vec3 l = pc_ld3_tree(PC_PASS n, TREE_CHANGE) - pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w);
+    pc_st3_tree(PC_PASS n, TREE_X, v); pc_st3_tree(PC_PASS n, TREE_CHANGE, l);
+  }
+}
