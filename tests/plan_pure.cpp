@@ -10,7 +10,7 @@ namespace {
 /// Every signature there is, for two numbers of sub-steps.
 template <class Visit> void for_all_signatures(Visit&& visit) {
   for (const Mix& mix : mixes())
-    for (unsigned bits = 0; bits < 128; bits++)
+    for (unsigned bits = 0; bits < 256; bits++)
       for (std::uint32_t substeps : {1u, 4u}) {
         PlanSignature s;
         s.substeps = substeps;
@@ -22,6 +22,7 @@ template <class Visit> void for_all_signatures(Visit&& visit) {
         s.restitution = bits & 16;
         s.drag = bits & 32;
         s.gyroscopic = bits & 64;
+        s.trees = bits & 128;
         visit(s);
       }
 }
@@ -105,6 +106,7 @@ TEST_CASE("left out: no joints, nothing touching, and what comes when they do") 
   CHECK(runs(stepper.plan(), "contact_store") == 1);
   CHECK(runs(stepper.plan(), "contact_restitution") == 0);
   CHECK(runs(stepper.plan(), "joint_solve") == 0);
+  CHECK(runs(stepper.plan(), "tree_solve") == 0);
   must(world.set_material(body, {0.5, 0.5, 0.5}));
   run(world, stepper, 1);
   CHECK(reason(stepper.plan(), "restitution") == "");
@@ -116,7 +118,15 @@ TEST_CASE("left out: no joints, nothing touching, and what comes when they do") 
   (void)must(world.create_joint(joint));
   run(world, stepper, 1);
   CHECK(reason(stepper.plan(), "joints") == "");
+  CHECK(reason(stepper.plan(), "joint rows") == "no joint closes a loop");
+  CHECK(runs(stepper.plan(), "tree_solve") == 4);
+  CHECK(runs(stepper.plan(), "joint_prepare") == 0);
+  (void)must(world.create_joint(joint));  // a second hold on the same body: a loop
+  run(world, stepper, 1);
+  CHECK(reason(stepper.plan(), "joint rows") == "");
+  CHECK(runs(stepper.plan(), "tree_solve") == 4);
   CHECK(runs(stepper.plan(), "joint_prepare") == 4);
+  CHECK(runs(stepper.plan(), "joint_solve") == 8);
 }
 
 TEST_CASE("left out: drag and gyroscopic terms, until a body needs them") {
@@ -165,7 +175,8 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
   for_all_signatures([](const PlanSignature& s) {
     const StepPlan plan = make_plan(s);
     CHECK((reason(plan, "integrate") != "") == !s.bodies);
-    CHECK((reason(plan, "joints") != "") == !s.joints);
+    CHECK((reason(plan, "joints") != "") == (!s.joints && !s.trees));
+    CHECK((reason(plan, "joint rows") != "") == (!s.joints && s.trees));
     CHECK((reason(plan, "collision") != "") == !s.shapes);
     CHECK((reason(plan, "impulses") != "") == !s.contacts);
     CHECK((reason(plan, "restitution") != "") == (s.contacts && !s.restitution));
@@ -174,6 +185,9 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
     if (s.bodies) CHECK(runs(plan, s.drag ? "integrate_drag" : "integrate") == int(s.substeps));
     if (s.bodies) CHECK(runs(plan, s.gyroscopic ? "advance" : "advance_round") == int(s.substeps));
     if (!s.joints) CHECK(runs(plan, "joint_prepare") + runs(plan, "joint_solve") == 0);
+    if (s.bodies && s.joints) CHECK(runs(plan, "joint_prepare") == int(s.substeps));
+    for (const char* kernel : {"tree_prepare", "tree_solve", "tree_again", "tree_relax"})
+      CHECK(runs(plan, kernel) == (s.bodies && s.trees ? int(s.substeps) : 0));
     if (!s.contacts) CHECK(runs(plan, "contact_prepare") + runs(plan, "contact_solve") + runs(plan, "contact_store") == 0);
     if (!s.bodies) CHECK(plan.entries.empty());
   });

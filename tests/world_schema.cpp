@@ -57,13 +57,15 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
       INFO(std::string(schema(a.buffer).name));
       CHECK(bound.insert(a.buffer).second);
       writes |= a.write;
-      const Table own = s.domain == Domain::body ? Table::body : s.domain == Domain::joint ? Table::joint : Table::contact;
+      const Table own = s.domain == Domain::body ? Table::body : s.domain == Domain::contact ? Table::contact : Table::joint;
       CHECK((schema(a.buffer).table == own || schema(a.buffer).table == Table::body));
       if (schema(a.buffer).reals == 0) CHECK_FALSE(a.write);  // the host makes the lists
     }
     CHECK(writes);
     if (s.domain == Domain::body) CHECK(bound.contains(Buffer::bodies));
     if (s.domain == Domain::joint) CHECK((bound.contains(Buffer::joint_ends) || bound.contains(Buffer::joint_order)));
+    if (s.domain == Domain::tree)
+      for (const Buffer list : {Buffer::tree_blocks, Buffer::tree_parents, Buffer::tree_ends}) CHECK(bound.contains(list));
     if (s.domain == Domain::contact) CHECK((bound.contains(Buffer::contact_ends) || bound.contains(Buffer::contact_order)));
   }
 }
