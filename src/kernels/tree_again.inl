@@ -8,6 +8,7 @@
 
 // Limits keep what they carry; locked rows are corrected like pins.
 PC_FN void pc_again_rates(PC_IO Slot n, Slot up) {
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     precise Real soft_rate = PC_LD(tree_rows, n, TREE_SLACK + i) * PC_INFO(joint_rate);

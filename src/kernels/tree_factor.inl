@@ -1,23 +1,31 @@
 // The factor of a tree, leaves to root (see tree_sweep.inl).
-PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
-  Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
-  Mat3 ct = pc_transpose(h.c);
-  // U = H S
-  Vec3 u0 = pc_add(h.c.a, pc_cross(pc_row0(h.l), rc)); Vec3 u1 = pc_add(h.c.b, pc_cross(pc_row1(h.l), rc)); Vec3 u2 = pc_add(h.c.c, pc_cross(pc_row2(h.l), rc));
-  Vec3 u3 = pc_add(pc_row0(h.a), pc_cross(ct.a, rc)); Vec3 u4 = pc_add(pc_row1(h.a), pc_cross(ct.b, rc)); Vec3 u5 = pc_add(pc_row2(h.a), pc_cross(ct.c, rc));
-  // S^T U, then the springs of the angle rows: as stiff as the joint's own inertia about their axis, many times
-  precise Real xx = u3.x + u1.x * rc.z - u2.x * rc.y; precise Real xy = u3.y + u1.y * rc.z - u2.y * rc.y; precise Real xz = u3.z + u1.z * rc.z - u2.z * rc.y;
-  precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
-  // a light body's spin between heavy ones is lost in the rounding of their inertia: a little is added (docs/joints.md)
-  precise Real floor = (xx + yy + zz) * PC_INFO(spin_floor); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
-  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
+
+// Inverse of a joint's freedom with the springs of its angle rows: each as stiff as the joint's own inertia about its
+// axis, many times.
+PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 bare, Sym3 loose) {
+  Sym3 freedom = bare;
   for (uint i = 0u; i < 3u; i++) {
     Vec3 j = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
     Real stiffness = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));
     precise Real spring = stiffness * PC_LD(tree_rows, n, TREE_ON + i) * pc_inverse_or_zero(pc_dot(j, pc_sym_mul(loose, j)));
     PC_ST(tree_rows, n, TREE_SPRING + i, spring); freedom = pc_sym_outer(freedom, j, spring);
   }
-  Sym3 inverse = pc_sym_inverse(freedom);
+  return pc_sym_inverse(freedom);
+}
+PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
+  Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
+  Mat3 ct = pc_transpose(h.c);
+  // U = H S
+  Vec3 u0 = pc_add(h.c.a, pc_cross(pc_row0(h.l), rc)); Vec3 u1 = pc_add(h.c.b, pc_cross(pc_row1(h.l), rc)); Vec3 u2 = pc_add(h.c.c, pc_cross(pc_row2(h.l), rc));
+  Vec3 u3 = pc_add(pc_row0(h.a), pc_cross(ct.a, rc)); Vec3 u4 = pc_add(pc_row1(h.a), pc_cross(ct.b, rc)); Vec3 u5 = pc_add(pc_row2(h.a), pc_cross(ct.c, rc));
+  // S^T U
+  precise Real xx = u3.x + u1.x * rc.z - u2.x * rc.y; precise Real xy = u3.y + u1.y * rc.z - u2.y * rc.y; precise Real xz = u3.z + u1.z * rc.z - u2.z * rc.y;
+  precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
+  // a light body's spin between heavy ones is lost in the rounding of their inertia: a little is added (docs/joints.md)
+  precise Real floor = (xx + yy + zz) * PC_INFO(spin_floor); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
+  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
+  Sym3 inverse = loose;
+  if (PC_ANY(pc_has_rows(PC_PASS n))) inverse = pc_with_springs(PC_PASS n, freedom, loose);  // lint: allow (zeros otherwise)
   Vec3 w0 = pc_sym_mul(inverse, u0); Vec3 w1 = pc_sym_mul(inverse, u1); Vec3 w2 = pc_sym_mul(inverse, u2); Vec3 w3 = pc_sym_mul(inverse, u3); Vec3 w4 = pc_sym_mul(inverse, u4); Vec3 w5 = pc_sym_mul(inverse, u5);
   pc_sts_tree(PC_PASS n, TREE_D, inverse);
   pc_stm_tree(PC_PASS n, TREE_W, pc_mat3(w0, w1, w2)); pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_mat3(w3, w4, w5));

@@ -4,6 +4,7 @@
 // TREE_X holds the changes of velocity, TREE_CHANGE those of angular momentum, TREE_PLACE where the bodies are.
 PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t) {
   Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
+  if (!PC_ANY(free)) return;  // lint: allow (what it would do to trees with a fixed root is nothing)
   Real mass = PC_REAL(0.0); Vec3 centre = pc_zero3(); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Real own = PC_LD(tree_rows, n, TREE_MASS); Vec3 r = pc_ld3_tree(PC_PASS n, TREE_PLACE); Vec3 p = pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), own);

@@ -37,6 +37,24 @@ PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angl
   PC_ST(tree_rows, n, TREE_ON + row, pc_select(locked, one, pc_select(pc_and(exists, pressed > zero), one, zero)));
 }
 
+// The three angle rows of a joint; a joint without angles has three that never act.
+PC_FN void pc_tree_angles(PC_IO Slot n, uint b, Quaternion qc, Quaternion qp, Quad axes_c, Quad axes_p, Quad head, Quad lower, Quad upper, Vec3 remembered) {
+  Mask any = head.s > PC_REAL(0.5); Mask is_cone = pc_and(any, head.s < PC_REAL(1.5)); Mask is_angles = head.s > PC_REAL(1.5);
+  PC_ST(tree_rows, n, TREE_HAS_ROWS, pc_select(any, PC_REAL(1.0), PC_REAL(0.0)));
+  if (!PC_ANY(any)) {  // lint: allow (rows of kind 0 are the same whatever their axes)
+    for (uint f = TREE_AXIS; f < TREE_C; f++) PC_ST(tree_rows, n, f, PC_REAL(0.0));
+    return;
+  }
+  Quaternion fc = pc_quaternion_mul(qc, pc_quaternion(axes_c.v, axes_c.s)); Quaternion fp = pc_quaternion_mul(qp, pc_quaternion(axes_p.v, axes_p.s));
+  Mask flipped = PC_IS(b); Real flip = pc_select(flipped, PC_REAL(-1.0), PC_REAL(1.0));
+  Quaternion fa; fa.v = pc_select3(flipped, fc.v, fp.v); fa.w = pc_select(flipped, fc.w, fp.w);
+  Quaternion fb; fb.v = pc_select3(flipped, fp.v, fc.v); fb.w = pc_select(flipped, fp.w, fc.w);
+  Angles a = pc_joint_angles(fa, fb, is_cone);
+  pc_tree_angle(PC_PASS n, 0u, a.roll_axis, flip, a.value.x, lower.v.x, upper.v.x, any, remembered.x);
+  pc_tree_angle(PC_PASS n, 1u, a.second_axis, flip, a.value.y, lower.v.y, upper.v.y, any, remembered.y);
+  pc_tree_angle(PC_PASS n, 2u, a.third_axis, flip, a.value.z, lower.v.z, upper.v.z, is_angles, remembered.z);
+}
+
 PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Index child = PC_ENDS(tree_ends, n, 0u); Index parent = PC_ENDS(tree_ends, up, 0u); Index joint = PC_ENDS(tree_ends, n, 1u);
   Quad place_c = PC_GATHER(pose, child, 0u); Quad turn_c = PC_GATHER(pose, child, 1u); Quad low_c = PC_GATHER(pose, child, 2u);
@@ -51,16 +69,8 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Vec3 apart = pc_add(pc_sub(place_c.v, place_p.v), pc_sub(low_c.v, low_p.v));
   pc_st3_tree(PC_PASS n, TREE_RC, rc); pc_st3_tree(PC_PASS n, TREE_RP, rp); pc_st3_tree(PC_PASS n, TREE_GAP, pc_add(apart, pc_sub(rc, rp)));
   pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_ld3_tree(PC_PASS up, TREE_PLACE), apart));
-
-  Mask any = head.s > PC_REAL(0.5); Mask is_cone = pc_and(any, head.s < PC_REAL(1.5)); Mask is_angles = head.s > PC_REAL(1.5);
-  Quaternion fc = pc_quaternion_mul(qc, pc_quaternion(axes_c.v, axes_c.s)); Quaternion fp = pc_quaternion_mul(qp, pc_quaternion(axes_p.v, axes_p.s));
-  Mask flipped = PC_IS(b); Real flip = pc_select(flipped, PC_REAL(-1.0), PC_REAL(1.0));
-  Quaternion fa; fa.v = pc_select3(flipped, fc.v, fp.v); fa.w = pc_select(flipped, fc.w, fp.w);
-  Quaternion fb; fb.v = pc_select3(flipped, fp.v, fc.v); fb.w = pc_select(flipped, fp.w, fc.w);
-  Angles a = pc_joint_angles(fa, fb, is_cone);
-  pc_tree_angle(PC_PASS n, 0u, a.roll_axis, flip, a.value.x, lower.v.x, upper.v.x, any, angle.v.x);
-  pc_tree_angle(PC_PASS n, 1u, a.second_axis, flip, a.value.y, lower.v.y, upper.v.y, any, angle.v.y);
-  pc_tree_angle(PC_PASS n, 2u, a.third_axis, flip, a.value.z, lower.v.z, upper.v.z, is_angles, angle.v.z);
+  pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
+  Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));
 
   // the stiffness that the last sub-step's impulse gives to both bodies
   precise Vec3 f = pin.v * flip;

@@ -32,7 +32,8 @@ const uint TREE_MOMENTS = 142u; // inverse principal moments, and which is the m
 const uint TREE_BODY = 146u;    // inertia, world axes
 const uint TREE_DAMP = 152u;    // share of the unresolved rotation that is taken out
 const uint TREE_DAMPING = 153u; // the impulse that does it
-const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's; 159 spare
+const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
+const uint TREE_HAS_ROWS = 159u; // 1 where the joint has angle rows
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }
@@ -41,6 +42,8 @@ PC_FN Sym3 pc_lds_tree(PC_IO Slot n, uint f) {
 }
 PC_FN Mat3 pc_ldm_tree(PC_IO Slot n, uint f) { return pc_mat3(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u), pc_ld3_tree(PC_PASS n, f + 6u)); }
 PC_FN Sym6 pc_ldh_tree(PC_IO Slot n, uint f) { Sym6 h; h.l = pc_lds_tree(PC_PASS n, f); h.c = pc_ldm_tree(PC_PASS n, f + 6u); h.a = pc_lds_tree(PC_PASS n, f + 15u); return h; }
+// Whether any lane's joint has angle rows. Skipping them changes no bit: where there are none they are zeros.
+PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(0.5); }
 // where a tree's nodes stand, and its topology
 struct Tree { uint first; uint count; };
 PC_FN Tree pc_tree(PC_IO Slot m) { uint block = PC_BLOCK(m); uint at = block * 2u; Tree t; t.first = PC_UINT(tree_blocks, at); t.count = PC_UINT(tree_blocks, at + 1u); return t; }

@@ -9,6 +9,7 @@
 
 // Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
@@ -23,6 +24,7 @@ PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
 }
 // After a sweep: rows that pull leave, and in the first round those enter that it violates. 1 where any did.
 PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return PC_REAL(0.0);  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real changed = PC_REAL(0.0); Real one = PC_REAL(1.0);
   for (uint i = 0u; i < 3u; i++) {
     Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Real on = PC_LD(tree_rows, n, TREE_ON + i); Real impulse = pc_row_impulse(PC_PASS n, i, turn, one);

@@ -21,11 +21,12 @@ PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
 }
 // t of a node: what is collected there, and the springs of its angle rows where `limits` is 1.
 PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
+  precise Vec3 t = f.a + pc_cross(f.l, rc);
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return t;  // lint: allow (zeros otherwise)
   precise Real s0 = PC_LD(tree_rows, n, TREE_SPRING) * PC_LD(tree_rows, n, TREE_RATE) * limits;
   precise Real s1 = PC_LD(tree_rows, n, TREE_SPRING + 1u) * PC_LD(tree_rows, n, TREE_RATE + 1u) * limits;
   precise Real s2 = PC_LD(tree_rows, n, TREE_SPRING + 2u) * PC_LD(tree_rows, n, TREE_RATE + 2u) * limits;
-  Vec3 push = pc_combine(pc_ld3_tree(PC_PASS n, TREE_AXIS), s0, pc_ld3_tree(PC_PASS n, TREE_AXIS + 3u), s1, pc_ld3_tree(PC_PASS n, TREE_AXIS + 6u), s2);
-  precise Vec3 t = f.a + pc_cross(f.l, rc) - push; return t;
+  return pc_sub(t, pc_combine(pc_ld3_tree(PC_PASS n, TREE_AXIS), s0, pc_ld3_tree(PC_PASS n, TREE_AXIS + 3u), s1, pc_ld3_tree(PC_PASS n, TREE_AXIS + 6u), s2));
 }
 // Fills TREE_X of all nodes and, at `pin`, the impulses of the pins, from the right-hand sides at `c`.
 PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
@@ -66,6 +67,7 @@ PC_FN Real pc_row_impulse(PC_IO Slot n, uint i, Vec3 turn, Real limits) {
 
 // Impulses of the three angle rows after a sweep.
 PC_FN Vec3 pc_row_impulses(PC_IO Tree t, Slot n, uint k, Real limits) {
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return pc_zero3();  // lint: allow (zeros otherwise)
   Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   return Vec3(pc_row_impulse(PC_PASS n, 0u, turn, limits), pc_row_impulse(PC_PASS n, 1u, turn, limits), pc_row_impulse(PC_PASS n, 2u, turn, limits));
 }
