@@ -1,26 +1,20 @@
-// Random but plausible contents for everything a kernel binds, and how they lie in memory for CPU lanes
-// and for the GPU. A state is kept in logical order (rows, slots); `pack` and `unpack` know the layouts.
+// How the contents of gl_parity_contents.h lie in memory for CPU lanes and for the GPU, and one kernel run on them.
 #pragma once
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <limits>
-#include <random>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cpu/kernels.h"
+#include "gl_parity_contents.h"
 #include "step/backend.h"
 #include "step/processor_state.h"
-#include "world/schema.h"
 
 namespace parity {
-using namespace pcphys;
 
 /// A test must not pass because there was nothing to test: llvmpipe comes with our scripts.
 inline std::unique_ptr<Backend> require_gl(Precision precision) {
@@ -30,218 +24,6 @@ inline std::unique_ptr<Backend> require_gl(Precision precision) {
   return std::move(*made);
 }
 
-inline Table table_of(Buffer buffer) { return schema(buffer).table; }
-inline bool is_index(Buffer buffer) { return schema(buffer).reals == 0; }
-inline bool is_rows(Buffer buffer) {
-  return buffer == Buffer::contact_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows;
-}
-inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || buffer == Buffer::joint_ends; }
-
-/// Values of one size: what a kind of scene puts into kernels. `distance` is from the origin.
-struct Mood {
-  const char* name;
-  double speed, spin, distance, mass, impulse;
-};
-inline constexpr Mood moods[] = {
-    {"plausible", 3, 2, 5, 1, 0.5},
-    {"many turns and far away", 50, 4000, 5000, 0.05, 1},
-    {"small", 1e-6, 1e-7, 0.01, 1e-3, 1e-8},
-    {"heavy", 20, 300, 50, 1e6, 1e5},
-};
-
-template <class Scalar> struct State {
-  std::array<std::vector<Scalar>, buffer_count> reals;
-  std::array<std::vector<std::uint32_t>, buffer_count> indices;  // ends: a and b of slot 0, of slot 1, ...
-  std::array<InfoOf<Scalar>, 2> infos;                           // biased, relax
-  std::vector<Range> contact_colours, joint_colours;             // in slots
-};
-
-template <class Scalar> class Maker {
- public:
-  Maker(std::uint64_t seed, const Mood& mood) : random_(seed), mood_(mood) {}
-  State<Scalar> make();
-
- private:
-  static constexpr std::uint32_t free_bodies = 600, fixed_bodies = 6, kinematic_bodies = 6;
-  static constexpr std::uint32_t body_count = 1 + free_bodies + fixed_bodies + kinematic_bodies;
-
-  double real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-  double either(double size) { return real(-size, size); }
-  std::uint32_t below(std::uint32_t n) { return std::uint32_t(random_() % n); }
-  bool rarely() { return below(8) == 0; }
-  void put(Buffer buffer, std::uint32_t row, std::initializer_list<double> values) {
-    Scalar* at = state_.reals[std::size_t(buffer)].data() + std::size_t(row) * schema(buffer).reals;
-    for (const double value : values) *at++ = Scalar(value);
-  }
-  std::array<double, 4> turn(int components) {
-    std::array<double, 4> q{};
-    double sum = 0;
-    for (int i = 0; i < components; i++) q[std::size_t(i)] = either(1), sum += q[std::size_t(i)] * q[std::size_t(i)];
-    for (double& x : q) x = x / std::sqrt(sum);
-    return q;
-  }
-  void body(std::uint32_t row);
-  void contact(std::uint32_t row);
-  void joint(std::uint32_t row);
-  void slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count, std::uint32_t blocks);
-  void infos();
-
-  std::mt19937_64 random_;
-  Mood mood_;
-  State<Scalar> state_;
-};
-
-template <class Scalar> void Maker<Scalar>::body(std::uint32_t row) {
-  const bool ground = row == 0, dynamic = row > 0 && row <= free_bodies, kinematic = row > free_bodies + fixed_bodies;
-  const double speed = ground || !(dynamic || kinematic) || rarely() ? 0 : mood_.speed;
-  const double mass = mood_.mass * real(0.1, 3);
-  double moments[3] = {mass * real(0.01, 0.1), mass * real(0.1, 0.2), mass * real(0.2, 0.3)};
-  if (rarely()) moments[1] = moments[2] = moments[0];
-  const std::uint32_t middle = below(3);
-  std::swap(moments[1], moments[middle]);
-  const double spin = speed == 0 ? 0 : mood_.spin * (dynamic ? moments[1] : 1);
-  const double x = dynamic ? 1 : 0;
-  put(Buffer::motion, row,
-      {either(speed), either(speed), either(speed), dynamic ? 1 / mass : 0, either(spin), either(spin), either(spin),
-       dynamic ? double(int(below(3)) - 1) : 0});
-  const auto q = ground || rarely() ? std::array<double, 4>{0, 0, 0, 1} : turn(4);
-  const double far = ground ? 0 : mood_.distance, near = ground ? 0 : 3, low = far * std::numeric_limits<Scalar>::epsilon() / 4,
-               unit_low = ground ? 0 : std::numeric_limits<Scalar>::epsilon() / 4;
-  put(Buffer::pose, row,
-      {far + either(near), either(near), either(near) - far, 0, q[0], q[1], q[2], q[3], either(low), either(low), either(low), 0,
-       either(unit_low), either(unit_low), either(unit_low), either(unit_low)});
-  const double change = speed / 100, lost = speed * std::numeric_limits<Scalar>::epsilon() / 4;
-  put(Buffer::velocity_parts, row,
-      {either(change), either(change), either(change), 0, either(change), either(change), either(change), 0,  //
-       either(lost), either(lost), either(lost), 0, either(lost), either(lost), either(lost), 0});
-  put(Buffer::mass, row,
-      {x * moments[0], x * moments[1], x * moments[2], x * mass, dynamic ? 1 / moments[0] : kinematic,
-       dynamic ? 1 / moments[1] : kinematic, dynamic ? 1 / moments[2] : kinematic, double(middle)});
-  const double drags[] = {0, 0.25, 5, 300};
-  const double push = ground || rarely() ? 0 : mood_.mass * 10;
-  put(Buffer::force, row,
-      {either(push), either(push), either(push), drags[below(4)], either(push), either(push), either(push), drags[below(4)]});
-  const double moved = ground ? 0 : speed / 1000;
-  put(Buffer::inertia, row,
-      {x / moments[0], x * either(0.1) / moments[2], x * either(0.1) / moments[2], x / moments[1], x * either(0.1) / moments[2],
-       x / moments[2], x, 0});
-  put(Buffer::delta, row, {either(moved), either(moved), either(moved), 0, either(moved), either(moved), either(moved), 0});
-}
-
-template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
-  if (row == 0) return;
-  const auto n = rarely() ? std::array<double, 4>{0, 1, 0, 0} : turn(3);
-  put(Buffer::contact, row, {n[0], n[1], n[2], double(below(5))});
-  for (std::uint32_t point = 0; point < 4; point++) {
-    Scalar* at = state_.reals[std::size_t(Buffer::contact)].data() + row * 32 + 4 + point * 4;
-    for (int i = 0; i < 3; i++) at[i] = Scalar(either(0.5));
-    at[3] = Scalar(rarely() ? 0 : either(0.01));
-  }
-  Scalar* at = state_.reals[std::size_t(Buffer::contact)].data() + row * 32 + 20;
-  const bool fresh = rarely();
-  for (int i = 0; i < 4; i++) at[i] = Scalar(fresh ? 0 : real(0, mood_.impulse));
-  for (int i = 4; i < 8; i++) at[i] = Scalar(fresh ? 0 : either(mood_.impulse / 4));
-  at[8] = Scalar(rarely() ? 0 : real(0, 1.2));
-  at[9] = Scalar(at[8] * Scalar(real(0.5, 1)));
-  at[10] = Scalar(rarely() ? 0 : real(0, 1));
-}
-
-template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
-  if (row == 0) {
-    put(Buffer::joint_frame, row, {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1});
-    return;
-  }
-  const auto p = turn(4), q = turn(4);
-  const double infinity = std::numeric_limits<double>::infinity();
-  double lower[3], upper[3];
-  for (int i = 0; i < 3; i++) {
-    lower[i] = real(-2, 1);
-    upper[i] = rarely() ? lower[i] : lower[i] + real(0, 2);
-    if (rarely()) lower[i] = -infinity, upper[i] = infinity;
-  }
-  put(Buffer::joint_frame, row, {either(0.5), either(0.5), either(0.5), double(below(3)),
-                                 p[0],        p[1],        p[2],        p[3],
-                                 either(0.5), either(0.5), either(0.5), 0,
-                                 q[0],        q[1],        q[2],        q[3],
-                                 lower[0],    lower[1],    lower[2],    0,
-                                 upper[0],    upper[1],    upper[2],    0});
-  const double push = rarely() ? 0 : mood_.impulse;
-  put(Buffer::joint_impulse, row, {either(push), either(push), either(push), 0, either(push), either(push), either(push), 0});
-}
-
-/// Colours: within one, no dynamic body stands in two slots. The last slots of each are padding.
-template <class Scalar>
-void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count,
-                          std::uint32_t blocks) {
-  std::uint32_t record = 1;
-  for (std::uint32_t c = 0; c < colour_count; c++) {
-    std::vector<std::uint32_t> bodies(free_bodies);
-    for (std::uint32_t i = 0; i < free_bodies; i++) bodies[i] = i + 1;
-    std::shuffle(bodies.begin(), bodies.end(), random_);
-    const std::uint32_t count = blocks * 32, begin = std::uint32_t(state_.indices[std::size_t(order)].size());
-    for (std::uint32_t slot = 0; slot < count; slot++) {
-      const bool padding = slot + 5 >= count;
-      std::uint32_t a = bodies[2 * slot], b = bodies[2 * slot + 1];
-      if (below(4) == 0) (below(2) ? a : b) = free_bodies + 1 + below(fixed_bodies + kinematic_bodies);
-      if (mood_.distance < 10 && rarely()) a = 0;  // the ground stands at the origin
-      for (const std::uint32_t end : {padding ? 0 : a, padding ? 0 : b}) state_.indices[std::size_t(ends)].push_back(end);
-      state_.indices[std::size_t(order)].push_back(padding ? 0 : record++);
-    }
-    colours.push_back({begin, begin + count});
-  }
-}
-
-template <class Scalar> void Maker<Scalar>::infos() {
-  for (int phase = 0; phase < 2; phase++) {
-    const bool relax = phase == 1;
-    const double h = 1.0 / 240;
-    InfoOf<Scalar> info;
-    info.h = Scalar(h);
-    info.inverse_h = Scalar(1 / h);
-    info.gravity_x = Scalar(0.3);
-    info.gravity_y = Scalar(-9.81);
-    info.gravity_z = Scalar(0.1);
-    info.h_change = Scalar(0.2);
-    info.h_before = Scalar(h / 0.8);
-    info.impulse_ratio = Scalar(0.8);
-    info.contact_rate = Scalar(relax ? 0 : 48);
-    info.contact_mass_scale = Scalar(relax ? 1 : 0.9);
-    info.contact_impulse_scale = Scalar(relax ? 0 : 0.1);
-    info.load_ahead = Scalar(relax ? 1 : 0);
-    info.push_speed = Scalar(4);
-    info.joint_rate = Scalar(relax ? 0 : 60);
-    info.joint_mass_scale = Scalar(relax ? 1 : 0.95);
-    info.joint_impulse_scale = Scalar(relax ? 0 : 0.05);
-    info.joint_push_speed = Scalar(8);
-    info.restitution_threshold = Scalar(1);
-    info.rounding = Scalar(1e-3);
-    state_.infos[std::size_t(phase)] = info;
-  }
-}
-
-template <class Scalar> State<Scalar> Maker<Scalar>::make() {
-  constexpr std::uint32_t colour_count = 3, contact_blocks = 8, joint_blocks = 4;
-  std::uint32_t rows[table_count] = {};
-  rows[std::size_t(Table::body)] = body_count;
-  rows[std::size_t(Table::joint)] = 1 + colour_count * joint_blocks * 32;
-  rows[std::size_t(Table::contact)] = 1 + colour_count * contact_blocks * 32;
-  for (std::size_t i = 0; i < buffer_count; i++) {
-    const Buffer buffer = Buffer(i);
-    const std::uint32_t slots = rows[std::size_t(table_of(buffer))] - 1;
-    if (!is_index(buffer))
-      state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);
-  }
-  for (std::uint32_t row = 0; row < rows[std::size_t(Table::body)]; row++) body(row);
-  for (std::uint32_t row = 0; row < rows[std::size_t(Table::contact)]; row++) contact(row);
-  for (std::uint32_t row = 0; row < rows[std::size_t(Table::joint)]; row++) joint(row);
-  for (std::uint32_t row = 1; row < body_count; row++) state_.indices[std::size_t(Buffer::bodies)].push_back(row);
-  while (state_.indices[std::size_t(Buffer::bodies)].size() % 32 != 0) state_.indices[std::size_t(Buffer::bodies)].push_back(0);
-  slots(Buffer::contact_ends, Buffer::contact_order, state_.contact_colours, colour_count, contact_blocks);
-  slots(Buffer::joint_ends, Buffer::joint_order, state_.joint_colours, colour_count, joint_blocks);
-  infos();
-  return state_;
-}
-
 // ---- layouts ----------------------------------------------------------------------------------------
 /// Where real `f` of `slot` stands: blocks of `width` slots; the GPU keeps four reals of a slot together.
 inline std::size_t place(std::size_t slot, std::size_t f, std::size_t reals, std::size_t width) {
@@ -249,7 +31,11 @@ inline std::size_t place(std::size_t slot, std::size_t f, std::size_t reals, std
   return width == 32 ? ((block * (reals / 4) + f / 4) * width + lane) * 4 + f % 4 : (block * reals + f) * width + lane;
 }
 
-inline std::vector<std::uint32_t> pack_indices(Buffer buffer, const std::vector<std::uint32_t>& logical, std::size_t width) {
+inline std::vector<std::uint32_t> pack_indices(Buffer buffer, const std::vector<std::uint32_t>& logical, std::size_t width,
+                                               const TreeLayout& trees) {
+  if (buffer == Buffer::tree_blocks) return trees.lists.blocks;
+  if (buffer == Buffer::tree_parents) return trees.lists.parents;
+  if (buffer == Buffer::tree_ends) return trees.lists.ends;
   if (!is_ends(buffer)) return logical;
   std::vector<std::uint32_t> packed(logical.size());
   for (std::size_t i = 0; i < logical.size(); i++) packed[(i / 2 / width * 2 + i % 2) * width + i / 2 % width] = logical[i];
@@ -258,12 +44,19 @@ inline std::vector<std::uint32_t> pack_indices(Buffer buffer, const std::vector<
 
 /// Copies between logical order and a backend's, for rows of the solver; tables are the same in both.
 template <class Scalar>
-void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width, bool pack) {
+void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width, const TreeLayout& trees,
+                bool pack) {
   const std::size_t reals = schema(buffer).reals;
   for (std::size_t i = 0; i < count; i++) {
-    const std::size_t packed = is_rows(buffer) ? place(i / reals, i % reals, reals, width) : i;
+    const std::size_t slot = buffer == Buffer::tree_rows ? trees.slots[i / reals] : i / reals;
+    const std::size_t packed = is_rows(buffer) ? place(slot, i % reals, reals, width) : i;
     to[pack ? packed : i] = from[pack ? i : packed];
   }
+}
+
+/// Reals of a buffer as a backend has it: lanes that pad blocks of trees have room of their own.
+template <class Scalar> std::size_t packed_size(Buffer buffer, const State<Scalar>& state, const TreeLayout& trees) {
+  return buffer == Buffer::tree_rows ? trees.size * schema(buffer).reals : state.reals[std::size_t(buffer)].size();
 }
 
 inline std::vector<Range> ranges_of(Kernel kernel, std::uint32_t bodies, const std::vector<Range>& contacts,
@@ -274,6 +67,7 @@ inline std::vector<Range> ranges_of(Kernel kernel, std::uint32_t bodies, const s
   return ranges;
 }
 template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<Scalar>& state, std::uint32_t width) {
+  if (schema(kernel).domain == Domain::tree) return {{0, lay_out(state.trees, width).lists.count()}};
   return ranges_of(kernel, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size()), state.contact_colours,
                    state.joint_colours, width);
 }
@@ -285,16 +79,17 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
   };
   std::array<std::vector<Line>, buffer_count> memory;
   void* buffers[buffer_count] = {};
+  const TreeLayout trees = lay_out(state.trees, kernels.lanes);
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
-    const auto indices = pack_indices(access.buffer, state.indices[i], kernels.lanes);
-    memory[i].resize((state.reals[i].size() * sizeof(Scalar) + indices.size() * 4) / 64 + 1);
+    const auto indices = pack_indices(access.buffer, state.indices[i], kernels.lanes, trees);
+    memory[i].resize((packed_size(access.buffer, state, trees) * sizeof(Scalar) + indices.size() * 4) / 64 + 1);
     buffers[i] = memory[i].data();
     if (is_index(access.buffer))
       std::memcpy(buffers[i], indices.data(), indices.size() * 4);
     else
       copy_reals(access.buffer, state.reals[i].data(), static_cast<Scalar*>(buffers[i]), state.reals[i].size(), kernels.lanes,
-                 true);
+                 trees, true);
   }
   {
     const FlushSubnormals flush;  // as stepping does, and some GPUs
@@ -305,7 +100,7 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
     const std::size_t i = std::size_t(access.buffer);
     if (access.write)
       copy_reals(access.buffer, static_cast<const Scalar*>(buffers[i]), state.reals[i].data(), state.reals[i].size(),
-                 kernels.lanes, false);
+                 kernels.lanes, trees, false);
   }
 }
 
@@ -316,11 +111,12 @@ inline void require(const Status& status) {
 template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info, State<Scalar>& state) {
   std::array<std::vector<Scalar>, buffer_count> reals;
   std::array<std::vector<std::uint32_t>, buffer_count> indices;
+  const TreeLayout trees = lay_out(state.trees, gl.width());
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
-    indices[i] = pack_indices(access.buffer, state.indices[i], gl.width());
-    reals[i].resize(state.reals[i].size());
-    copy_reals(access.buffer, state.reals[i].data(), reals[i].data(), reals[i].size(), gl.width(), true);
+    indices[i] = pack_indices(access.buffer, state.indices[i], gl.width(), trees);
+    reals[i].resize(packed_size(access.buffer, state, trees));
+    copy_reals(access.buffer, state.reals[i].data(), reals[i].data(), state.reals[i].size(), gl.width(), trees, true);
     void* host = is_index(access.buffer) ? static_cast<void*>(indices[i].data()) : reals[i].data();
     require(gl.attach(access.buffer, host, indices[i].size() * 4 + reals[i].size() * sizeof(Scalar)));
     require(gl.upload(access.buffer));
@@ -332,7 +128,7 @@ template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info
     const std::size_t i = std::size_t(access.buffer);
     if (!access.write) continue;
     require(gl.download(access.buffer));
-    copy_reals(access.buffer, reals[i].data(), state.reals[i].data(), reals[i].size(), gl.width(), false);
+    copy_reals(access.buffer, reals[i].data(), state.reals[i].data(), state.reals[i].size(), gl.width(), trees, false);
   }
 }
 
