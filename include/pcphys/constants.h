@@ -27,7 +27,7 @@ inline constexpr double contact_damping_ratio = 5;
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;
 /// Of what a sub-step is too long to resolve in the turning of a tree's bodies, this share is taken out (docs/joints.md).
-inline constexpr double tree_damping = 0.25;
+inline constexpr double tree_damping = 0.4;
 /// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
 inline constexpr double tree_spin_floor = 6e-5;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.

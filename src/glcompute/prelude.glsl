@@ -41,7 +41,11 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 #define PC_GATHER(buffer, i, k) pc_quad_of(io_##buffer[(i) * quads_##buffer + (k)])
 #define PC_SCATTER(buffer, i, k, q) io_##buffer[(i) * quads_##buffer + (k)] = pc_real4_of(q)
 #define PC_SCATTER_IF(mask, buffer, i, k, q) if (mask) io_##buffer[(i) * quads_##buffer + (k)] = pc_real4_of(q)
+#ifdef PC_DOUBLE  // as scalars: an H200's compiler (driver 580) cannot index a dvec4 by a variable
+#define PC_AT(buffer, slot, f) io_##buffer[(((slot).block * quads_##buffer + ((f) >> 2u)) * PC_W + (slot).lane) * 4u + ((f) & 3u)]
+#else
 #define PC_AT(buffer, slot, f) io_##buffer[((slot).block * quads_##buffer + ((f) >> 2u)) * PC_W + (slot).lane][(f) & 3u]
+#endif
 #define PC_LD(buffer, slot, f) PC_AT(buffer, slot, f)
 #define PC_ST(buffer, slot, f, x) PC_AT(buffer, slot, f) = x
 #define PC_ENDS(buffer, slot, side) io_##buffer[((slot).block * 2u + (side)) * PC_W + (slot).lane]

@@ -110,9 +110,10 @@ Status check_buffer(GLuint program, Buffer buffer, std::uint32_t binding, Precis
   const std::string variable = "io_" + std::string(what.name) + "[0]";
   const GLuint index = glGetProgramResourceIndex(program, GL_BUFFER_VARIABLE, variable.c_str());
   if (index == GL_INVALID_INDEX) return {};  // declared by the kernel's accesses but not used by its text
-  const bool f64 = precision == Precision::f64;
-  const GLint type = what.reals == 0 ? GL_UNSIGNED_INT : f64 ? GL_DOUBLE_VEC4 : GL_FLOAT_VEC4;
-  const GLint stride = what.reals == 0 ? 4 : f64 ? 32 : 16;
+  const bool f64 = precision == Precision::f64, scalars = scalar_elements(buffer, precision);
+  const GLint vectors = f64 ? GL_DOUBLE_VEC4 : GL_FLOAT_VEC4;
+  const GLint type = what.reals == 0 ? GL_UNSIGNED_INT : scalars ? GL_DOUBLE : vectors;
+  const GLint stride = what.reals == 0 ? 4 : scalars ? 8 : f64 ? 32 : 16;
   const GLuint block = GLuint(property_of(program, GL_BUFFER_VARIABLE, index, GL_BLOCK_INDEX));
   Status status = expect(what.name, "element type", type, property_of(program, GL_BUFFER_VARIABLE, index, GL_TYPE));
   if (status) status = expect(what.name, "stride", stride, stride_of(program, index));

@@ -117,14 +117,20 @@ std::string head(const SourceOptions& options) {
   return text;
 }
 
-std::string buffer_declarations(const KernelSchema& kernel) {
+/// Elements as the prelude's macros take them.
+std::string element(Buffer buffer, Precision precision) {
+  if (schema(buffer).reals == 0) return "uint";
+  return scalar_elements(buffer, precision) ? "Real" : "Real4";
+}
+
+std::string buffer_declarations(const KernelSchema& kernel, Precision precision) {
   std::string text;
   std::uint32_t binding = 0;
   for (const Access& access : kernel.accesses) {
     const BufferSchema& buffer = schema(access.buffer);
     const std::string label(buffer.name);
     text += "layout(std430, binding = " + number(binding++) + ") restrict " + (access.write ? "" : "readonly ") +
-            "buffer Block_" + label + " { " + (buffer.reals == 0 ? "uint" : "Real4") + " io_" + label + "[]; };\n";
+            "buffer Block_" + label + " { " + element(access.buffer, precision) + " io_" + label + "[]; };\n";
     if (buffer.reals != 0) text += "#define quads_" + label + " " + number(quads(access.buffer)) + "u\n";
   }
   return text;
@@ -147,6 +153,10 @@ std::string main_text(Domain domain, std::uint32_t local_size) {
 
 }  // namespace
 
+bool scalar_elements(Buffer buffer, Precision precision) {
+  return buffer > Buffer::table_buffers && schema(buffer).reals > 0 && precision == Precision::f64;
+}
+
 std::uint32_t quads(Buffer buffer) { return schema(buffer).reals == 0 ? 1 : schema(buffer).reals / 4; }
 
 Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options) {
@@ -154,7 +164,7 @@ Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options)
   Text text(options.precision);
   text.add(head(options));
   if (Status status = text.include("prelude.glsl"); !status) return status.error();
-  text.add("#line 1 0\n" + buffer_declarations(what) + info_declaration());
+  text.add("#line 1 0\n" + buffer_declarations(what, options.precision) + info_declaration());
   if (Status status = text.include(std::string(what.name) + ".inl"); !status) return status.error();
   text.add("#line 1 0\n" + main_text(what.domain, options.local_size));
   return text.take();

@@ -30,6 +30,8 @@ struct ProgramSource {
 Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options);
 Result<ProgramSource> probe_source(Precision precision);
 
+/// Whether GLSL sees a buffer as single reals: the solver's rows in double, see PC_AT in prelude.glsl.
+bool scalar_elements(Buffer buffer, Precision precision);
 /// Length of a buffer's row in the elements that GLSL sees: Real4, or unsigned integers (1).
 std::uint32_t quads(Buffer buffer);
 
