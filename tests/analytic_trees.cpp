@@ -1,53 +1,12 @@
 // Pins what the direct solve of joint trees promises: chains under loads of up to a million links neither stretch nor
 // gain energy, welds and hinges hold, bodies follow a kinematic one, loops (solved by rows) stay closed, momentum is
 // kept, and neither the backend nor a snapshot in mid-run makes a difference.
-#include <algorithm>
-#include <numbers>
-
 #include "scenes/scene.h"
-#include "support_physics.h"
+#include "support_trees.h"
 
-using namespace physics;
+using namespace trees;
 
 namespace {
-
-constexpr double frame = 1.0 / 60, degree = std::numbers::pi / 180;
-constexpr double millimetre = 1e-3;
-
-/// The worst of a run.
-struct Worst {
-  double separation = 0;  // of any joint [m]
-  double gain = 0;        // of energy above that of the start [J]
-  double lost = 0;        // of it at the end [J]
-  double kinetic = 0;     // the largest [J]
-  bool finite = true;
-};
-
-double energy(const World& world) { return world.kinetic_energy() + world.potential_energy(); }
-
-void note(Worst& worst, const World& world, double start) {
-  for (const JointId joint : world.joints()) worst.separation = std::max(worst.separation, *world.joint_separation(joint));
-  worst.kinetic = std::max(worst.kinetic, world.kinetic_energy());
-  worst.lost = start - energy(world);
-  worst.gain = std::max(worst.gain, -worst.lost);
-  for (const BodyId body : world.bodies()) worst.finite &= std::isfinite(length(world.pose(body)->position));
-  worst.finite &= std::isfinite(energy(world));
-}
-
-Worst watch(Run& run, long steps = 300) {
-  const double start = energy(run.world);
-  Worst worst;
-  for (long i = 0; i < steps; i++) {
-    run.step(frame);
-    note(worst, run.world, start);
-  }
-  return worst;
-}
-
-void tell(const std::string& what, const Mode& mode, const Worst& w, double range) {
-  MESSAGE("trees, " << what << ", " << mode.name() << ": separation " << w.separation / millimetre << " mm, energy gained "
-                    << w.gain / range << " and at the end lost " << w.lost / range << " of its range");
-}
 
 /// 20 links and a load of `ratio` links; a chainswing starts level, a chain hangs and its load is pushed at 1 m/s.
 struct Chain {
@@ -67,34 +26,6 @@ struct Chain {
       range += run.world.mass_properties(body)->mass * gravity * length(run.position(body) - top);
   }
 };
-
-/// A body that touches nothing.
-BodyDef rod(Vec3 half_extents, double mass, Vec3 position, Quat orientation = {}) {
-  BodyDef def;
-  def.shapes = {ShapeDef::box(half_extents)};
-  def.shapes[0].filter.mask = 0;
-  def.mass = mass;
-  def.pose = {position, orientation};
-  return def;
-}
-
-/// A joint at a place of the world, whose axes are `axes` there.
-JointId join(Run& run, BodyId a, BodyId b, Vec3 place, const AngleFreedom& freedom = {}, Quat axes = {}) {
-  JointDef def;
-  def.a = a;
-  def.b = b;
-  const auto local = [&](BodyId body) {
-    const Pose pose = body == run.world.ground() ? Pose{} : *run.world.pose(body);
-    const Quat back = conjugate(pose.orientation);
-    return Pose{rotate(back, place - pose.position), back * axes};
-  };
-  def.frame_a = local(a);
-  def.frame_b = local(b);
-  def.freedom = freedom;
-  const auto made = run.world.create_joint(def);
-  if (!made) FAIL(made.error().message);
-  return *made;
-}
 
 }  // namespace
 
@@ -166,8 +97,6 @@ TEST_CASE("trees: a chain that is cut goes on as two") {
 
 namespace {
 
-const Quat about_z = axis_angle({0, 1, 0}, -0.5 * std::numbers::pi);  // turns the x axis, a hinge's, to z
-
 /// Two arms that hang from the ground, and a bar between them; level, let go at 60 degrees.
 void add_four_bar(Run& run, const AngleFreedom& freedom) {
   const BodyId ground = run.world.ground();
@@ -231,60 +160,6 @@ TEST_CASE("trees: loops stay closed") {
       CHECK(w.gain <= 1e-3 * w.kinetic);
       CHECK(w.separation <= c.limit * millimetre);
     }
-}
-
-namespace {
-
-/// Twelve links between two posts, let go when they are level and stretched, one of them of `load` kilograms.
-void add_bridge(Run& run, double load) {
-  BodyId above = run.world.ground();
-  for (int i = 0; i < 12; i++) {
-    const double lift = 0.02 * (i < 6 ? 6 - i : i - 5);  // hangs through a little: stretched it could not move
-    const BodyId link = run.add(rod({0.25, 0.03, 0.1}, i == 6 ? load : 1, {0.25 + 0.5 * i, lift, 0}));
-    join(run, above, link, {0.5 * i, lift, 0});
-    above = link;
-  }
-  join(run, above, run.world.ground(), {6, 0.14, 0});
-}
-
-}  // namespace
-
-// The joint that closes the loop is a soft row, and carries what the tree's solve does not know of: measured (4 sub-steps,
-// float and double alike) 47 mm with links of 1 kg, 84 and 338 mm with one of 10 and of 100; with 16 sub-steps 5.8, 11
-// and 49 mm. All other joints stay below a millimetre.
-TEST_CASE("trees: a bridge between two posts holds to a centimetre" * doctest::may_fail()) {
-  for (const Mode& mode : precisions())
-    for (const double load : {1.0, 10.0, 100.0}) {
-      Run run(mode, {0, -gravity, 0}, 4);
-      add_bridge(run, load);
-      const Worst w = watch(run);
-      CAPTURE(mode.name());
-      tell("bridge with a load of " + std::to_string(long(load)), mode, w, w.kinetic);
-      CHECK(w.finite);
-      CHECK(w.separation <= 10 * millimetre);
-    }
-}
-
-TEST_CASE("trees: of a bridge between two posts the tree's own joints hold, and it comes to no harm") {
-  for (const Mode& mode : precisions()) {
-    Run run(mode, {0, -gravity, 0}, 4);
-    add_bridge(run, 100);
-    const std::vector<JointId> joints = run.world.joints();
-    double own = 0;
-    Worst w;
-    const double start = energy(run.world);
-    for (int i = 0; i < 300; i++) {
-      run.step(frame);
-      note(w, run.world, start);
-      for (std::size_t k = 0; k + 1 < joints.size(); k++) own = std::max(own, *run.world.joint_separation(joints[k]));
-    }
-    MESSAGE("trees, bridge, " << mode.name() << ": separation inside the tree " << own / millimetre << " mm");
-    CAPTURE(mode.name());
-    CHECK(w.finite);
-    CHECK(own <= 1 * millimetre);
-    CHECK(w.separation <= 500 * millimetre);
-    CHECK(w.gain <= 1e-3 * w.kinetic);
-  }
 }
 
 // ---- locked angles ----------------------------------------------------------------------------------------

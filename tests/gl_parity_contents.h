@@ -34,12 +34,13 @@ inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || bu
 struct Mood {
   const char* name;
   double speed, spin, distance, mass, impulse;
+  double tree_spin;  // of bodies in trees
 };
 inline constexpr Mood moods[] = {
-    {"plausible", 3, 2, 5, 1, 0.5},
-    {"many turns and far away", 50, 4000, 5000, 0.05, 1},
-    {"small", 1e-6, 1e-7, 0.01, 1e-3, 1e-8},
-    {"heavy", 20, 300, 50, 1e6, 1e5},
+    {"plausible", 3, 2, 5, 1, 0.5, 2},
+    {"many turns and far away", 50, 4000, 5000, 0.05, 1, 4000},
+    {"small", 1e-6, 1e-7, 0.01, 1e-3, 1e-8, 1e-7},
+    {"heavy", 20, 300, 50, 1e6, 1e5, 30},  // at 300 rad/s tree_again ends at 1e9 m/s, see analytic_tree_limits.cpp
 };
 
 template <class Scalar> struct State {
@@ -100,7 +101,8 @@ template <class Scalar> void Maker<Scalar>::body(std::uint32_t row) {
   if (rarely()) moments[1] = moments[2] = moments[0];
   const std::uint32_t middle = below(3);
   std::swap(moments[1], moments[middle]);
-  const double spin = speed == 0 ? 0 : mood_.spin * (dynamic ? moments[1] : 1);
+  const double spin =
+      speed == 0 ? 0 : (dynamic && row > loose_bodies ? mood_.tree_spin : mood_.spin) * (dynamic ? moments[1] : 1);
   const double x = dynamic ? 1 : 0;
   put(Buffer::motion, row,
       {either(speed), either(speed), either(speed), dynamic ? 1 / mass : 0, either(spin), either(spin), either(spin),

@@ -1,0 +1,165 @@
+// Pins how far the direct solve of joint trees goes, and says where it ends: loops under tension, which end in a soft
+// row; masses that single precision cannot hold in it; spins too fast for the sub-step. What is marked may_fail is what a
+// host would wish for and does not get yet; the figures are those measured when this was written.
+#include <random>
+
+#include "support_trees.h"
+
+using namespace trees;
+
+namespace {
+
+/// Twelve links between two posts, let go when they are level and stretched, one of them of `load` kilograms.
+void add_bridge(Run& run, double load) {
+  BodyId above = run.world.ground();
+  for (int i = 0; i < 12; i++) {
+    const double lift = 0.02 * (i < 6 ? 6 - i : i - 5);  // hangs through a little: stretched it could not move
+    const BodyId link = run.add(rod({0.25, 0.03, 0.1}, i == 6 ? load : 1, {0.25 + 0.5 * i, lift, 0}));
+    join(run, above, link, {0.5 * i, lift, 0});
+    above = link;
+  }
+  join(run, above, run.world.ground(), {6, 0.14, 0});
+}
+
+}  // namespace
+
+// The joint that closes the loop is a soft row, and carries what the tree's solve does not know of: measured (4 sub-steps,
+// float and double alike) 47 mm with links of 1 kg, 84 and 338 mm with one of 10 and of 100; with 16 sub-steps 5.8, 11
+// and 49 mm. All other joints stay below a millimetre.
+TEST_CASE("trees: a bridge between two posts holds to a centimetre" * doctest::may_fail()) {
+  for (const Mode& mode : precisions())
+    for (const double load : {1.0, 10.0, 100.0}) {
+      Run run(mode, {0, -gravity, 0}, 4);
+      add_bridge(run, load);
+      const Worst w = watch(run);
+      CAPTURE(mode.name());
+      tell("bridge with a load of " + std::to_string(long(load)), mode, w, w.kinetic);
+      CHECK(w.finite);
+      CHECK(w.separation <= 10 * millimetre);
+    }
+}
+
+TEST_CASE("trees: of a bridge between two posts the tree's own joints hold, and it comes to no harm") {
+  for (const Mode& mode : precisions()) {
+    Run run(mode, {0, -gravity, 0}, 4);
+    add_bridge(run, 100);
+    const std::vector<JointId> joints = run.world.joints();
+    double own = 0;
+    Worst w;
+    const double start = energy(run.world);
+    for (int i = 0; i < 300; i++) {
+      run.step(frame);
+      note(w, run.world, start);
+      for (std::size_t k = 0; k + 1 < joints.size(); k++) own = std::max(own, *run.world.joint_separation(joints[k]));
+    }
+    MESSAGE("trees, bridge, " << mode.name() << ": separation inside the tree " << own / millimetre << " mm");
+    CAPTURE(mode.name());
+    CHECK(w.finite);
+    CHECK(own <= 1 * millimetre);
+    CHECK(w.separation <= 500 * millimetre);
+    CHECK(w.gain <= 1e-3 * w.kinetic);
+  }
+}
+
+// ---- masses: a power of two on all of them should change nothing -------------------------------------------
+
+namespace {
+
+/// Five links let go from level, the last 100 times as heavy: its place after five seconds, for masses times `scale`.
+struct Scaled {
+  Worst worst;
+  Vec3 place;
+};
+Scaled swing(const Mode& mode, double scale) {
+  Run run(mode, {0, -gravity, 0}, 4);
+  BodyId above = run.world.ground();
+  for (int i = 0; i < 5; i++) {
+    const double mass = scale * (i == 4 ? 100 : 1);
+    const BodyId link = run.add(rod({0.03, 0.25, 0.03}, mass, {0.25 + 0.5 * i, 0, 0}, axis_angle({0, 0, 1}, 90 * degree)));
+    join(run, above, link, {0.5 * i, 0, 0}, i == 2 ? AngleFreedom::hinge() : AngleFreedom{}, about_z);
+    above = link;
+  }
+  const Worst worst = watch(run);
+  return {worst, run.position(above)};
+}
+void check_scale(const Mode& mode, int power) {
+  const Scaled one = swing({Precision::f64}, 1), s = swing(mode, std::ldexp(1.0, power));
+  const double off = length(s.place - one.place);
+  MESSAGE("trees, masses times 2^" << power << ", " << mode.name() << ": off by " << off << " m, separation "
+                                   << s.worst.separation / millimetre << " mm");
+  CAPTURE(power);
+  CAPTURE(mode.name());
+  CHECK(s.worst.finite);
+  CHECK(s.worst.separation <= 1 * millimetre);
+  CHECK(off <= (mode.is_double() ? 1e-9 : 1e-3));
+}
+
+}  // namespace
+
+TEST_CASE("trees: masses from 1e-9 to 1e9 kg in single, 1e-18 to 1e18 kg in double") {
+  for (int power : {-60, -30, 30, 60}) check_scale({Precision::f64}, power);
+  for (int power : {0, -20, -30, 20, 30}) check_scale({Precision::f32}, power);
+}
+
+// Determinants of 3 x 3 inertias leave single precision: off by 0.066 m (2^-40), welded as if locked (2^-60), off by 0.029 m
+// (2^40, loads of 1e14 kg), not finite (2^60). Masses from 1e-30 to 1e30 kg are accepted. Small bodies meet the same
+// end by their size: links of 5 mm (1.8 mg) still swing as large ones do, links of 1.5 mm do not, links of 0.5 mm are stiff.
+TEST_CASE("trees: masses of 1e-12 and 1e12 kg and beyond in single" * doctest::may_fail()) {
+  for (int power : {-60, -40, 40, 60}) check_scale({Precision::f32}, power);
+}
+
+// ---- fast spins ---------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Six free links in a row, each with a spin of its own of up to `spin` about each axis.
+void add_whips(Run& run, double spin, unsigned seed, const AngleFreedom& freedom) {
+  std::mt19937 random(seed);
+  const auto either = [&] { return spin * (2 * double(random()) / 4294967296.0 - 1); };
+  BodyId above;
+  for (int i = 0; i < 6; i++) {
+    BodyDef def = rod({0.03, 0.25, 0.05}, 1 + 0.5 * i, {0, -0.5 * i, 0});
+    for (double* component : {&def.angular_velocity.x, &def.angular_velocity.y, &def.angular_velocity.z}) *component = either();
+    const BodyId link = run.add(def);
+    if (i > 0) join(run, above, link, {0, 0.25 - 0.5 * i, 0}, freedom, axis_angle({0, 0, 1}, -90 * degree));
+    above = link;
+  }
+}
+void check_whips(const Mode& mode, double spin, double separation, double most) {
+  Worst worst;
+  for (unsigned seed = 1; seed <= 6; seed++)
+    for (const AngleFreedom& freedom : {AngleFreedom{}, AngleFreedom::cone_and_twist(0.5, 0.5)}) {
+      Run run(mode, {}, 4);
+      add_whips(run, spin, seed, freedom);
+      const double start = energy(run.world);
+      const Worst w = watch(run, 120);
+      worst.separation = std::max(worst.separation, w.separation);
+      worst.gain = std::max(worst.gain, w.gain / start);
+      worst.finite &= w.finite;
+    }
+  MESSAGE("trees, spins of " << spin << " rad/s, " << mode.name() << ": separation " << worst.separation / millimetre
+                             << " mm, energy gained " << worst.gain << " of the start's");
+  CAPTURE(spin);
+  CAPTURE(mode.name());
+  CHECK(worst.finite);
+  CHECK(worst.separation <= separation);
+  CHECK(worst.gain <= most);
+}
+
+}  // namespace
+
+TEST_CASE("trees: spins of up to 100 rad/s, 0.4 rad a sub-step") {
+  for (const Mode& mode : precisions())
+    for (double spin : {3.0, 30.0, 100.0}) check_whips(mode, spin, 1 * millimetre, 0);
+}
+
+TEST_CASE("trees: wilder spins stay finite") {
+  for (const Mode& mode : precisions())
+    for (double spin : {300.0, 1000.0, 4000.0}) check_whips(mode, spin, 10, 100);
+}
+
+// Measured at 300 rad/s, 1.25 rad a sub-step, single: separations to 0.63 m, energy to 12.9 times the start's for an
+// instant; at 1000 rad/s 1.14 m and 14.3 times, at 4000 rad/s 5.0 m and 1.5 times. It falls below the start's again.
+TEST_CASE("trees: spins of 300 rad/s hold together and gain no energy" * doctest::may_fail()) {
+  for (const Mode& mode : precisions()) check_whips(mode, 300, 10 * millimetre, 0.1);
+}
