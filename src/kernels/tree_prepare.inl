@@ -13,13 +13,18 @@ PC_FN Sym3 pc_geometric(Sym3 k, Vec3 r, Vec3 f) {
   precise Real xy = k.xy + (r.x * f.y + r.y * f.x) * s; precise Real xz = k.xz + (r.x * f.z + r.z * f.x) * s; precise Real yz = k.yz + (r.y * f.z + r.z * f.y) * s;
   return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
-// I + h / 2 (k - low 1), low at most the smallest eigenvalue of k (Gershgorin)
-PC_FN Sym3 pc_stiffened(PC_IO Sym3 i, Sym3 k) {
+// Of a body's inertia I and the stiffness k of its pins: x = h^2 k / 4 I (k is an impulse: of the sub-step) is the limit
+// of stability at 1. `fast` = x / (1 + x); the inertia gets fast h / 2 (k - low 1), low at most the smallest eigenvalue
+// of k (Gershgorin): a term of fourth order where the sub-step resolves the motion, stable at any x.
+struct Stiffened { Sym3 inertia; Real fast; };
+PC_FN Stiffened pc_stiffened(PC_IO Sym3 i, Sym3 k) {
   precise Real x = k.xx - pc_abs(k.xy) - pc_abs(k.xz); precise Real y = k.yy - pc_abs(k.xy) - pc_abs(k.yz); precise Real z = k.zz - pc_abs(k.xz) - pc_abs(k.yz);
-  Real low = pc_min(PC_REAL(0.0), pc_min(x, pc_min(y, z))); precise Real half_h = PC_INFO(h) * PC_REAL(0.5);
-  precise Real xx = i.xx + (k.xx - low) * half_h; precise Real xy = i.xy + k.xy * half_h; precise Real xz = i.xz + k.xz * half_h;
-  precise Real yy = i.yy + (k.yy - low) * half_h; precise Real yz = i.yz + k.yz * half_h; precise Real zz = i.zz + (k.zz - low) * half_h;
-  return pc_sym3(xx, xy, xz, yy, yz, zz);
+  Real low = pc_min(PC_REAL(0.0), pc_min(x, pc_min(y, z)));
+  precise Real stiff = (k.xx + k.yy + k.zz - low * PC_REAL(3.0)) * PC_INFO(h); precise Real slow = (i.xx + i.yy + i.zz) * PC_REAL(4.0); precise Real all = stiff + slow;
+  precise Real fast = stiff * pc_inverse_or_zero(all); precise Real weight = PC_INFO(h) * PC_REAL(0.5) * fast;
+  precise Real xx = i.xx + (k.xx - low) * weight; precise Real xy = i.xy + k.xy * weight; precise Real xz = i.xz + k.xz * weight;
+  precise Real yy = i.yy + (k.yy - low) * weight; precise Real yz = i.yz + k.yz * weight; precise Real zz = i.zz + (k.zz - low) * weight;
+  Stiffened r; r.inertia = pc_sym3(xx, xy, xz, yy, yz, zz); r.fast = fast; return r;
 }
 
 // One angle row at its nearer limit. It acts from the start where it did in the last sub-step; tree_solve adds others.
@@ -89,12 +94,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_st3_tree(PC_PASS n, TREE_FACING, turned.v); PC_ST(tree_rows, n, TREE_FACING + 3u, turned.s);
     pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
     Sym3 inertia = pc_world_inertia(pc_quaternion(turned.v, turned.s), moments.v);
-    Sym3 stiff = pc_stiffened(PC_PASS inertia, pc_lds_tree(PC_PASS n, TREE_INERTIA));
-    pc_sts_tree(PC_PASS n, TREE_INERTIA, stiff); pc_sts_tree(PC_PASS n, TREE_BODY, inertia);
-    // h^2 K / (4 I), about
-    precise Real own = inertia.xx + inertia.yy + inertia.zz; precise Real more = (stiff.xx + stiff.yy + stiff.zz - own) * PC_REAL(0.5); precise Real all = own + more;
-    precise Real damp = more * pc_inverse_or_zero(all) * PC_INFO(tree_damping);
-    PC_ST(tree_rows, n, TREE_DAMP, damp);
+    Stiffened stiff = pc_stiffened(PC_PASS inertia, pc_lds_tree(PC_PASS n, TREE_INERTIA));
+    pc_sts_tree(PC_PASS n, TREE_INERTIA, stiff.inertia); pc_sts_tree(PC_PASS n, TREE_BODY, inertia);
+    PC_ST(tree_rows, n, TREE_FAST, stiff.fast);
     PC_ST(tree_rows, n, TREE_MASS, moments.s);
   }
 }

@@ -30,6 +30,7 @@ const uint TREE_LIMIT = 134u;   // impulses of the three angle rows, in the join
 const uint TREE_FACING = 138u;  // orientation
 const uint TREE_MOMENTS = 142u; // inverse principal moments, and which is the middle one
 const uint TREE_BODY = 146u;    // inertia, world axes
+const uint TREE_FAST = 137u;    // share of the body's turning that the sub-step is too long to resolve, 0 to 1
 const uint TREE_DAMP = 152u;    // share of the unresolved rotation that is taken out
 const uint TREE_DAMPING = 153u; // the impulse that does it
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
