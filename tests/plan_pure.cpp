@@ -63,6 +63,21 @@ TEST_CASE("equal worlds have equal plans, whatever was stepped before") {
   }
 }
 
+TEST_CASE("plan_for asks the world, not what was stepped before, for trees and loops") {
+  const SceneWorld chain = scene_world("chain", 2), stack = scene_world("stack", 3), door = scene_world("door", 1);
+  SceneWorld stepped_chain = scene_world("chain", 2);
+  Stepper fresh, used;
+  run(stepped_chain.world, used, 1);
+  for (Stepper* stepper : {&fresh, &used}) {
+    CHECK(runs(must(stepper->plan_for(chain.world, frame)), "tree_solve") == 4);
+    CHECK(runs(must(stepper->plan_for(chain.world, frame)), "joint_solve") == 0);
+    CHECK(runs(must(stepper->plan_for(stack.world, frame)), "tree_solve") == 0);
+    CHECK(reason(must(stepper->plan_for(stack.world, frame)), "joints") == "the world has no joints");
+    const bool loops = door.world.joint_count() > 1;  // a door on two pins or more
+    CHECK((runs(must(stepper->plan_for(door.world, frame)), "joint_solve") > 0) == loops);
+  }
+}
+
 TEST_CASE("plan_for refuses what a step would") {
   World world;
   Stepper stepper;
