@@ -1,31 +1,8 @@
 // Start of a sub-step's trees: arms, gaps, inertia, angle rows at the present pose.
-//
-// Geometric stiffness: a pin's impulse F turns with the body, so while the body turns by h dw the torque changes by
-// (h dw x r) x F. Half of that, from the last sub-step's F, stands in the inertia: I + h / 2 sum of (r . F) 1 - r F^T
-// (symmetric part, shifted to be positive). Without it stiff chains under heavy loads diverge (docs/joints.md).
 #include "joint_angles.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
-
-PC_FN Sym3 pc_geometric(Sym3 k, Vec3 r, Vec3 f) {
-  Real d = pc_dot(r, f); Real s = PC_REAL(-0.5);
-  precise Real xx = k.xx + (d - r.x * f.x); precise Real yy = k.yy + (d - r.y * f.y); precise Real zz = k.zz + (d - r.z * f.z);
-  precise Real xy = k.xy + (r.x * f.y + r.y * f.x) * s; precise Real xz = k.xz + (r.x * f.z + r.z * f.x) * s; precise Real yz = k.yz + (r.y * f.z + r.z * f.y) * s;
-  return pc_sym3(xx, xy, xz, yy, yz, zz);
-}
-// Of a body's inertia I and the stiffness k of its pins: x = h^2 k / 4 I (k is an impulse: of the sub-step) is the limit
-// of stability at 1. `fast` = x / (1 + x); the inertia gets fast h / 2 (k - low 1), low at most the smallest eigenvalue
-// of k (Gershgorin): a term of fourth order where the sub-step resolves the motion, stable at any x.
-struct Stiffened { Sym3 inertia; Real fast; };
-PC_FN Stiffened pc_stiffened(PC_IO Sym3 i, Sym3 k) {
-  precise Real x = k.xx - pc_abs(k.xy) - pc_abs(k.xz); precise Real y = k.yy - pc_abs(k.xy) - pc_abs(k.yz); precise Real z = k.zz - pc_abs(k.xz) - pc_abs(k.yz);
-  Real low = pc_min(PC_REAL(0.0), pc_min(x, pc_min(y, z)));
-  precise Real stiff = (k.xx + k.yy + k.zz - low * PC_REAL(3.0)) * PC_INFO(h); precise Real slow = (i.xx + i.yy + i.zz) * PC_REAL(4.0); precise Real all = stiff + slow;
-  precise Real fast = stiff * pc_inverse_or_zero(all); precise Real weight = PC_INFO(h) * PC_REAL(0.5) * fast;
-  precise Real xx = i.xx + (k.xx - low) * weight; precise Real xy = i.xy + k.xy * weight; precise Real xz = i.xz + k.xz * weight;
-  precise Real yy = i.yy + (k.yy - low) * weight; precise Real yz = i.yz + k.yz * weight; precise Real zz = i.zz + (k.zz - low) * weight;
-  Stiffened r; r.inertia = pc_sym3(xx, xy, xz, yy, yz, zz); r.fast = fast; return r;
-}
+#include "tree_stiffness.inl"
 
 // One angle row at its nearer limit. It acts from the start where it did in the last sub-step; tree_solve adds others.
 PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angle, Real lower, Real upper, Mask exists, Real remembered) {
@@ -77,15 +54,11 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
   Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));
 
-  // the stiffness that the last sub-step's impulse gives to both bodies
-  precise Vec3 f = pin.v * flip;
-  pc_sts_tree(PC_PASS n, TREE_INERTIA, pc_geometric(pc_lds_tree(PC_PASS n, TREE_INERTIA), rc, f));
-  pc_sts_tree(PC_PASS up, TREE_INERTIA, pc_geometric(pc_lds_tree(PC_PASS up, TREE_INERTIA), rp, pc_negate(f)));
+  precise Vec3 f = pin.v * flip; pc_st3_tree(PC_PASS n, TREE_PIN, f);
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
-  for (uint k = 0u; k < t.count; k++) pc_sts_tree(PC_PASS PC_NODE(m, t.first + k), TREE_INERTIA, pc_diagonal(PC_REAL(0.0)));
   pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3());
   for (uint k = 1u; k < t.count; k++) pc_tree_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
   for (uint k = 0u; k < t.count; k++) {
@@ -93,10 +66,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Quad turned = PC_GATHER(pose, body, 1u); Quad moments = PC_GATHER(mass, body, 0u); Quad inverse = PC_GATHER(mass, body, 1u);
     pc_st3_tree(PC_PASS n, TREE_FACING, turned.v); PC_ST(tree_rows, n, TREE_FACING + 3u, turned.s);
     pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
-    Sym3 inertia = pc_world_inertia(pc_quaternion(turned.v, turned.s), moments.v);
-    Stiffened stiff = pc_stiffened(PC_PASS inertia, pc_lds_tree(PC_PASS n, TREE_INERTIA));
-    pc_sts_tree(PC_PASS n, TREE_INERTIA, stiff.inertia); pc_sts_tree(PC_PASS n, TREE_BODY, inertia);
-    PC_ST(tree_rows, n, TREE_FAST, stiff.fast);
+    pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_quaternion(turned.v, turned.s), moments.v));
     PC_ST(tree_rows, n, TREE_MASS, moments.s);
   }
+  pc_tree_stiffness(PC_PASS m, t);
 }
