@@ -101,7 +101,7 @@ TEST_CASE("trees: masses from 1e-9 to 1e9 kg in single, 1e-18 to 1e18 kg in doub
   for (int power : {0, -20, -30, 20, 30}) check_scale({Precision::f32}, power);
 }
 
-// Determinants of 3 x 3 inertias leave single precision: off by 0.087 m (2^-40), welded as if locked (2^-60), off by 0.015 m
+// Determinants of 3 x 3 inertias leave single precision: off by 0.034 m (2^-40), welded as if locked (2^-60), off by 0.015 m
 // (2^40, loads of 1e14 kg), not finite (2^60). Masses from 1e-30 to 1e30 kg are accepted. Small bodies meet the same
 // end by their size: links of 5 mm (1.8 mg) still swing as large ones do, links of 1.5 mm do not, links of 0.5 mm are stiff.
 TEST_CASE("trees: masses of 1e-12 and 1e12 kg and beyond in single" * doctest::may_fail()) {
@@ -158,8 +158,8 @@ TEST_CASE("trees: wilder spins stay finite") {
     for (double spin : {300.0, 1000.0, 4000.0}) check_whips(mode, spin, infinite, infinite);
 }
 
-// Measured at 300 rad/s, 1.25 rad a sub-step: separations to 1.59 m, energy to 68 times the start's (single 1.01 m, 11
-// times); before the stiffness was scaled by what the sub-step resolves, 0.63 m and 12 times. It falls below the start's
+// Measured at 300 rad/s, 1.25 rad a sub-step: separations to 1.63 m, energy to 69 times the start's (single 1.45 m, 17
+// times); before the stiffness was scaled by what the sub-step resolves, 0.63 m and 13 times. It falls below the start's
 // again.
 TEST_CASE("trees: spins of 300 rad/s hold together and gain no energy" * doctest::may_fail()) {
   for (const Mode& mode : precisions()) check_whips(mode, 300, 10 * millimetre, 0.1);

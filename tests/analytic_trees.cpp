@@ -44,17 +44,10 @@ void check_chain(const Mode& mode, const char* scene, double ratio) {
 
 }  // namespace
 
-TEST_CASE("trees: a chain whose load is pushed, loads of 1 to 1e4 links") {
+// In single, 1e6 is the first to go when the solve loses digits: it flew apart (375 m) for one revision.
+TEST_CASE("trees: a chain whose load is pushed, loads of 1 to 1e6 links") {
   for (const Mode& mode : precisions())
-    for (const double ratio : {1.0, 1e2, 1e4}) check_chain(mode, "chain", ratio);
-}
-
-TEST_CASE("trees: a chain whose load of 1e6 links is pushed, in double") { check_chain({Precision::f64}, "chain", 1e6); }
-
-// Measured: 0.0019 mm, and 2e-4 of the energy, until "stiffness and damping vanish where the sub-step resolves the
-// motion"; since then it flies apart, 375 m.
-TEST_CASE("trees: a chain whose load of 1e6 links is pushed, in single" * doctest::may_fail()) {
-  check_chain({Precision::f32}, "chain", 1e6);
+    for (const double ratio : {1.0, 1e2, 1e4, 1e6}) check_chain(mode, "chain", ratio);
 }
 
 TEST_CASE("trees: a chain let go from level, loads of 1e2 to 1e4 links") {
