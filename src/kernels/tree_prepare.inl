@@ -14,7 +14,8 @@ PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angl
   precise Real turned = sign * flip; precise Real pressed = remembered * sign;
   Vec3 j = pc_select3(exists, pc_scale(axis, turned), pc_zero3());
   pc_st3_tree(PC_PASS n, TREE_AXIS + row * 3u, j);
-  PC_ST(tree_rows, n, TREE_SLACK + row, slack); PC_ST(tree_rows, n, TREE_SIGN + row, sign);
+  PC_ST(tree_rows, n, TREE_SLACK + row, pc_select(exists, slack, zero)); PC_ST(tree_rows, n, TREE_SIGN + row, pc_select(exists, sign, zero));
+  PC_ST(tree_rows, n, TREE_SPRING + row, zero); PC_ST(tree_rows, n, TREE_RATE + row, zero);
   PC_ST(tree_rows, n, TREE_KIND + row, pc_select(locked, PC_REAL(2.0), pc_select(exists, one, zero)));
   PC_ST(tree_rows, n, TREE_ON + row, pc_select(locked, one, pc_select(pc_and(exists, pressed > zero), one, zero)));
 }

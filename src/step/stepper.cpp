@@ -86,17 +86,17 @@ struct Stepper::Inside {
 
   Detector::Options detection() const { return {settings.narrow, settings.contact_margin, settings.max_pairs}; }
 
-  PlanSignature signature(const WorldState& s, bool restitution) const {
-    return {settings.substeps,
-            {settings.integrate, settings.joints, settings.impulses},
-            schedule.moving > 0,
-            schedule.drag,
-            schedule.gyroscopic,
-            schedule.trees.forest().trees() > 0,
-            schedule.joints.constraints() > 0,
-            detector.possible(),
-            s.contact_rows() > 1,
-            restitution};
+  /// What the objects of `schedule` need; contacts are for the caller to say.
+  PlanSignature signature(const Schedule& from) const {
+    PlanSignature s;
+    s.substeps = settings.substeps;
+    s.places = {settings.integrate, settings.joints, settings.impulses};
+    s.bodies = from.moving > 0;
+    s.drag = from.drag;
+    s.gyroscopic = from.gyroscopic;
+    s.trees = from.trees.forest().trees() > 0;
+    s.joints = from.joints.constraints() > 0;
+    return s;
   }
 
   const StepPlan& find_plan(const PlanSignature& wanted) {
@@ -166,7 +166,11 @@ struct Stepper::Inside {
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
     remember(s);
-    plan = &find_plan(signature(s, found.restitution));
+    PlanSignature wanted = signature(schedule);
+    wanted.shapes = detector.possible();
+    wanted.contacts = s.contact_rows() > 1;
+    wanted.restitution = found.restitution;
+    plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
@@ -231,10 +235,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   schedule.update_structure(world.state());
   Detector detector;
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
-  PlanSignature wanted = in.signature(world.state(), true);
-  wanted.bodies = schedule.moving > 0;
-  wanted.drag = schedule.drag;
-  wanted.gyroscopic = schedule.gyroscopic;
+  PlanSignature wanted = in.signature(schedule);
   wanted.shapes = wanted.contacts = detector.possible();
   wanted.restitution = detector.may_bounce(world.state());
   return make_plan(wanted);
