@@ -59,7 +59,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real wanted = PC_REAL(1.0);
   for (uint k = 0u; k < t.count; k++) pc_st3_tree(PC_PASS PC_NODE(m, t.first + k), TREE_DAMPING, pc_zero3());
   for (uint turn = 0u; turn < 4u; turn++) {
-    pc_tree_residual(PC_PASS m, t);
+    pc_tree_residual(PC_PASS m, t, wanted);
     Real left = PC_REAL(0.0);
     for (uint k = 1u; k < t.count; k++) left = pc_max(left, pc_gap_left(PC_PASS PC_NODE(m, t.first + k)));
     pc_newton_step(PC_PASS m, t, wanted);

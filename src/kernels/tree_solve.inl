@@ -55,7 +55,7 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t) {
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
-  pc_tree_residual(PC_PASS m, t);
+  pc_tree_residual(PC_PASS m, t, one);
   for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
   pc_tree_damping(PC_PASS m, t);
   for (uint turn = 0u; turn < 4u; turn++) {

@@ -89,15 +89,15 @@ PC_FN void pc_tree_apply(PC_IO Slot m, Tree t) {
   }
 }
 
-// Right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
-PC_FN void pc_tree_predict(PC_IO Slot m, Tree t) {
+// In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
+PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted) {
   Real h = PC_INFO(h);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
     Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
     Quad moments = pc_quad(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), PC_LD(tree_rows, n, TREE_MOMENTS + 3u));
     Quaternion turn = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, h), pc_conjugate(q));
-    pc_st3_tree(PC_PASS n, TREE_TURN, turn.v); PC_ST(tree_rows, n, TREE_TURN + 3u, turn.w);
+    pc_st3_tree(PC_PASS n, TREE_TURN, pc_select3(wanted, turn.v, pc_ld3_tree(PC_PASS n, TREE_TURN))); PC_ST(tree_rows, n, TREE_TURN + 3u, pc_select(wanted, turn.w, PC_LD(tree_rows, n, TREE_TURN + 3u)));
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, pc_angular_velocity(b)));
   }
 }
@@ -106,8 +106,8 @@ PC_FN Vec3 pc_swing(PC_IO Slot n, Vec3 r) {
   Vec3 q = pc_ld3_tree(PC_PASS n, TREE_TURN); precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(1.0);
   precise Vec3 s = pc_cross(q, r) * PC_REAL(2.0); precise Vec3 d = s * w + pc_cross(q, s); return d;
 }
-PC_FN void pc_tree_residual(PC_IO Slot m, Tree t) {
-  pc_tree_predict(PC_PASS m, t);
+PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted) {
+  pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5));
   for (uint k = 1u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     Vec3 moved = pc_sub(pc_swing(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_RC)), pc_swing(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_RP)));
