@@ -81,7 +81,11 @@ Errors double_pendulum(const Mode& mode, double dt) {
   });
 }
 
-Errors heavy_top(const Mode& mode, double dt, const char* file) {
+struct TopErrors {
+  double theta = 0, phi = 0;  // of the axis: inclination, azimuth [rad]
+};
+
+TopErrors heavy_top(const Mode& mode, double dt, const char* file) {
   const Csv reference = read_csv(file);
   const double m = 2, r = 0.2, h = 0.04, across = m * (r * r / 4 + h * h / 12), along = m * r * r / 2;
   const auto vector = [&](const char* x, const char* y, const char* z) {
@@ -93,10 +97,18 @@ Errors heavy_top(const Mode& mode, double dt, const char* file) {
               {reference.at(0, "qx"), reference.at(0, "qy"), reference.at(0, "qz"), reference.at(0, "qw")}};
   def.angular_velocity = vector("wx", "wy", "wz");
   const BodyId body = run.add(def);
-  const std::vector<JointId> joints{pin(run, run.world.ground(), {}, body, {0, 0, -0.2})};
-  return follow(run, dt, reference, 5, 5, joints, [&](std::size_t row) {
-    return length(run.position(body) - Vec3{reference.at(row, "px"), reference.at(row, "py"), reference.at(row, "pz")});
+  pin(run, run.world.ground(), {}, body, {0, 0, -0.2});
+  TopErrors worst;
+  const double pi = std::acos(-1.0);
+  follow(run, dt, reference, 5, 5, {}, [&](std::size_t row) {
+    const Vec3 axis = rotate(run.orientation(body), Vec3{0, 0, 1});
+    const double theta = std::acos(axis.z) - reference.at(row, "theta");
+    const double phi = std::remainder(std::atan2(axis.y, axis.x) - reference.at(row, "phi"), 2 * pi);
+    worst.theta = std::max(worst.theta, std::fabs(theta));
+    worst.phi = std::max(worst.phi, std::fabs(phi));
+    return std::fabs(theta);
   });
+  return worst;
 }
 
 }  // namespace
@@ -141,12 +153,26 @@ TEST_CASE("A8: a double pendulum from horizontal, double") {
   CHECK(order(errors[1], errors[2], 5) >= 1.9);
 }
 
-TEST_CASE("A6: a heavy top, double") {
-  for (const char* file : {"A06a_heavy_top_steady.csv", "A06b_heavy_top_cuspidal.csv"})
-    for (int i = 1; i < 4; i++) {
-      const Errors e = heavy_top({Precision::f64}, ladder[i], file);
-      MESSAGE("A6 " << std::string(file) << " dt " << ladder[i] << ": " << e.all << " m, gap " << e.gap << " m, energy "
-                    << e.energy << " J");
-      CHECK(std::isfinite(e.all));
-    }
+// Not met: theta 3.5e-4 and 1.6e-2 rad, phi 2.7e-3 and 3.2e-2 rad at 1/240 s, falling with the square of the step. Not
+// damping and not Newton's method: without the one, and with the other converged, they are the same. Between two kicks
+// the body turns freely about its centre, where its axis nutates with 118 rad/s; about the pin it does so with 24. The
+// two are put together by the pin's impulses alone, once a sub-step.
+TEST_CASE("A6: a heavy top, double" * doctest::may_fail()) {
+  struct Must {
+    const char* file;
+    double dt, theta, phi;
+  };
+  for (const Must& must :
+       {Must{"A06a_heavy_top_steady.csv", 1.0 / 240, 2e-5, 1.4e-3}, Must{"A06a_heavy_top_steady.csv", 1.0 / 1200, 6e-7, 5.4e-5},
+        Must{"A06b_heavy_top_cuspidal.csv", 1.0 / 240, 4e-3, 8e-4},
+        Must{"A06b_heavy_top_cuspidal.csv", 1.0 / 1200, 1.6e-4, 2.2e-5},
+        Must{"A06b_heavy_top_cuspidal.csv", 1e-4, 2.4e-6, 3e-7}}) {
+    const TopErrors e = heavy_top({Precision::f64}, must.dt, must.file);
+    MESSAGE("A6 " << std::string(must.file) << " dt " << must.dt << ": theta " << e.theta << " (must " << must.theta << "), phi "
+                  << e.phi << " (must " << must.phi << ") rad");
+    CAPTURE(must.file);
+    CAPTURE(must.dt);
+    CHECK(e.theta <= must.theta);
+    CHECK(e.phi <= must.phi);
+  }
 }

@@ -39,14 +39,16 @@ PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
 }
 
 // What the sub-step cannot resolve is damped, as an impulse against the turning of a body with stiff pins: pins far beyond
-// the limit of stability, and joints that turn by more than a seventh of a radian in the sub-step. Where both are small
+// the limit of stability, and joints whose arm swings by more than a seventh of a radian in the sub-step. Where both are small
 // nothing is taken out. Run after pc_tree_residual.
 PC_FN void pc_tree_damping(PC_IO Slot m, Tree t) {
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    Vec3 turn = pc_scale(pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)), PC_INFO(h));
+    // (how far the arm swings against the parent: a top may spin about it as it likes)
+    Vec3 arm = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+    Vec3 swing = pc_scale(pc_cross(turn, arm), PC_INFO(h)); Real reach = pc_dot(arm, arm);
     Real fast = PC_LD(tree_rows, n, TREE_FAST); Real zero = PC_REAL(0.0);
-    precise Real beyond = fast - PC_REAL(0.02); precise Real whip = (pc_dot(turn, turn) - PC_REAL(0.02)) * PC_REAL(10.0);
+    precise Real beyond = fast - PC_REAL(0.02); precise Real whip = (pc_dot(swing, swing) - reach * PC_REAL(0.02)) * pc_inverse_or_zero(reach) * PC_REAL(10.0);
     precise Real share = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real scale = pc_min(share, PC_REAL(1.0)) * PC_INFO(tree_damping) * PC_REAL(-2.0);
     Sym3 stiffness = pc_sym_sub(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_lds_tree(PC_PASS n, TREE_BODY));
     pc_st3_tree(PC_PASS n, TREE_DAMPING, pc_scale(pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), scale));
