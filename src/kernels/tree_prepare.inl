@@ -55,20 +55,26 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
   Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));
 
-  precise Vec3 f = pin.v * flip; pc_st3_tree(PC_PASS n, TREE_PIN, f);
+  precise Vec3 f = pin.v * flip * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)); pc_st3_tree(PC_PASS n, TREE_PIN, f);
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
   pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3());
+  // masses in units of the tree's: determinants stay in the range of reals whatever bodies weigh
+  Real total = PC_REAL(0.0);
+  for (uint k = 0u; k < t.count; k++) { Quad moments = PC_GATHER(mass, PC_ENDS(tree_ends, PC_NODE(m, t.first + k), 0u), 0u); precise Real sum = total + moments.s; total = sum; }
+  for (uint k = 0u; k < t.count; k++) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_TOTAL, total);
+  Real share = pc_inverse_or_zero(total);
   for (uint k = 1u; k < t.count; k++) pc_tree_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad turned = PC_GATHER(pose, body, 1u); Quad moments = PC_GATHER(mass, body, 0u); Quad inverse = PC_GATHER(mass, body, 1u);
     pc_st3_tree(PC_PASS n, TREE_FACING, turned.v); PC_ST(tree_rows, n, TREE_FACING + 3u, turned.s);
     pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
-    pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_quaternion(turned.v, turned.s), moments.v));
-    PC_ST(tree_rows, n, TREE_MASS, moments.s);
+    precise Real own = moments.s * share;
+    pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_quaternion(turned.v, turned.s), pc_scale(moments.v, share)));
+    PC_ST(tree_rows, n, TREE_MASS, own);
   }
   pc_tree_stiffness(PC_PASS m, t);
 }
