@@ -42,19 +42,13 @@ Errors follow(Run& run, double dt, const Csv& reference, double seconds, double 
               Compare&& compare) {
   Errors worst;
   const double energy = run.world.kinetic_energy() + run.world.potential_energy();
-  long done = 0;
-  for (std::size_t row = 1; row < reference.rows.size(); row++) {
-    const double t = reference.rows[row][0];
-    const long k = std::lround(t / dt);
-    if (t > seconds + 1e-9 || std::fabs(double(k) * dt - t) > 1e-9) continue;
-    run.step(dt, k - done);
-    done = k;
+  walk(run, dt, reference, seconds, [&](std::size_t row, double t) {
     const double error = compare(row);
     worst.all = std::max(worst.all, error);
     if (t <= early_end + 1e-9) worst.early = std::max(worst.early, error);
     for (JointId joint : joints) worst.gap = std::max(worst.gap, *run.world.joint_separation(joint));
     worst.energy = std::max(worst.energy, std::fabs(run.world.kinetic_energy() + run.world.potential_energy() - energy));
-  }
+  });
   return worst;
 }
 

@@ -114,19 +114,13 @@ TumbleError tumble(const Mode& mode, double dt, const Csv& reference, Vec3 body_
   const Vec3 l0 = *run.world.angular_momentum(id);
   const double e0 = run.world.kinetic_energy();
   TumbleError worst;
-  long done = 0;
-  for (std::size_t row = 1; row < reference.rows.size(); row++) {
-    const double t = reference.rows[row][0];
-    const long k = std::lround(t / dt);
-    if (t > seconds + 1e-9 || std::fabs(double(k) * dt - t) > 1e-9) continue;
-    run.step(dt, k - done);
-    done = k;
+  walk(run, dt, reference, seconds, [&](std::size_t row, double t) {
     const double error = angle_between(run.orientation(id), attitude(row));
     worst.attitude = std::max(worst.attitude, error);
     if (t <= 4 + 1e-9) worst.early = std::max(worst.early, error);
     worst.momentum = std::max(worst.momentum, length(*run.world.angular_momentum(id) - l0) / length(l0));
     worst.energy = std::max(worst.energy, std::fabs(run.world.kinetic_energy() / e0 - 1));
-  }
+  });
   return worst;
 }
 

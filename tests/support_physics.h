@@ -57,6 +57,19 @@ struct Csv {
 };
 Csv read_csv(const char* file);
 
+/// Steps through the rows of a reference whose times (first column) are multiples of dt, and tells of each.
+template <class Tell> void walk(Run& run, double dt, const Csv& reference, double seconds, Tell&& tell) {
+  long done = 0;
+  for (std::size_t row = 1; row < reference.rows.size(); row++) {
+    const double t = reference.rows[row][0];
+    const long k = std::lround(t / dt);
+    if (t > seconds + 1e-9 || std::fabs(double(k) * dt - t) > 1e-9) continue;
+    run.step(dt, k - done);
+    done = k;
+    tell(row, t);
+  }
+}
+
 /// exp of a rotation vector [rad].
 Quat exponential(Vec3 rotation);
 /// The angle that turns a into b, in [0, pi] [rad].

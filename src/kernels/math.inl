@@ -96,11 +96,6 @@ PC_FN Quaternion pc_quaternion_mul(Quaternion a, Quaternion b) {
   precise Real w = a.w * b.w - a.v.x * b.v.x - a.v.y * b.v.y - a.v.z * b.v.z;
   return pc_quaternion(v, w);
 }
-PC_FN Quaternion pc_normalise(Quaternion q) {
-  precise Real s = q.v.x * q.v.x + q.v.y * q.v.y + q.v.z * q.v.z + q.w * q.w;
-  Real n = pc_div(PC_REAL(1.0), pc_sqrt(s)); precise Vec3 v = q.v * n; precise Real w = q.w * n;
-  return pc_quaternion(v, w);
-}
 
 // World-axes inverse inertia of a body whose principal inverse moments are `m`, orientation q: R diag(m) R^T.
 PC_FN Sym3 pc_world_inertia(Quaternion q, Vec3 m) {
