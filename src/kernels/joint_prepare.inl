@@ -5,6 +5,7 @@
 // Angles: joint_angles.inl. Every row is a slack >= 0, measured from the nearer limit, or a locked angle.
 #include "body_state.inl"
 #include "joint_angles.inl"
+#include "angle_rows.inl"
 #include "joint_rows.inl"
 
 PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
@@ -27,12 +28,7 @@ PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
 // One angle row at its nearer limit; writes it and returns its impulse and the couple of the warm start.
 struct RowStart { Real impulse; Vec3 couple; };
 PC_FN RowStart pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lower, Real upper, Mask exists, Real remembered, Sym3 inertia) {
-  precise Real above = angle - lower; precise Real below = upper - angle;
-  Mask at_lower = above < below;
-  precise Real interval = upper - lower;
-  Mask locked = pc_and(exists, interval < PC_REAL(1e-6));
-  Real sign = pc_select(pc_or(at_lower, locked), PC_REAL(1.0), PC_REAL(-1.0));
-  Real slack = pc_select(locked, above, pc_select(at_lower, above, below));
+  NearerLimit limit = pc_nearer_limit(angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
   Vec3 j = pc_scale(axis, sign);
   Real mass = pc_select(exists, pc_inverse_or_zero(pc_dot(j, pc_sym_mul(inertia, j))), PC_REAL(0.0));
   precise Real signed_impulse = remembered * sign * PC_INFO(impulse_ratio);

@@ -3,14 +3,13 @@
 // impulse scale 0.
 #include "body_state.inl"
 #include "joint_rows.inl"
+#include "angle_rows.inl"
 
 // New accumulated impulse of one angle row with relative velocity u of its slack.
 PC_FN Real pc_limit_row(PC_IO Real u, Real slack, Real mass, Real locked, Real impulse) {
   Mask holds = locked > PC_REAL(0.5);
   Mask open = pc_and(slack > PC_REAL(0.0), locked < PC_REAL(0.5));
-  precise Real gap_rate = slack * PC_INFO(inverse_h);
-  precise Real soft_rate = slack * PC_INFO(joint_rate);
-  Real bias = pc_select(open, gap_rate, pc_clamp(soft_rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)));
+  Real bias = pc_angle_bias(PC_PASS slack, open);
   Real mass_scale = pc_select(open, PC_REAL(1.0), PC_INFO(joint_mass_scale));
   Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(joint_impulse_scale));
   precise Real next = impulse - mass * mass_scale * (u + bias) - impulse_scale * impulse;

@@ -4,6 +4,7 @@
 #include "body_state.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
+#include "angle_rows.inl"
 #include "tree_sweep.inl"
 
 // Limits keep what they carry; locked rows are corrected like pins.
@@ -11,8 +12,7 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    precise Real soft_rate = PC_LD(tree_rows, n, TREE_SLACK + i) * PC_INFO(joint_rate);
-    Real bias = pc_clamp(soft_rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed));
+    Real bias = pc_soft_bias(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i));
     precise Real rate = (pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + bias) * wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, PC_REAL(0.0)));
   }

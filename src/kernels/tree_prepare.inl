@@ -1,16 +1,14 @@
 // Start of a sub-step's trees: arms, gaps, inertia, angle rows at the present pose.
 #include "joint_angles.inl"
+#include "angle_rows.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
 #include "tree_stiffness.inl"
 
 // One angle row at its nearer limit. It acts from the start where it did in the last sub-step; tree_solve adds others.
 PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angle, Real lower, Real upper, Mask exists, Real remembered) {
-  precise Real above = angle - lower; precise Real below = upper - angle; precise Real interval = upper - lower;
-  Mask at_lower = above < below; Mask locked = pc_and(exists, interval < PC_REAL(1e-6));
+  NearerLimit limit = pc_nearer_limit(angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
   Real one = PC_REAL(1.0); Real zero = PC_REAL(0.0);
-  Real sign = pc_select(pc_or(at_lower, locked), one, PC_REAL(-1.0));
-  Real slack = pc_select(locked, above, pc_select(at_lower, above, below));
   precise Real turned = sign * flip; precise Real pressed = remembered * sign;
   Vec3 j = pc_select3(exists, pc_scale(axis, turned), pc_zero3());
   pc_st3_tree(PC_PASS n, TREE_AXIS + row * 3u, j);
@@ -55,7 +53,7 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
   Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));
 
-  precise Vec3 f = pin.v * flip * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)); pc_st3_tree(PC_PASS n, TREE_PIN, f);
+  precise Vec3 f = pin.v * flip * PC_INFO(impulse_ratio) * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)); pc_st3_tree(PC_PASS n, TREE_PIN, f);
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {

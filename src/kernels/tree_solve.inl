@@ -4,6 +4,7 @@
 #include "body_state.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
+#include "angle_rows.inl"
 #include "tree_factor.inl"
 #include "tree_sweep.inl"
 
@@ -14,8 +15,7 @@ PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   for (uint i = 0u; i < 3u; i++) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
-    precise Real gap_rate = slack * PC_INFO(inverse_h); precise Real soft_rate = slack * PC_INFO(joint_rate);
-    Real wanted = pc_select(open, gap_rate, pc_clamp(soft_rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)));
+    Real wanted = pc_angle_bias(PC_PASS slack, open);
     precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     Real on = PC_LD(tree_rows, n, TREE_ON + i);

@@ -87,7 +87,7 @@ StepPlan make_plan(const PlanSignature& s) {
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);
     b.kernel(s.drag ? Kernel::integrate_drag : Kernel::integrate, Phase::biased, k);
-    if (s.trees) b.kernel(Kernel::tree_prepare, Phase::biased, k);
+    if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);

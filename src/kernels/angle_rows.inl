@@ -1,0 +1,13 @@
+// What the angle rows of single joints and of trees share: the nearer of two limits, and the speed that is asked of a row.
+struct NearerLimit { Real slack; Real sign; Mask locked; };  // sign: +1 at the lower limit, -1 at the upper one
+PC_FN NearerLimit pc_nearer_limit(Real angle, Real lower, Real upper, Mask exists) {
+  precise Real above = angle - lower; precise Real below = upper - angle; precise Real interval = upper - lower;
+  Mask at_lower = above < below;
+  NearerLimit r; r.locked = pc_and(exists, interval < PC_REAL(1e-6));
+  r.sign = pc_select(pc_or(at_lower, r.locked), PC_REAL(1.0), PC_REAL(-1.0));
+  r.slack = pc_select(r.locked, above, pc_select(at_lower, above, below)); return r;
+}
+// An angle beyond its limit is undone as a soft constraint; an open row stops what would close its slack within the
+// sub-step.
+PC_FN Real pc_soft_bias(PC_IO Real slack) { precise Real rate = slack * PC_INFO(joint_rate); return pc_clamp(rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)); }
+PC_FN Real pc_angle_bias(PC_IO Real slack, Mask open) { precise Real gap_rate = slack * PC_INFO(inverse_h); return pc_select(open, gap_rate, pc_soft_bias(PC_PASS slack)); }
