@@ -164,7 +164,7 @@ TEST_CASE("two trees that meet, and two links of one tree that meet") {
     }
 }
 
-TEST_CASE("contacts of a tree with more than 64 bodies are rows") {
+TEST_CASE("contacts of a tree with more than 64 bodies are rows, and the report counts them") {
   for (const int count : {40, 80}) {
     Run run(precisions().front());
     add_chain(run, count, false);
@@ -177,5 +177,6 @@ TEST_CASE("contacts of a tree with more than 64 bodies are rows") {
     for (const PlanEntry& entry : run.stepper.plan().entries)
       in_tree |= entry.kind == PlanEntry::Kind::kernel && std::string(kernel_name(entry)) == "tree_contact_solve";
     CHECK(in_tree == (count == 40));
+    CHECK((run.stepper.step(run.world, frame).tree_contacts_as_rows > 0) == (count == 80));
   }
 }

@@ -9,6 +9,7 @@ namespace pcphys {
 
 void TreeNodes::build(const Forest& forest, std::span<const double> masses) {
   node_.assign(masses.size(), 0);
+  large_.assign(masses.size(), false);
   unit_.resize(masses.size());
   std::iota(unit_.begin(), unit_.end(), 0u);
   parent_.assign(1, 0);
@@ -20,7 +21,9 @@ void TreeNodes::build(const Forest& forest, std::span<const double> masses) {
     for (std::uint32_t k = 0; k < tree.size(); k++) {
       parent_.push_back(k == 0 ? 0 : root + tree[k].parent);
       level_.push_back(k == 0 ? 0 : level_[root + tree[k].parent] + 1);
-      if (tree.size() > largest_tree || masses[tree[k].body] == 0) continue;
+      if (masses[tree[k].body] == 0) continue;
+      large_[tree[k].body] = tree.size() > largest_tree;
+      if (tree.size() > largest_tree) continue;
       node_[tree[k].body] = root + k;
       unit_[tree[k].body] = unit;
     }

@@ -22,6 +22,7 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
                                 const TreeNodes* trees) {
   trees_ = trees;
   kinds_.clear();
+  beside_trees_ = 0;
   units_.clear();
   priorities_.clear();
   ends_.clear();
@@ -34,7 +35,10 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
       units_.push_back(body.kind == BodyKind::dynamic ? unit : Colouring::fixed_unit);
       ends_.push_back(ends[row][side]);
     }
-    if (trees) kinds_.push_back(path_kind(*trees, ends[row][0], ends[row][1]));
+    if (trees) {
+      kinds_.push_back(path_kind(*trees, ends[row][0], ends[row][1]));
+      beside_trees_ += trees->is_large(ends[row][0]) || trees->is_large(ends[row][1]);
+    }
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
   }
   colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);
