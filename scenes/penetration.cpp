@@ -47,7 +47,7 @@ double distance(const Segment& a, const Segment& b) {
   return length((a.start + s * u) - (b.start + t * v));
 }
 
-/// How far a shape reaches above and below its centre.
+/// How far a shape reaches below its centre, and above but for hulls.
 double half_height(const ShapeDef& shape, Quat q) {
   const double ax = std::fabs(rotate(q, {1, 0, 0}).y), ay = std::fabs(rotate(q, {0, 1, 0}).y),
                az = std::fabs(rotate(q, {0, 0, 1}).y);
@@ -56,6 +56,11 @@ double half_height(const ShapeDef& shape, Quat q) {
     case ShapeKind::capsule: return shape.size.x + shape.size.y * ay;
     case ShapeKind::cylinder: return shape.size.x * std::sqrt(std::max(0.0, 1 - ay * ay)) + shape.size.y * ay;
     case ShapeKind::box: return shape.size.x * ax + shape.size.y * ay + shape.size.z * az;
+    case ShapeKind::hull: {
+      double low = 0;
+      for (const Vec3& v : shape.convex.vertices()) low = std::min(low, rotate(q, v).y);
+      return -low;
+    }
     case ShapeKind::plane: break;
   }
   return 0;

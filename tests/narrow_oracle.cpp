@@ -51,8 +51,8 @@ template <class M> void judge(const Shape& a, const Shape& b, const Bounds& know
 TEST_CASE("narrow: no normal separates more, and the deepest point is that deep") {
   const double margin = 0.1;
   const int count = pairs_wanted(700) / int(strata.size());
-  for (int ka = 0; ka < 4; ka++)
-    for (int kb = ka; kb < 4; kb++)
+  for (int ka = 0; ka < 5; ka++)
+    for (int kb = ka; kb < 5; kb++)
       for (const Stratum stratum : strata) {
         Pairs pairs(unsigned(1 + ka * 100 + kb * 10 + int(stratum)));
         Worst single, twofold;
@@ -90,8 +90,8 @@ TEST_CASE("narrow: never shallower than FCL, and as far apart") {
     return;
   }
   const int count = pairs_wanted(5000);
-  for (int ka = 0; ka < 4; ka++)
-    for (int kb = ka; kb < 4; kb++) {
+  for (int ka = 0; ka < 5; ka++)
+    for (int kb = ka; kb < 5; kb++) {
       Pairs pairs(unsigned(ka * 4 + kb));
       int apart = 0, overlapping = 0, equal = 0, far_off = 0, shallower = 0, gave_up = 0, deeper = 0;
       for (int i = 0; i < count; i++) {
