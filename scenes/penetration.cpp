@@ -5,12 +5,13 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "hull_overlap.h"
 #include "metrics.h"
 
 namespace pcphys::scenes {
 namespace {
 
-constexpr double cell_size = 1.05;  // no round body of the scenes is longer [m]
+constexpr double cell_size = 1.05;  // no body of those scenes is longer [m]
 constexpr double far_away = 1e5;    // a body beyond is lost and has no cell [m]
 
 /// The core of a round body: a capsule's segment, a sphere's centre twice.
@@ -93,7 +94,7 @@ Penetration of_floor(const Scene& scene, std::span<const Pose> poses) {
   return result;
 }
 
-/// Round bodies in the open-lidded box, found through a grid.
+/// Round bodies, or hulls, in the open-lidded box, found through a grid.
 class Container {
  public:
   Container(const Scene& scene, const World& world, std::span<const Pose> poses) : scene_(scene), poses_(poses) {
@@ -142,6 +143,7 @@ class Container {
     const Vec3 p = poses_[i].position;
     const double half = 0.5 * scene_.inner_width, reach = half + 0.5;  // within the walls' thickness
     if (!(p.y > -0.5 && std::fabs(p.x) < reach && std::fabs(p.z) < reach && p.y < scene_.wall_height)) return;
+    if (scene_.bodies[i].shape.kind == ShapeKind::hull) return hull_against_walls(i, half);
     const Segment s = core(scene_.bodies[i].shape, poses_[i]);
     const double radius = scene_.bodies[i].shape.size.x;
     result_.add(radius - std::min(s.start.y, s.end.y));
@@ -151,8 +153,23 @@ class Container {
     result_.add(radius - (std::min(s.start.z, s.end.z) + half));
   }
 
+  void hull_against_walls(std::size_t i, double half) {
+    Vec3 low{1e300, 1e300, 1e300}, high = -low;
+    for (const Vec3& v : scene_.bodies[i].shape.convex.vertices()) {
+      const Vec3 p = transform(poses_[i], v);
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    for (double depth : {-low.y, high.x - half, -low.x - half, high.z - half, -low.z - half}) result_.add(depth);
+  }
+
+  double overlap_of(std::size_t i, std::size_t k) const {
+    const ShapeDef &a = scene_.bodies[i].shape, &b = scene_.bodies[k].shape;
+    if (a.kind == ShapeKind::hull && b.kind == ShapeKind::hull) return overlap(a.convex, poses_[i], b.convex, poses_[k]);
+    return a.size.x + b.size.x - distance(core(a, poses_[i]), core(b, poses_[k]));
+  }
+
   void against_neighbours(std::size_t i) {
-    const Segment mine = core(scene_.bodies[i].shape, poses_[i]);
     const Cell centre = cell(i);
     for (long x = -1; x <= 1; ++x)
       for (long y = -1; y <= 1; ++y)
@@ -160,9 +177,7 @@ class Container {
           const auto found = grid_.find(cell_key({centre.x + x, centre.y + y, centre.z + z}));
           if (found == grid_.end()) continue;
           for (std::size_t k : found->second) {
-            if (adjacent_.contains(pair_key(i, k))) continue;
-            const double reach = scene_.bodies[i].shape.size.x + scene_.bodies[k].shape.size.x;
-            result_.add(reach - distance(mine, core(scene_.bodies[k].shape, poses_[k])));
+            if (!adjacent_.contains(pair_key(i, k))) result_.add(overlap_of(i, k));
           }
         }
   }
