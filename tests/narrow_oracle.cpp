@@ -76,11 +76,14 @@ TEST_CASE("narrow: no normal separates more, and the deepest point is that deep"
         }
         // coincident cylinders are as near to the surface all around: the polytope runs out of vertices
         const double coincident = stratum == Stratum::coincident ? 1e-2 : 0;
+        // four of many corners: another one may be deeper by PC_FLAT_SLOP of the reach; caps are clipped as octagons
+        const auto many = [](int kind) { return ShapeKind(kind) == ShapeKind::cylinder || ShapeKind(kind) == ShapeKind::hull; };
+        const double depth = kb > int(ShapeKind::capsule) && ka > int(ShapeKind::capsule) && (many(ka) || many(kb)) ? 2e-3 : 2e-4;
         CHECK(twofold.normal < 2e-4 + coincident);
-        CHECK(twofold.separation < 2e-4);  // caps are clipped as octagons
+        CHECK(twofold.separation < depth);
         CHECK(twofold.degrees < 2);
         CHECK(single.normal < (uneven ? 5e-3 : 2e-4) + coincident);
-        CHECK(single.separation < (uneven ? 1e-3 : 2e-4));
+        CHECK(single.separation < (uneven ? 1e-3 : 2e-4) + depth);
       }
 }
 

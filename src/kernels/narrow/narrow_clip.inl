@@ -46,17 +46,16 @@ struct Corner { Real x; Real y; };
 PC_FN Corner pc_corner(Real x, Real y) { Corner c; c.x = x; c.y = y; return c; }
 PC_FN Real pc_corner_area(Corner a, Corner b, Corner c) { precise Real r = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); return r; }
 
-// Drops points beyond the margin and keeps four: the deepest, the farthest from it, the one that spans the
+// Drops points beyond the margin and keeps four: the deepest (to `slop`), the farthest from it, the one that spans the
 // largest triangle with them, and the one that adds most on the other side. Gains within noise go to the
 // first in order, so that a flat contact keeps its choice.
-PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real size) {
+PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real slop) {
   uint count = 0u;
   for (uint i = 0u; i < polygon.count; i++) {
     if (polygon.s[i] <= margin) { pc_keep(polygon, count, i); count = count + 1u; }
   }
   polygon.count = count;
   if (count <= 4u) return;
-  precise Real slop = size * PC_DEEPER_SLOP;
   uint a = 0u;
   for (uint i = 1u; i < count; i++) { precise Real s = polygon.s[i] + slop; if (s < polygon.s[a]) a = i; }
   Corner at_a = pc_corner(polygon.x[a], polygon.y[a]);

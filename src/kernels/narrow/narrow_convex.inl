@@ -169,7 +169,8 @@ PC_FN_LARGE void pc_face_over_face(Face reference, Face f, Over o, Pads pads, Re
   precise Real g0 = pc_dot(c, o.fn) * o.slant; precise Real g1 = pc_dot(f.e1, o.fn) * o.slant; precise Real g2 = pc_dot(f.e2, o.fn) * o.slant;
   for (uint i = 0u; i < polygon.count; i++) { precise Real s = g0 + g1 * polygon.x[i] + g2 * polygon.y[i]; polygon.s[i] = s; }
   precise Real farthest = margin + pads.reference + pads.incident;
-  pc_reduce(polygon, farthest, pc_min(f.h1, f.h2));
+  precise Real rocking = pc_min(f.h1, f.h2) * PC_FLAT_SLOP;
+  pc_reduce(polygon, farthest, rocking);
   for (uint i = 0u; i < polygon.count; i++) {
     Vec3 x = pc_combine(f.e1, polygon.x[i], f.e2, polygon.y[i], f.c, PC_REAL(1.0)); uint corner = polygon.id[i];
     pc_push_over(m, x, o, polygon.s[i], pads, margin, tag + ((corners & 15u) << 12u) + corner);
@@ -245,7 +246,8 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
   if (use_a) closest = pc_madd(pc_core_support(b, pc_negate(k.n)), k.n, -k.gap);
   else if (use_b) closest = pc_core_support(a, k.n);
   precise Real separation = k.gap - a.radius - b.radius;
-  precise Real deepest = separation + pc_min(a.reach, b.reach) * PC_HELD_SLOP;
+  Real held_slop = m.count == 4u && separation < PC_REAL(0.0) ? PC_FLAT_SLOP : PC_HELD_SLOP;
+  precise Real deepest = separation + pc_min(a.reach, b.reach) * held_slop;
   bool held = false; uint shallowest = 0u;
   for (uint i = 0u; i < m.count; i++) {
     held = held || m.points[i].separation <= deepest;

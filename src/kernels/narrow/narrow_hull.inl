@@ -66,8 +66,8 @@ PC_FN_LARGE void pc_hull_plane(NarrowShape a, NarrowShape b, Real margin, PC_INO
   precise Real s0 = height + pc_dot(l, c); Real s1 = pc_dot(l, e1); Real s2 = pc_dot(l, e2);
   NarrowPolygon polygon; pc_hull_polygon(h, f, polygon);
   for (uint i = 0u; i < polygon.count; i++) { precise Real s = s0 + s1 * polygon.x[i] + s2 * polygon.y[i]; polygon.s[i] = s; polygon.id[i] = i; }
-  pc_reduce(polygon, margin, half_size);
-  precise Real deepest = least + a.size.x * PC_HELD_SLOP;
+  precise Real rocking = half_size * PC_FLAT_SLOP; Real held_slop = least < PC_REAL(0.0) ? rocking : PC_REAL(0.0); precise Real deepest = least + a.size.x * PC_HELD_SLOP + held_slop;
+  pc_reduce(polygon, margin, rocking);
   bool held = false; uint shallowest = 0u;
   for (uint i = 0u; i < polygon.count; i++) {
     held = held || polygon.s[i] <= deepest;
