@@ -10,7 +10,7 @@ namespace {
 constexpr int forms = 16;
 constexpr double spacing = 1.05;  // more than the largest diameter [m]
 
-/// Up to 32 points on an ellipsoid with half axes of 0.2 to 0.4 m; every fourth form is a block with six faces.
+/// Up to 32 points in and on an ellipsoid with half axes of 0.2 to 0.4 m; every fourth form is a block with six faces.
 std::vector<Vec3> points(Random& random, int form) {
   const double x = random.between(0.2, 0.4), y = random.between(0.2, 0.4), z = random.between(0.2, 0.4);
   std::vector<Vec3> result;
@@ -25,7 +25,10 @@ std::vector<Vec3> points(Random& random, int form) {
   while (int(result.size()) < count) {
     const double a = random.between(-1, 1), b = random.between(-1, 1), c = random.between(-1, 1);
     const double l = std::sqrt(a * a + b * b + c * c);
-    if (l > 0.1 && l < 1) result.push_back({x * a / l, y * b / l, z * c / l});
+    if (!(l > 0.1 && l < 1)) continue;
+    const Vec3 point{x * a / l, y * b / l, z * c / l};
+    result.push_back(point);
+    result.push_back(-random.between(0.6, 1) * point);  // about its middle: slivers would be light under heavy ones
   }
   return result;
 }
