@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "narrow_support.h"
+#include "scenes/hull_overlap.h"
 #include "scenes/metrics.h"
 #include "support_world.h"
 
@@ -102,6 +103,43 @@ TEST_CASE("hull: the manifolds of a box's corners are the box's") {
   CHECK(differ == 0);
 }
 
+TEST_CASE("hull: as deep as the axis of least overlap, of all faces and pairs of edges") {
+  const Hull box = must(make_hull(box_corners({0.5, 0.5, 0.5})));
+  CHECK(scenes::overlap(box, {}, box, {{0.9, 0.2, 0}, {}}) == doctest::Approx(0.1));
+  CHECK(scenes::overlap(box, {}, box, {{0.9, 1.2, 0}, {}}) == 0);
+  narrow_test::Pairs random(21);
+  double worst = 0, worst_float = 0;
+  int overlapping = 0;
+  for (int i = 0; i < 600; i++) {
+    Hull hulls[2];
+    Shape shapes[2];
+    for (int k = 0; k < 2; k++) {
+      do {
+        const auto made = make_hull(random.points());
+        if (made) hulls[k] = *made;
+      } while (!hulls[k] || hulls[k].inner_radius() < 0.02);
+      shapes[k] = narrow_test::shape(ShapeKind::hull, {hulls[k].radius(), hulls[k].inner_radius(), 0}, {}, random.rotation());
+      shapes[k].hull = hulls[k].data();
+    }
+    const Vec3 d = random.direction();
+    narrow_test::place(shapes[1],
+                       random.between(0, 1) * (narrow_test::reach(shapes[0], d) + narrow_test::reach(shapes[1], -d)) * d);
+    const double depth = scenes::overlap(hulls[0], {{}, narrow_test::turn(shapes[0])}, hulls[1],
+                                         {narrow_test::centre(shapes[1]), narrow_test::turn(shapes[1])});
+    if (!(depth > 1e-3)) continue;
+    overlapping++;
+    const double size = narrow_test::scale(shapes[0], shapes[1]);
+    const auto m = narrow_test::find(shapes[0], shapes[1], 0.02);
+    const auto f = narrow_test::find(narrow_test::to_float(shapes[0]), narrow_test::to_float(shapes[1]), 0.02f);
+    worst = std::max(worst, std::fabs(narrow_test::deepest(m) + depth) / size);
+    worst_float = std::max(worst_float, std::fabs(narrow_test::deepest(f) + depth) / size);
+  }
+  MESSAGE(overlapping, " overlapping pairs, depth off by at most ", worst, " of the size, in float ", worst_float);
+  CHECK(overlapping > 300);
+  CHECK(worst < 2e-3);  // PC_FLAT_SLOP
+  CHECK(worst_float < 2e-3);
+}
+
 TEST_CASE("hull: the features of four corners on a floor stay") {
   narrow_test::Pairs random(12);
   for (const auto& points : {box_corners({0.5, 0.5, 0.5}), prism(3), prism(12), prism(30)}) {
@@ -179,6 +217,32 @@ TEST_CASE("hull: stacks of ten stay where they are, of many corners too") {
     CHECK(rest.down < 0.02);
     CHECK(rest.speed < 2e-3);
   }
+}
+
+TEST_CASE("hull: parts of a compound touch where they stand") {
+  World world;
+  add(world, ShapeDef::plane(), {}, BodyKind::fixed);
+  BodyDef table;  // a top and two feet, of hulls that were given where they are
+  for (const auto& [size, at] :
+       {std::pair<Vec3, Vec3>{{1, 0.1, 0.5}, {0, 0.9, 0}}, {{0.1, 0.4, 0.5}, {-0.8, 0.4, 0}}, {{0.1, 0.4, 0.5}, {0.8, 0.4, 0}}}) {
+    std::vector<Vec3> points = box_corners(size);
+    for (Vec3& p : points) p = p + at;
+    table.shapes.push_back(ShapeDef::hull(must(make_hull(points))));
+    table.shapes.back().local = table.shapes.back().convex.frame();
+  }
+  table.pose.position = {0, 0.05, 0};
+  must(make_compound(table));
+  const BodyId id = must(world.create_body(table));
+  const BodyId load = add(world, ShapeDef::sphere(0.2), {0.3, 1.5, 0});
+  Stepper stepper;
+  run(world, stepper, 300);
+  CHECK(length(must(world.velocity(id))) < 1e-3);
+  CHECK(std::fabs(must(world.pose(load)).position.y - 1.2) < 2e-3);
+  const Pose pose = must(world.pose(id));
+  double lowest = 1e9;
+  for (const ShapeDef& shape : must(world.shapes(id)))
+    for (const Vec3& v : shape.convex.vertices()) lowest = std::min(lowest, transform(pose, transform(shape.local, v)).y);
+  CHECK(std::fabs(lowest) < 2e-3);
 }
 
 TEST_CASE("hull: a pile comes to rest, nothing escapes, run to run the same") {

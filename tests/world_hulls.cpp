@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "collision/view.h"
 #include "narrow_support.h"
 #include "support_world.h"
 
@@ -218,7 +219,6 @@ TEST_CASE("hull: given points stand where they were given, through make_compound
 
 TEST_CASE("hull: shared by bodies and worlds, freed with the last of them, no part of snapshots") {
   Hull hull = of(box_corners({0.5, 0.5, 0.5}));
-  std::weak_ptr<const int> nothing;
   World world, other({Precision::f64});
   BodyDef def;
   def.shapes = {ShapeDef::hull(hull)};
@@ -238,4 +238,29 @@ TEST_CASE("hull: shared by bodies and worlds, freed with the last of them, no pa
   (void)must(world.create_body(def));
   (void)must(world.create_body(def));
   CHECK_FALSE(world.restore(snapshot));  // other generations
+}
+
+TEST_CASE("hull: the broad phase's box holds every vertex and is tight") {
+  narrow_test::Pairs random(8);
+  for (int i = 0; i < 200; i++) {
+    const narrow_test::Shape view = random.random_hull();
+    const Vec3 centre = random.ball(100);
+    const float more = 0.01f;
+    for (const Aabb& box : {box_of(view, centre, more), box_of(narrow_test::to_float(view), centre, more)}) {
+      double low[3] = {1e30, 1e30, 1e30}, high[3] = {-1e30, -1e30, -1e30};
+      for (const Vec3& v : view.hull->vertices) {
+        const Vec3 p = centre + rotate(narrow_test::turn(view), v);
+        const double at[3] = {p.x, p.y, p.z};
+        for (int k = 0; k < 3; k++) {
+          low[k] = std::min(low[k], at[k] - double(more));
+          high[k] = std::max(high[k], at[k] + double(more));
+        }
+      }
+      for (int k = 0; k < 3; k++) {
+        CHECK(double(box.min[k]) <= low[k]);
+        CHECK(double(box.max[k]) >= high[k]);
+        CHECK(high[k] - low[k] > double(box.max[k] - box.min[k]) - 1e-4);
+      }
+    }
+  }
 }
