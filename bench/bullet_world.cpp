@@ -27,6 +27,12 @@ std::unique_ptr<btCollisionShape> make_shape(const ShapeDef& shape) {
     case ShapeKind::capsule: return std::make_unique<btCapsuleShape>(btScalar(shape.size.x), btScalar(2 * shape.size.y));
     case ShapeKind::cylinder: return std::make_unique<btCylinderShape>(to_bullet(Vec3{shape.size.x, shape.size.y, shape.size.x}));
     case ShapeKind::box: return std::make_unique<btBoxShape>(to_bullet(shape.size));
+    case ShapeKind::hull: {
+      auto hull = std::make_unique<btConvexHullShape>();
+      for (const Vec3& v : shape.convex.vertices()) hull->addPoint(to_bullet(v), false);
+      hull->recalcLocalAabb();
+      return hull;
+    }
     case ShapeKind::plane: break;
   }
   return std::make_unique<btStaticPlaneShape>(btVector3(0, 1, 0), btScalar(0));

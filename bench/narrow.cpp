@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <map>
 #include <random>
 #include <vector>
 
@@ -11,13 +12,33 @@
 namespace {
 using namespace pcphys;
 
+const Hull& hull_of(int vertices) {
+  static std::map<int, Hull> hulls;
+  Hull& hull = hulls[vertices];
+  if (hull) return hull;
+  std::vector<Vec3> points;
+  for (int i = 0; i < vertices; i++) {
+    const double y = 1 - 2 * (i + 0.5) / vertices, r = std::sqrt(1 - y * y), t = 2.39996322972865332 * i;
+    points.push_back(vertices == 8 ? Vec3{i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5}
+                                   : Vec3{0.5 * r * std::cos(t), 0.5 * y, 0.5 * r * std::sin(t)});
+  }
+  return hull = *make_hull(points);
+}
+
 template <class S> struct Pair {
   ShapeView<S> a, b;
   std::uint32_t hint = 0;
 };
 
+/// A hull's size is its number of vertices: 8 for the corners of a unit box, else a rock of 1 m.
 template <class S> ShapeView<S> shape(ShapeKind kind, double x, double y, double z, Vec3 p, Quat q) {
-  return {kind, {S(x), S(y), S(z)}, {S(p.x), S(p.y), S(p.z)}, {S(q.x), S(q.y), S(q.z), S(q.w)}};
+  ShapeView<S> view{kind, {S(x), S(y), S(z)}, {S(p.x), S(p.y), S(p.z)}, {S(q.x), S(q.y), S(q.z), S(q.w)}};
+  if (kind != ShapeKind::hull) return view;
+  const Hull& hull = hull_of(int(x));
+  view.size[0] = S(hull.radius());
+  view.size[1] = S(hull.inner_radius());
+  view.hull = hull.data();
+  return view;
 }
 
 struct Case {
@@ -56,7 +77,8 @@ template <class S> void run(benchmark::State& state, Case c) {
 }
 
 const Vec3 unit{0.5, 0.5, 0.5};
-const ShapeKind S = ShapeKind::sphere, K = ShapeKind::capsule, B = ShapeKind::box, C = ShapeKind::cylinder, P = ShapeKind::plane;
+const ShapeKind S = ShapeKind::sphere, K = ShapeKind::capsule, B = ShapeKind::box, C = ShapeKind::cylinder, H = ShapeKind::hull,
+                P = ShapeKind::plane;
 struct Named {
   const char* name;
   Case c;
@@ -83,6 +105,19 @@ const Named cases[] = {
     {"cylinder_box_standing", {C, B, {0.5, 0.5, 0}, unit, {0.1, -1, 0}, 0.5, 0.001}},
     {"cylinder_box_apart", {C, B, {0.5, 0.5, 0}, unit, {0.8, -0.9, 0.7}, 0.5, 0.3}},
     {"cylinder_cylinder", {C, C, {0.5, 0.5, 0}, {0.5, 0.5, 0}, {0.1, -1, 0}, 0.5, 0.001}},
+    {"hull_box_standing", {H, B, {8, 0, 0}, unit, {0.1, -1, 0}, 0.5, 0.001}},
+    {"hull_hull_standing", {H, H, {8, 0, 0}, {8, 0, 0}, {0.1, -1, 0}, 0.5, 0.001}},
+    {"hull_hull_edges", {H, H, {8, 0, 0}, {8, 0, 0}, {0.9, -0.9, 0}, 0.8, 0.8}},
+    {"hull_hull_apart_hinted", {H, H, {8, 0, 0}, {8, 0, 0}, {0.9, -1.1, 0}, 0.8, 0.01}},
+    {"rock_rock_16", {H, H, {16, 0, 0}, {16, 0, 0}, {0.1, -0.84, 0}, 0.5, 0.5}},
+    {"rock_rock_32", {H, H, {32, 0, 0}, {32, 0, 0}, {0.1, -0.93, 0}, 0.5, 0.5}},
+    {"rock_rock_64", {H, H, {64, 0, 0}, {64, 0, 0}, {0.1, -0.95, 0}, 0.5, 0.5}},
+    {"rock_rock_32_apart", {H, H, {32, 0, 0}, {32, 0, 0}, {0.1, -1.005, 0}, 0.5, 0.5}},
+    {"rock_box_32", {B, H, {100, 0.5, 100}, {32, 0, 0}, {0.1, 0.97, 0}, 0.5, 0}},
+    {"rock_plane_32", {H, P, {32, 0, 0}, {}, {0, -0.47, 0}, 0, 0.5}},
+    {"sphere_rock_32", {S, H, {0.5, 0, 0}, {32, 0, 0}, {0.1, -0.95, 0}, 0.5, 0}},
+    {"capsule_rock_32", {K, H, {0.2, 0.5, 0}, {32, 0, 0}, {0.65, 0, 0}, 0.5, 0.1}},
+    {"cylinder_rock_32", {C, H, {0.5, 0.5, 0}, {32, 0, 0}, {0.1, -0.95, 0}, 0.5, 0.001}},
     {"capsule_cylinder", {K, C, {0.2, 0.5, 0}, {0.5, 0.5, 0}, {0.69, 0, 0}, 0.5, 0.5}},
 };
 

@@ -107,7 +107,7 @@ void compare(benchmark::State& state, Case scene_case, Variant variant) {
 
 const bool registered = [] {
   constexpr Case cases[] = {{"balls", 60},      {"balls", 1000}, {"balls", 10000}, {"ragdolls", 8}, {"ragdolls", 100},
-                            {"ragdolls", 1000}, {"pyramid", 20}, {"pyramid", 60},  {"stack", 30}};
+                            {"ragdolls", 1000}, {"pyramid", 20}, {"pyramid", 60},  {"stack", 30},   {"hulls", 100}};
   constexpr Variant variants[] = {{"cpu", Place::cpu, 0, Precision::f32},
                                   {"cpu_1_lane", Place::cpu, 1, Precision::f32},
                                   {"cpu_4_lanes", Place::cpu, 4, Precision::f32},

@@ -67,7 +67,11 @@ struct Look {
     const auto key = [](const Look& l) {
       return std::tuple(l.shape.kind, l.shape.size.x, l.shape.size.y, l.shape.size.z, l.material);
     };
-    return key(a) < key(b);
+    if (key(a) != key(b)) return key(a) < key(b);
+    const auto u = a.shape.convex.vertices(), v = b.shape.convex.vertices();
+    return std::lexicographical_compare(u.begin(), u.end(), v.begin(), v.end(), [](const Vec3& p, const Vec3& q) {
+      return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+    });
   }
 };
 

@@ -90,6 +90,24 @@ Mesh cylinder(double radius, double half_height) {
                 {0, -half_height, 0, -1}});
 }
 
+Mesh hull(const Hull& hull) {
+  Mesh mesh;
+  const auto vertices = hull.vertices();
+  for (std::size_t f = 0; f < hull.face_count(); ++f) {
+    const auto face = hull.face(f);
+    const Vec3 out = cross(vertices[face[1]] - vertices[face[0]], vertices[face[2]] - vertices[face[0]]);
+    const Vec3 n = (1 / length(out)) * out;
+    std::uint16_t first = 0, previous = 0;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const std::uint16_t corner = add_vertex(mesh, vertices[face[k]], n);
+      if (k == 0) first = corner;
+      if (k > 1) add_triangle(mesh, first, previous, corner);
+      previous = corner;
+    }
+  }
+  return mesh;
+}
+
 Mesh plane() {
   Mesh mesh;
   add_face(mesh, {}, {0, 0, plane_half}, {plane_half, 0, 0});
@@ -104,6 +122,7 @@ Mesh make_mesh(const ShapeDef& shape) {
     case ShapeKind::capsule: return capsule(shape.size.x, shape.size.y);
     case ShapeKind::box: return box(shape.size);
     case ShapeKind::cylinder: return cylinder(shape.size.x, shape.size.y);
+    case ShapeKind::hull: return hull(shape.convex);
     case ShapeKind::plane: break;
   }
   return plane();

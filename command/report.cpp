@@ -34,6 +34,7 @@ const char* shape_name(ShapeKind kind) {
     case ShapeKind::capsule: return "capsule";
     case ShapeKind::box: return "box";
     case ShapeKind::cylinder: return "cylinder";
+    case ShapeKind::hull: return "hull";
     case ShapeKind::plane: break;
   }
   return "plane";

@@ -29,6 +29,8 @@ class Builder {
   /// The open-lidded box: floor at y = 0 and four walls, 1 m thick.
   void add_open_box(double inner_width, double wall_height);
 
+  /// Ends the scene with an error, unless there is one already.
+  void fail(const Error& error) { (void)failed(error); }
   BodyId id(int body) const { return body < 0 ? BodyId{} : scene_.bodies[std::size_t(body)].id; }
   /// The first error; code none when all went well.
   const Error& error() const { return error_; }
@@ -53,5 +55,6 @@ void build_chain(Builder& builder);
 void build_chainswing(Builder& builder);
 void build_door(Builder& builder);
 void build_dominoes(Builder& builder);
+void build_hulls(Builder& builder);
 
 }  // namespace pcphys::scenes

@@ -31,7 +31,7 @@ struct Drift {
 std::vector<Pose> poses(const Scene& scene, const World& world);
 
 /// Scenes with supports: vertical overlap of a box with what it was built on. Scenes in the open-lidded box:
-/// overlap of every pair of round bodies that no joint connects, and of each with floor and walls. Others: floor.
+/// overlap of every pair of round bodies, or of hulls, that no joint connects, and of each with floor and walls. Others: floor.
 Penetration penetration(const Scene& scene, const World& world, std::span<const Pose> poses);
 Separation joint_separation(const Scene& scene, const World& world);
 /// How far the worst joint is beyond its cone, twist, pitch, yaw or roll limit; 0 within all limits [rad].

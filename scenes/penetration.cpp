@@ -5,12 +5,13 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "hull_overlap.h"
 #include "metrics.h"
 
 namespace pcphys::scenes {
 namespace {
 
-constexpr double cell_size = 1.05;  // no round body of the scenes is longer [m]
+constexpr double cell_size = 1.05;  // no body of those scenes is longer [m]
 constexpr double far_away = 1e5;    // a body beyond is lost and has no cell [m]
 
 /// The core of a round body: a capsule's segment, a sphere's centre twice.
@@ -47,7 +48,7 @@ double distance(const Segment& a, const Segment& b) {
   return length((a.start + s * u) - (b.start + t * v));
 }
 
-/// How far a shape reaches above and below its centre.
+/// How far a shape reaches below its centre, and above but for hulls.
 double half_height(const ShapeDef& shape, Quat q) {
   const double ax = std::fabs(rotate(q, {1, 0, 0}).y), ay = std::fabs(rotate(q, {0, 1, 0}).y),
                az = std::fabs(rotate(q, {0, 0, 1}).y);
@@ -56,6 +57,11 @@ double half_height(const ShapeDef& shape, Quat q) {
     case ShapeKind::capsule: return shape.size.x + shape.size.y * ay;
     case ShapeKind::cylinder: return shape.size.x * std::sqrt(std::max(0.0, 1 - ay * ay)) + shape.size.y * ay;
     case ShapeKind::box: return shape.size.x * ax + shape.size.y * ay + shape.size.z * az;
+    case ShapeKind::hull: {
+      double low = 0;
+      for (const Vec3& v : shape.convex.vertices()) low = std::min(low, rotate(q, v).y);
+      return -low;
+    }
     case ShapeKind::plane: break;
   }
   return 0;
@@ -88,7 +94,7 @@ Penetration of_floor(const Scene& scene, std::span<const Pose> poses) {
   return result;
 }
 
-/// Round bodies in the open-lidded box, found through a grid.
+/// Round bodies, or hulls, in the open-lidded box, found through a grid.
 class Container {
  public:
   Container(const Scene& scene, const World& world, std::span<const Pose> poses) : scene_(scene), poses_(poses) {
@@ -137,6 +143,7 @@ class Container {
     const Vec3 p = poses_[i].position;
     const double half = 0.5 * scene_.inner_width, reach = half + 0.5;  // within the walls' thickness
     if (!(p.y > -0.5 && std::fabs(p.x) < reach && std::fabs(p.z) < reach && p.y < scene_.wall_height)) return;
+    if (scene_.bodies[i].shape.kind == ShapeKind::hull) return hull_against_walls(i, half);
     const Segment s = core(scene_.bodies[i].shape, poses_[i]);
     const double radius = scene_.bodies[i].shape.size.x;
     result_.add(radius - std::min(s.start.y, s.end.y));
@@ -146,8 +153,23 @@ class Container {
     result_.add(radius - (std::min(s.start.z, s.end.z) + half));
   }
 
+  void hull_against_walls(std::size_t i, double half) {
+    Vec3 low{1e300, 1e300, 1e300}, high = -low;
+    for (const Vec3& v : scene_.bodies[i].shape.convex.vertices()) {
+      const Vec3 p = transform(poses_[i], v);
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    for (double depth : {-low.y, high.x - half, -low.x - half, high.z - half, -low.z - half}) result_.add(depth);
+  }
+
+  double overlap_of(std::size_t i, std::size_t k) const {
+    const ShapeDef &a = scene_.bodies[i].shape, &b = scene_.bodies[k].shape;
+    if (a.kind == ShapeKind::hull && b.kind == ShapeKind::hull) return overlap(a.convex, poses_[i], b.convex, poses_[k]);
+    return a.size.x + b.size.x - distance(core(a, poses_[i]), core(b, poses_[k]));
+  }
+
   void against_neighbours(std::size_t i) {
-    const Segment mine = core(scene_.bodies[i].shape, poses_[i]);
     const Cell centre = cell(i);
     for (long x = -1; x <= 1; ++x)
       for (long y = -1; y <= 1; ++y)
@@ -155,9 +177,7 @@ class Container {
           const auto found = grid_.find(cell_key({centre.x + x, centre.y + y, centre.z + z}));
           if (found == grid_.end()) continue;
           for (std::size_t k : found->second) {
-            if (adjacent_.contains(pair_key(i, k))) continue;
-            const double reach = scene_.bodies[i].shape.size.x + scene_.bodies[k].shape.size.x;
-            result_.add(reach - distance(mine, core(scene_.bodies[k].shape, poses_[k])));
+            if (!adjacent_.contains(pair_key(i, k))) result_.add(overlap_of(i, k));
           }
         }
   }

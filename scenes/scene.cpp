@@ -26,6 +26,7 @@ constexpr Entry entries[] = {
     {{"heavy", "a box RATIO times as heavy on a light one (always two boxes)", 2, 2}, build_heavy},
     {{"door", "COUNT free-swinging doors, each hit by a ball", 1, 100'000}, build_door},
     {{"dominoes", "COUNT dominoes along a spiral; a ball knocks over the first", 50, 1'000'000}, build_dominoes},
+    {{"hulls", "COUNT random convex hulls of 8 to 32 vertices fall into an open-lidded box", 40, 1'000'000}, build_hulls},
 };
 
 constexpr auto infos = [] {

@@ -21,8 +21,8 @@ struct Case {
   const char* scene;
   int count;
 };
-constexpr Case cases[] = {{"balls", 60},      {"ragdolls", 8}, {"pyramid", 10}, {"stack", 10},   {"chain", 20},
-                          {"chainswing", 20}, {"heavy", 2},    {"door", 1},     {"dominoes", 20}};
+constexpr Case cases[] = {{"balls", 60},      {"ragdolls", 8}, {"pyramid", 10}, {"stack", 10},    {"chain", 20},
+                          {"chainswing", 20}, {"heavy", 2},    {"door", 1},     {"dominoes", 20}, {"hulls", 40}};
 
 constexpr const char* header =
     "# Hashes of scenes on the CPU: scene,count,precision,steps,hash (steps of 1/60 s, 4 sub-steps).\n"

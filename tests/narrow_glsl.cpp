@@ -45,10 +45,17 @@ Real pc_abs(Real a) { return abs(a); }
 Real pc_div(Real a, Real b) { precise Real q = a / b; return q; }
 Real pc_sqrt(Real a) { precise Real r = sqrt(a); return r; }
 )";
+  text += R"(
+struct HullRef { uint reals; uint indices; };
+layout(std430, binding = 3) readonly buffer HullReals { Real hull_reals[]; };
+layout(std430, binding = 4) readonly buffer HullIndices { uint hull_indices[]; };
+Real pc_hull_real(HullRef h, uint i) { return hull_reals[h.reals + i]; }
+uint pc_hull_index(HullRef h, uint i) { return hull_indices[h.indices + i]; }
+)";
   text += with_includes(kernels / "math.inl") + with_includes(kernels / "narrow/narrow.inl");
   text += R"(
 layout(local_size_x = 64) in;
-struct Row { Real v[12]; };
+struct Row { Real v[14]; };
 layout(std430, binding = 0) readonly buffer Shapes { Row shapes[]; };
 layout(std430, binding = 1) buffer Manifolds { Real manifolds[]; };
 layout(std430, binding = 2) buffer Hints { uint hints[]; };
@@ -56,11 +63,12 @@ NarrowShape shape(uint i) {
   NarrowShape s; s.kind = uint(shapes[i].v[0]); s.size = Vec3(shapes[i].v[1], shapes[i].v[2], shapes[i].v[3]);
   s.p = Vec3(shapes[i].v[4], shapes[i].v[5], shapes[i].v[6]);
   s.q = pc_quaternion(Vec3(shapes[i].v[7], shapes[i].v[8], shapes[i].v[9]), shapes[i].v[10]);
+  s.hull.reals = uint(shapes[i].v[11]); s.hull.indices = uint(shapes[i].v[12]);
   return s;
 }
 void main() {
   uint i = gl_GlobalInvocationID.x; uint hint = hints[i]; NarrowManifold m;
-  pc_narrow(shape(2u * i), shape(2u * i + 1u), shapes[2u * i].v[11], hint, m);
+  pc_narrow(shape(2u * i), shape(2u * i + 1u), shapes[2u * i].v[13], hint, m);
   hints[i] = hint; manifolds[i * 20u] = m.normal.x; manifolds[i * 20u + 1u] = Real(m.count);
   for (uint k = 0u; k < m.count; k++) manifolds[i * 20u + 2u + k] = m.points[k].separation;
 }

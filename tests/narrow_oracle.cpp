@@ -51,8 +51,8 @@ template <class M> void judge(const Shape& a, const Shape& b, const Bounds& know
 TEST_CASE("narrow: no normal separates more, and the deepest point is that deep") {
   const double margin = 0.1;
   const int count = pairs_wanted(700) / int(strata.size());
-  for (int ka = 0; ka < 4; ka++)
-    for (int kb = ka; kb < 4; kb++)
+  for (int ka = 0; ka < 5; ka++)
+    for (int kb = ka; kb < 5; kb++)
       for (const Stratum stratum : strata) {
         Pairs pairs(unsigned(1 + ka * 100 + kb * 10 + int(stratum)));
         Worst single, twofold;
@@ -76,11 +76,14 @@ TEST_CASE("narrow: no normal separates more, and the deepest point is that deep"
         }
         // coincident cylinders are as near to the surface all around: the polytope runs out of vertices
         const double coincident = stratum == Stratum::coincident ? 1e-2 : 0;
+        // four of many corners: another one may be deeper by PC_FLAT_SLOP of the reach; caps are clipped as octagons
+        const auto many = [](int kind) { return ShapeKind(kind) == ShapeKind::cylinder || ShapeKind(kind) == ShapeKind::hull; };
+        const double depth = kb > int(ShapeKind::capsule) && ka > int(ShapeKind::capsule) && (many(ka) || many(kb)) ? 2e-3 : 2e-4;
         CHECK(twofold.normal < 2e-4 + coincident);
-        CHECK(twofold.separation < 2e-4);  // caps are clipped as octagons
+        CHECK(twofold.separation < depth);
         CHECK(twofold.degrees < 2);
         CHECK(single.normal < (uneven ? 5e-3 : 2e-4) + coincident);
-        CHECK(single.separation < (uneven ? 1e-3 : 2e-4));
+        CHECK(single.separation < (uneven ? 1e-3 : 2e-4) + depth);
       }
 }
 
@@ -90,8 +93,8 @@ TEST_CASE("narrow: never shallower than FCL, and as far apart") {
     return;
   }
   const int count = pairs_wanted(5000);
-  for (int ka = 0; ka < 4; ka++)
-    for (int kb = ka; kb < 4; kb++) {
+  for (int ka = 0; ka < 5; ka++)
+    for (int kb = ka; kb < 5; kb++) {
       Pairs pairs(unsigned(ka * 4 + kb));
       int apart = 0, overlapping = 0, equal = 0, far_off = 0, shallower = 0, gave_up = 0, deeper = 0;
       for (int i = 0; i < count; i++) {

@@ -33,8 +33,8 @@ double apart(const Manifold<double>& m, const Manifold<double>& o) {
   return worst;
 }
 template <class Body> void for_pairs(std::initializer_list<Stratum> wanted, int count, Body body) {
-  for (int ka = 0; ka < 4; ka++)
-    for (int kb = ka; kb < 4; kb++)
+  for (int ka = 0; ka < 5; ka++)
+    for (int kb = ka; kb < 5; kb++)
       for (const Stratum stratum : wanted) {
         Pairs pairs(unsigned(5000 + ka * 100 + kb * 10 + int(stratum)));
         for (int i = 0; i < count; i++) {
@@ -113,7 +113,7 @@ TEST_CASE("narrow: features stay under tiny motion") {
   int pairs = 0, changed = 0;
   for_pairs({Stratum::anywhere, Stratum::near_touching, Stratum::parallel}, per_stratum,
             [&](const Shape& a, const Shape& b, Pairs& random) {
-              Shape c = shape(b.kind, vec(b.size), centre(b) + random.ball(1e-7), axis_angle(random.direction(), 1e-7) * turn(b));
+              Shape c = posed(b, centre(b) + random.ball(1e-7), axis_angle(random.direction(), 1e-7) * turn(b));
               pairs++;
               changed += features(find(a, b, margin)) != features(find(a, c, margin));
             });
@@ -153,14 +153,23 @@ TEST_CASE("narrow: degenerate input gives finite output") {
                                 {0, 1, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {1e-20, 0, 0, 1}, {1e-7, 0, 0, 1},
                                 {0, 0, 0, 0}};
   const std::vector<Vec3> sizes{{0.5, 0.5, 0.5}, {0.5, 1e-6, 0.5}, {1e-6, 1e-6, 1e-6}, {0.5, 0, 0}, {100, 0.5, 100}, {0, 0, 0}};
+  // a hull is at least as large as make_hull lets it be
+  std::vector<Shape> hulls;
+  for (const Vec3& h : sizes) {
+    const double least = std::max(2e-5, 2e-4 * std::max({h.x, h.y, h.z}));
+    hulls.push_back(hull_shape(box_corners({std::max(h.x, least), std::max(h.y, least), std::max(h.z, least)})));
+  }
+  const auto of = [&](ShapeKind kind, const Vec3& size) {
+    return kind == ShapeKind::hull ? hulls[std::size_t(&size - sizes.data())] : shape(kind, size);
+  };
   int broken = 0, calls = 0;
-  for (int ka = 0; ka < 5; ka++)
-    for (int kb = 0; kb < 5; kb++)
+  for (int ka = 0; ka < 6; ka++)
+    for (int kb = 0; kb < 6; kb++)
       for (const Vec3& sa : sizes)
         for (const Vec3& sb : sizes)
           for (const Vec3& p : places)
             for (const Quat& q : turns) {
-              const Shape a = shape(ShapeKind(ka), sa), b = shape(ShapeKind(kb), sb, p, q);
+              const Shape a = of(ShapeKind(ka), sa), b = posed(of(ShapeKind(kb), sb), p, q);
               const Manifold<double> d = find(a, b, margin);
               const Manifold<float> f = find(to_float(a), to_float(b), float(margin));
               const auto good = [](const auto& m) {

@@ -16,7 +16,7 @@ struct Case {
   int before;  // steps on the CPU until something touches, made before the comparison on GL begins
 };
 constexpr Case cases[] = {{"balls", 60, 70}, {"ragdolls", 8, 60},  {"pyramid", 20, 5}, {"chain", 20, 5},
-                          {"door", 1, 35},   {"dominoes", 20, 40}, {"stack", 10, 5}};
+                          {"door", 1, 35},   {"dominoes", 20, 40}, {"stack", 10, 5},   {"hulls", 20, 50}};
 constexpr int cpu_steps = 600, gl_steps = 120, gl_mixed_steps = 30;
 
 std::string text(const Case& c, Precision precision) {
@@ -128,7 +128,7 @@ TEST_CASE("another mix and another lane width at every step: the same hash") {
 }
 
 TEST_CASE("what is created far away changes nothing here") {
-  for (const char* name : {"balls", "ragdolls", "pyramid", "dominoes"}) {
+  for (const char* name : {"balls", "ragdolls", "pyramid", "dominoes", "hulls"}) {
     const int count = 6;
     for (const Precision precision : {Precision::f32, Precision::f64}) {
       SceneWorld alone = scene_world(name, count, precision), accompanied = scene_world(name, count, precision);

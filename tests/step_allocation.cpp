@@ -120,6 +120,7 @@ TEST_CASE("no allocation in 100 steps of scenes that move") {
   check_none("ragdolls", 4, Precision::f32, 0, 60, 100);
   check_none("ragdolls", 4, Precision::f32, 1, 60, 100);
   check_none("dominoes", 20, Precision::f32, 0, 30, 100);
+  check_none("hulls", 30, Precision::f32, 0, 60, 100);
   check_none("door", 1, Precision::f32, 0, 10, 100);
   check_none("chain", 20, Precision::f32, 0, 10, 100);
 }

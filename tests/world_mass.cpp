@@ -19,6 +19,7 @@ bool inside(const ShapeDef& s, Vec3 p) {
     case ShapeKind::box: return std::fabs(p.x) <= s.size.x && std::fabs(p.y) <= s.size.y && std::fabs(p.z) <= s.size.z;
     case ShapeKind::cylinder: return across <= s.size.x && std::fabs(p.y) <= s.size.y;
     case ShapeKind::capsule: return std::hypot(across, std::max(std::fabs(p.y) - s.size.y, 0.0)) <= s.size.x;
+    case ShapeKind::hull:
     case ShapeKind::plane: break;
   }
   return false;

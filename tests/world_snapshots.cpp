@@ -11,8 +11,8 @@ struct Case {
   const char* scene;
   int count, steps;
 };
-constexpr Case cases[] = {{"balls", 30, 90}, {"ragdolls", 2, 90}, {"pyramid", 6, 60}, {"stack", 5, 60},
-                          {"chain", 8, 30},  {"door", 1, 45},     {"dominoes", 8, 60}};
+constexpr Case cases[] = {{"balls", 30, 90}, {"ragdolls", 2, 90}, {"pyramid", 6, 60},  {"stack", 5, 60},
+                          {"chain", 8, 30},  {"door", 1, 45},     {"dominoes", 8, 60}, {"hulls", 8, 60}};
 constexpr int more = 40;
 constexpr Precision both[] = {Precision::f32, Precision::f64};
 

@@ -5,6 +5,12 @@ namespace pcphys::constants {
 
 /// Lengths of shapes outside this interval are refused: float32 cannot resolve contacts between them [m].
 inline constexpr double smallest_extent = 1e-5, largest_extent = 1e6;
+/// A convex hull may have so many vertices; contacts see up to so many corners of a face.
+inline constexpr unsigned largest_hull_vertices = 64, largest_hull_face = 16;
+/// Points whose smallest extent is below this share of their largest are flat: they make no hull.
+inline constexpr double hull_flatness = 1e-4;
+/// Vertices nearer to a plane or line than this share of the hull's largest extent lie in it: triangles merge into faces.
+inline constexpr double hull_planarity = 1e-5;
 /// Coordinates, velocities and other inputs beyond this are refused: their squares leave float32's range.
 inline constexpr double largest_input = 1e15;
 /// Masses [kg] and moments of inertia [kg m^2] outside this interval are refused: float32 must hold them, their

@@ -4,8 +4,10 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "pcphys/hull.h"
 #include "pcphys/ids.h"
 #include "pcphys/math.h"
 
@@ -22,6 +24,7 @@ enum class ShapeKind : std::uint8_t {
   capsule,   // radius, half length of the segment; axis = local y
   box,       // half extents (the original's OriBox)
   cylinder,  // radius, half height; axis = local y
+  hull,      // a convex polyhedron (pcphys/hull.h)
   plane      // the half space below local y = 0; fixed bodies only
 };
 
@@ -46,11 +49,13 @@ struct ShapeDef {
   Vec3 size{0.5, 0, 0};  // sphere (radius, -, -), capsule and cylinder (radius, half length, -), box half extents
   Pose local;            // of the shape in its body
   Filter filter;
+  Hull convex = {};  // of ShapeKind::hull, which uses no size
 
   static ShapeDef sphere(double radius) { return {ShapeKind::sphere, {radius, 0, 0}, {}, {}}; }
   static ShapeDef capsule(double radius, double half_length) { return {ShapeKind::capsule, {radius, half_length, 0}, {}, {}}; }
   static ShapeDef box(Vec3 half_extents) { return {ShapeKind::box, half_extents, {}, {}}; }
   static ShapeDef cylinder(double radius, double half_height) { return {ShapeKind::cylinder, {radius, half_height, 0}, {}, {}}; }
+  static ShapeDef hull(Hull hull) { return {ShapeKind::hull, {}, {}, {}, std::move(hull)}; }
   static ShapeDef plane() { return {ShapeKind::plane, {}, {}, {}}; }
 };
 

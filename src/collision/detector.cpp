@@ -37,6 +37,7 @@ std::pair<float, float> levers(const ShapeDef& d) {
     case ShapeKind::box: return {0.0f, float(length(d.size)) + off};
     case ShapeKind::capsule: return upright ? std::pair(half, 0.0f) : std::pair(0.0f, half + off);
     case ShapeKind::cylinder: return upright ? std::pair(half + radius, 0.0f) : std::pair(0.0f, half + radius + off);
+    case ShapeKind::hull: return {0.0f, float(d.convex.radius()) + off};
     case ShapeKind::plane: break;
   }
   return {0.0f, 0.0f};
@@ -67,6 +68,7 @@ double bounding_radius(const ShapeDef& d) {
   switch (d.kind) {
     case ShapeKind::sphere: return d.size.x;
     case ShapeKind::box: return length(d.size);
+    case ShapeKind::hull: return d.convex.radius();
     case ShapeKind::plane: return std::numeric_limits<double>::infinity();
     default: return d.size.x + d.size.y;
   }
@@ -93,7 +95,8 @@ void Detector::rebuild(const WorldState& s) {
     if (!shape.alive || (shape.filter.mask == 0 && shape.filter.group <= 0)) continue;
     const std::uint32_t row = s.body_ids.row(shape.body);
     const auto [across, any] = levers(shape.def);
-    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{}, row, across, any, bounding_radius(shape.def)};
+    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{},  row,
+                   across,         any,  bounding_radius(shape.def), shape.def.convex.data()};
     pairs_.add(i, s.bodies[row].kind != BodyKind::fixed);
     some_dynamic |= s.bodies[row].kind == BodyKind::dynamic;
     solid++;
@@ -151,7 +154,8 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
     ShapeView<Scalar>& view = shapes[i];
-    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.centred, bodies.orientation(proxy.body), view);
+    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.hull, proxy.centred, bodies.orientation(proxy.body),
+                view);
     const Twist& twist = twists_[proxy.body];
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;

@@ -47,6 +47,7 @@ class Detector {
     // how far a turn of one radian moves its surface outward: a turn across its axis (the body's y), any turn
     float lever_across = 0, lever_any = 0;
     double radius = 0;  // of the sphere about its centre that holds it
+    const HullData* hull = nullptr;
   };
 
   template <class Scalar> struct Scratch {

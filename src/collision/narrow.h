@@ -11,9 +11,10 @@ namespace pcphys {
 /// the result are those of these numbers.
 template <class Scalar> struct ShapeView {
   ShapeKind kind;
-  Scalar size[3];  // as in ShapeDef, metres
+  Scalar size[3];  // as in ShapeDef, metres; a hull's radius and inner radius
   Scalar p[3];     // centre of the shape
   Scalar q[4];     // x y z w, shape to world axes, unit
+  const HullData* hull = nullptr;
 };
 
 template <class Scalar> struct ManifoldPoint {

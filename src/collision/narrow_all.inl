@@ -1,21 +1,37 @@
 // Instantiates the narrow phase for PC_SCALAR: copies in and out, no arithmetic.
 #include "collision/narrow.h"
 #include "cpu/prelude.h"
+#include "world/hull.h"
 #define PC_FN_LARGE [[gnu::noinline]] static
 
 namespace pcphys {
 namespace PC_NAMESPACE {
+// Where a hull's numbers stand: pointers here, offsets into a buffer in GLSL.
+struct HullRef {
+  const Scalar* reals;
+  const uint* indices;
+};
+PC_FN Real pc_hull_real(HullRef h, uint i) { return h.reals[i]; }
+PC_FN uint pc_hull_index(HullRef h, uint i) { return h.indices[i]; }
 #include "kernels/narrow/narrow.inl"
 
+static HullRef hull_of(const ShapeView<Scalar>& s) {
+  HullRef h{nullptr, nullptr};
+  if (s.hull) {
+    s.hull->table.reals_of(h.reals);
+    h.indices = s.hull->table.indices.data();
+  }
+  return h;
+}
 static NarrowShape from_view(const ShapeView<Scalar>& s) {
-  return {uint(s.kind), {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, pc_quaternion({s.q[0], s.q[1], s.q[2]}, s.q[3])};
+  return {uint(s.kind), {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, pc_quaternion({s.q[0], s.q[1], s.q[2]}, s.q[3]), hull_of(s)};
 }
 }  // namespace PC_NAMESPACE
 
 void narrow(const ShapeView<PC_SCALAR>& a, const ShapeView<PC_SCALAR>& b, PC_SCALAR margin, std::uint32_t& hint, Manifold<PC_SCALAR>& out) {
   using namespace PC_NAMESPACE;
   static_assert(PC_SPHERE == uint(ShapeKind::sphere) && PC_CAPSULE == uint(ShapeKind::capsule) && PC_BOX == uint(ShapeKind::box) &&
-                PC_CYLINDER == uint(ShapeKind::cylinder) && PC_PLANE == uint(ShapeKind::plane));
+                PC_CYLINDER == uint(ShapeKind::cylinder) && PC_HULL == uint(ShapeKind::hull) && PC_PLANE == uint(ShapeKind::plane));
   NarrowManifold m;
   pc_narrow(from_view(a), from_view(b), margin, hint, m);
   out.normal[0] = m.normal.x;

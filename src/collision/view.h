@@ -6,6 +6,7 @@
 
 #include "collision/aabb.h"
 #include "collision/narrow.h"
+#include "world/hull.h"
 #include "world/tables.h"
 
 namespace pcphys {
@@ -40,8 +41,10 @@ template <class Scalar> void rotate_by(const Scalar* q, const Scalar* v, Scalar*
 
 /// `row`: of the shape table; q: the body's orientation. The view's p is relative to the body's centre.
 template <class Scalar>
-void place_shape(const Scalar* row, ShapeKind kind, bool centred, const Scalar* q, ShapeView<Scalar>& view) {
+void place_shape(const Scalar* row, ShapeKind kind, const HullData* hull, bool centred, const Scalar* q,
+                 ShapeView<Scalar>& view) {
   view.kind = kind;
+  view.hull = hull;
   for (int k = 0; k < 3; k++) view.size[k] = row[k];
   for (int k = 0; k < 3; k++) view.p[k] = 0;
   for (int k = 0; k < 4; k++) view.q[k] = q[k];
@@ -54,6 +57,30 @@ void place_shape(const Scalar* row, ShapeKind kind, bool centred, const Scalar* 
   view.q[3] = q[3] * l[3] - q[0] * l[0] - q[1] * l[1] - q[2] * l[2];
 }
 
+/// The same box of a hull, by its vertices.
+template <class Scalar> Aabb box_of_hull(const ShapeView<Scalar>& view, Vec3 centre, float more) {
+  const float x = float(view.q[0]), y = float(view.q[1]), z = float(view.q[2]), w = float(view.q[3]);
+  const float r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
+                         {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
+                         {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}};
+  const float* const v = view.hull->table.f32.data();
+  const std::size_t reals = 3 * std::size_t(view.hull->table.indices[0]);
+  const double slack = double(view.size[0]) * 1e-5 + double(more);  // beyond the rounding of the products below
+  const double c[3] = {centre.x + double(view.p[0]), centre.y + double(view.p[1]), centre.z + double(view.p[2])};
+  Aabb box;
+  for (int k = 0; k < 3; k++) {
+    float low = 0, high = 0;  // the centre is inside
+    for (std::size_t i = 0; i < reals; i += 3) {
+      const float at = r[k][0] * v[i] + r[k][1] * v[i + 1] + r[k][2] * v[i + 2];
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    box.min[k] = round_down(c[k] + double(low) - slack);
+    box.max[k] = round_up(c[k] + double(high) + slack);
+  }
+  return box;
+}
+
 /// The shape's box about `centre` (of its body), grown by `more`.
 template <class Scalar> Aabb box_of(const ShapeView<Scalar>& view, Vec3 centre, float more) {
   constexpr float infinite = std::numeric_limits<float>::infinity();
@@ -62,6 +89,7 @@ template <class Scalar> Aabb box_of(const ShapeView<Scalar>& view, Vec3 centre, 
   const float qx = float(view.q[0]), qy = float(view.q[1]), qz = float(view.q[2]), qw = float(view.q[3]);
   const float sx = float(view.size[0]), sy = float(view.size[1]), sz = float(view.size[2]);
   const float y[3] = {2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz), 2 * (qy * qz + qw * qx)};
+  if (view.kind == ShapeKind::hull) return box_of_hull(view, centre, more);
   if (view.kind == ShapeKind::sphere) {
     for (float& e : extent) e = sx;
   } else if (view.kind == ShapeKind::box) {

@@ -10,6 +10,8 @@
 #include <memory>
 #include <vector>
 
+#include "world/hull.h"
+
 namespace pcphys {
 namespace {
 
@@ -19,6 +21,18 @@ struct Object {
   std::shared_ptr<fcl::CollisionGeometryd> geometry;
   fcl::Transform3d pose;
 };
+
+// Made anew in each call: FCL's own copy of vertices and faces, with its edges.
+std::shared_ptr<fcl::Convexd> convex(const HullData& hull) {
+  auto vertices = std::make_shared<std::vector<Vector>>();
+  auto faces = std::make_shared<std::vector<int>>();
+  for (const Vec3& v : hull.vertices) vertices->emplace_back(v.x, v.y, v.z);
+  for (std::size_t f = 0; f + 1 < hull.first.size(); f++) {
+    faces->push_back(int(hull.first[f + 1] - hull.first[f]));
+    faces->insert(faces->end(), hull.corners.begin() + hull.first[f], hull.corners.begin() + hull.first[f + 1]);
+  }
+  return std::make_shared<fcl::Convexd>(vertices, int(hull.first.size()) - 1, faces);
+}
 
 // FCL's capsules and cylinders stand along z, ours along y; a plane is FCL's half space, raised by `raise`.
 Object object(const ShapeView<double>& s, double raise) {
@@ -40,6 +54,7 @@ Object object(const ShapeView<double>& s, double raise) {
       o.pose.linear() = o.pose.linear() * y_to_z;
       break;
     case ShapeKind::box: o.geometry = std::make_shared<fcl::Boxd>(2 * s.size[0], 2 * s.size[1], 2 * s.size[2]); break;
+    case ShapeKind::hull: o.geometry = convex(*s.hull); break;
     case ShapeKind::plane: o.geometry = std::make_shared<fcl::Halfspaced>(Vector::UnitY(), raise); break;
   }
   return o;
@@ -159,7 +174,7 @@ namespace pcphys {
 bool narrow_fcl(const ShapeView<float>& a, const ShapeView<float>& b, float margin, Manifold<float>& out) {
   const auto widen = [](const ShapeView<float>& s) {
     return ShapeView<double>{
-        s.kind, {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, {s.q[0], s.q[1], s.q[2], s.q[3]}};
+        s.kind, {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, {s.q[0], s.q[1], s.q[2], s.q[3]}, s.hull};
   };
   Manifold<double> wide;
   const bool done = narrow_fcl(widen(a), widen(b), double(margin), wide);

@@ -95,7 +95,7 @@ PC_PROPERTY(contact, contact, 32, quat, mean_impulse, state, 0, "N s", "slow mea
 
 PC_TABLE(shape, "what bodies collide with; read by the broad and narrow phase")
 PC_BUFFER(shape, shape, 3, "")
-PC_PROPERTY(shape, shape, 0, vec3, size, input, 0, "m", "sphere (radius), capsule and cylinder (radius, half length), box half extents")
-PC_PROPERTY(shape, shape, 3, real, shape_kind, input, 0, "1", "sphere, capsule, box, cylinder, plane: 0 to 4")
+PC_PROPERTY(shape, shape, 0, vec3, size, input, 0, "m", "sphere (radius), capsule and cylinder (radius, half length), box half extents, hull (radius, inner radius)")
+PC_PROPERTY(shape, shape, 3, real, shape_kind, input, 0, "1", "sphere, capsule, box, cylinder, hull, plane: 0 to 5")
 PC_PROPERTY(shape, shape, 4, vec3, local_position, input, 0, "m", "in its body")
 PC_PROPERTY(shape, shape, 8, quat, local_orientation, input, 1, "1", "in its body")

@@ -43,7 +43,8 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
   }
   s.shapes[index] = {body, def.filter, def, true};
   const std::uint32_t row = index + 1;
-  s.tables.set3(Buffer::shape, row, 0, def.size);
+  s.tables.set3(Buffer::shape, row, 0,
+                def.kind == ShapeKind::hull ? Vec3{def.convex.radius(), def.convex.inner_radius(), 0} : def.size);
   s.tables.set(Buffer::shape, row, 3, double(def.kind));
   s.tables.set3(Buffer::shape, row, 4, def.local.position);
   s.tables.set4(Buffer::shape, row, 8, def.local.orientation);
@@ -135,6 +136,7 @@ Status World::destroy(BodyId body) {
   for (std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
   for (std::uint32_t shape : s.bodies[row].shapes) {
     s.shapes[shape].alive = false;
+    s.shapes[shape].def.convex = {};  // the last user frees it
     s.free_shapes.push_back(shape);
   }
   std::erase_if(s.no_collide,

@@ -46,6 +46,7 @@ Result<MassProperties> mass_properties(const ShapeDef& shape, double density) {
     case ShapeKind::capsule: return of_capsule(shape.size.x, shape.size.y, density);
     case ShapeKind::box: return of_box(shape.size, density);
     case ShapeKind::cylinder: return of_cylinder(shape.size.x, shape.size.y, density);
+    case ShapeKind::hull: return MassProperties{density * shape.convex.volume(), density * shape.convex.moments()};
     case ShapeKind::plane: break;
   }
   return Error{ErrorCode::bad_mass, "A plane has no mass: use it on fixed bodies."};

@@ -70,9 +70,14 @@ Status check_unit(Quat& value, const char* what) {
 
 Status check(const ShapeDef& shape) {
   if (shape.kind > ShapeKind::plane)
-    return Error{ErrorCode::bad_argument, "A shape is of no known kind; use ShapeDef::sphere, capsule, box, cylinder or plane."};
+    return Error{ErrorCode::bad_argument,
+                 "A shape is of no known kind; use ShapeDef::sphere, capsule, box, cylinder, hull or plane."};
   Status ok;
-  if (shape.kind != ShapeKind::plane) ok = check_extent(shape.size.x, shape.kind == ShapeKind::box ? "half extent x" : "radius");
+  if (shape.kind == ShapeKind::hull && !shape.convex)
+    ok = Error{ErrorCode::degenerate_shape,
+               "A shape of kind hull has none; make one with make_hull and pass it to ShapeDef::hull."};
+  if (ok && shape.kind != ShapeKind::hull && shape.kind != ShapeKind::plane)
+    ok = check_extent(shape.size.x, shape.kind == ShapeKind::box ? "half extent x" : "radius");
   if (ok && shape.kind == ShapeKind::box) ok = check_extent(shape.size.y, "half extent y");
   if (ok && shape.kind == ShapeKind::box) ok = check_extent(shape.size.z, "half extent z");
   if (ok && (shape.kind == ShapeKind::capsule || shape.kind == ShapeKind::cylinder))

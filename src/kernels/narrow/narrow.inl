@@ -2,6 +2,7 @@
 #include "narrow_types.inl"
 #include "narrow_round.inl"
 #include "narrow_clip.inl"
+#include "narrow_hull.inl"
 #include "narrow_box.inl"
 #include "narrow_capsule_box.inl"
 #include "narrow_core.inl"
@@ -17,13 +18,13 @@ PC_FN void pc_narrow_ordered(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
     if (b.kind == PC_CAPSULE) { pc_sphere_capsule(a, b, margin, m); return; }
     if (b.kind == PC_BOX) { pc_sphere_box(a, b, margin, m); return; }
     if (b.kind == PC_CYLINDER) { pc_sphere_cylinder(a, b, margin, m); return; }
-    pc_sphere_plane(a, b, margin, m);
-    return;
+    if (b.kind == PC_PLANE) { pc_sphere_plane(a, b, margin, m); return; }
   }
   if (b.kind == PC_PLANE) {
     if (a.kind == PC_CAPSULE) { pc_capsule_plane(a, b, margin, m); return; }
     if (a.kind == PC_BOX) { pc_box_plane(a, b, margin, m); return; }
     if (a.kind == PC_CYLINDER) { pc_cylinder_plane(a, b, margin, m); return; }
+    if (a.kind == PC_HULL) { pc_hull_plane(a, b, margin, m); return; }
     return;  // two planes never meet: only fixed bodies have them
   }
   if (b.kind == PC_CAPSULE) { pc_capsule_capsule(a, b, margin, m); return; }

@@ -111,7 +111,8 @@ PC_FN_LARGE void pc_box_faces(Vec3 xr, Axes reference, Vec3 hr, uint axis, Vec3 
   Real g1 = pc_dot(e1, fn); Real g2 = pc_dot(e2, fn);
   precise Real g0 = pc_dot(c, fn) - pc_component(hr, axis);
   for (uint i = 0u; i < polygon.count; i++) { precise Real s = g0 + g1 * polygon.x[i] + g2 * polygon.y[i]; polygon.s[i] = s; }
-  pc_reduce(polygon, margin, pc_min(h1, h2));
+  precise Real slop = pc_min(h1, h2) * PC_DEEPER_SLOP;
+  pc_reduce(polygon, margin, slop);
   uint turned = up ? 1u : 0u; uint face = tag + (f * 2u + turned) * 1024u;
   for (uint i = 0u; i < polygon.count; i++) {
     Vec3 x = pc_combine(e1, polygon.x[i], e2, polygon.y[i], centre, PC_REAL(1.0));

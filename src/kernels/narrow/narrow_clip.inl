@@ -4,11 +4,11 @@
 // 15 belong to the incident polygon, 16 on to the clipping one. That pair is its feature: it stays while the
 // shapes move a little.
 
-struct NarrowPolygon { uint count; Real x[16]; Real y[16]; Real s[16]; uint id[16]; };
+struct NarrowPolygon { uint count; Real x[32]; Real y[32]; Real s[32]; uint id[32]; };
 
 // What is left of the polygon on the side a x + b y <= c; outside by less than `slop` counts as inside.
 PC_FN_LARGE void pc_clip(PC_INOUT(NarrowPolygon) polygon, Real a, Real b, Real c, Real slop, uint edge) {
-  Real off[16]; bool any = false;
+  Real off[32]; bool any = false;
   for (uint i = 0u; i < polygon.count; i++) {
     precise Real beyond = a * polygon.x[i] + b * polygon.y[i] - c;
     off[i] = beyond; any = any || beyond > slop;
@@ -18,7 +18,7 @@ PC_FN_LARGE void pc_clip(PC_INOUT(NarrowPolygon) polygon, Real a, Real b, Real c
   for (uint i = 0u; i < polygon.count; i++) {
     uint j = i + 1u == polygon.count ? 0u : i + 1u;
     bool inside_i = off[i] <= slop; bool inside_j = off[j] <= slop;
-    if (inside_i != inside_j && rest.count < 16u) {
+    if (inside_i != inside_j && rest.count < 32u) {
       precise Real span = off[i] - off[j];
       Real t = pc_clamp(pc_div(off[i], span), PC_REAL(0.0), PC_REAL(1.0));
       precise Real x = polygon.x[i] + (polygon.x[j] - polygon.x[i]) * t;
@@ -28,7 +28,7 @@ PC_FN_LARGE void pc_clip(PC_INOUT(NarrowPolygon) polygon, Real a, Real b, Real c
       rest.id[rest.count] = inside_i ? (cut << 5u) | edge : (edge << 5u) | cut;
       rest.count = rest.count + 1u;
     }
-    if (inside_j && rest.count < 16u) {
+    if (inside_j && rest.count < 32u) {
       rest.x[rest.count] = polygon.x[j]; rest.y[rest.count] = polygon.y[j]; rest.id[rest.count] = polygon.id[j];
       rest.count = rest.count + 1u;
     }
@@ -46,17 +46,16 @@ struct Corner { Real x; Real y; };
 PC_FN Corner pc_corner(Real x, Real y) { Corner c; c.x = x; c.y = y; return c; }
 PC_FN Real pc_corner_area(Corner a, Corner b, Corner c) { precise Real r = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); return r; }
 
-// Drops points beyond the margin and keeps four: the deepest, the farthest from it, the one that spans the
+// Drops points beyond the margin and keeps four: the deepest (to `slop`), the farthest from it, the one that spans the
 // largest triangle with them, and the one that adds most on the other side. Gains within noise go to the
 // first in order, so that a flat contact keeps its choice.
-PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real size) {
+PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real slop) {
   uint count = 0u;
   for (uint i = 0u; i < polygon.count; i++) {
     if (polygon.s[i] <= margin) { pc_keep(polygon, count, i); count = count + 1u; }
   }
   polygon.count = count;
   if (count <= 4u) return;
-  precise Real slop = size * PC_DEEPER_SLOP;
   uint a = 0u;
   for (uint i = 1u; i < count; i++) { precise Real s = polygon.s[i] + slop; if (s < polygon.s[a]) a = i; }
   Corner at_a = pc_corner(polygon.x[a], polygon.y[a]);

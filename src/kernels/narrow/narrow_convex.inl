@@ -12,29 +12,50 @@ PC_FN void pc_try_normal(PC_INOUT(Contact) k, Core a, Core b, Vec3 c, Vec3 about
   Real gap = -pc_overlap(a, b, n); precise Real least = k.gap - slop;
   if (gap >= least) { k.n = n; k.gap = gap; found = true; }
 }
-PC_FN bool pc_has_face(Core c, uint i) { return c.kind == PC_BOX || (c.kind == PC_CYLINDER && i == 1u); }
-// Direction of edge or axis i of a core; only boxes have three.
-PC_FN bool pc_has_line(Core c, uint i) { return c.kind == PC_BOX || i == 1u; }
+PC_FN bool pc_has_face(Core c, uint i) { return c.kind == PC_BOX || ((c.kind == PC_CYLINDER || c.kind == PC_HULL) && i == 1u); }
+// Normal of face i of a core, which looks along d or against it; a hull has but one that may.
+PC_FN Vec3 pc_face_normal(Core c, uint i, Vec3 d) {
+  if (c.kind != PC_HULL) return pc_axis(c.axes, i);
+  return pc_to_world(c.axes, pc_hull_vec(c.hull, pc_hull_face_row(c.hull, pc_hull_facing(c.hull, pc_to_local(c.axes, d)))));
+}
+// Edges or axes of a core that could touch along d: three of a box, those of a hull at its farthest vertex.
+struct Lines { uint count; uint vertex; uint first; };
+PC_FN Lines pc_core_lines(Core c, Vec3 d) {
+  Lines o; o.count = c.kind == PC_BOX ? 3u : (c.kind == PC_SPHERE ? 0u : 1u); o.vertex = 0u; o.first = 0u;
+  if (c.kind == PC_HULL) {
+    o.vertex = pc_hull_support(c.hull, pc_to_local(c.axes, d)); o.first = pc_hull_first_neighbour(c.hull, o.vertex);
+    o.count = pc_hull_first_neighbour(c.hull, o.vertex + 1u) - o.first;
+  }
+  return o;
+}
+PC_FN Vec3 pc_line_direction(Core c, Lines o, uint i) {
+  if (c.kind == PC_BOX) return pc_axis(c.axes, i);
+  if (c.kind != PC_HULL) return c.axes.y;
+  return pc_unit_or_zero(pc_to_world(c.axes, pc_sub(pc_hull_vertex(c.hull, pc_hull_index(c.hull, o.first + i)), pc_hull_vertex(c.hull, o.vertex))));
+}
+PC_FN bool pc_is_round(Core c) { return c.kind == PC_CAPSULE || c.kind == PC_CYLINDER; }
+PC_FN bool pc_is_flat(Core c) { return c.kind == PC_BOX || c.kind == PC_HULL; }
 PC_FN_LARGE void pc_sharpen(PC_INOUT(Contact) k, Core a, Core b) {
   precise Real slop = (a.reach + b.reach) * PC_SHARPEN_SLOP;
   Vec3 n = k.n; bool found = false;
-  for (uint i = 0u; i < 3u; i++) { if (pc_has_face(a, i)) pc_try_normal(k, a, b, pc_axis(a.axes, i), n, slop, found); }
-  for (uint i = 0u; i < 3u; i++) { if (pc_has_face(b, i)) pc_try_normal(k, a, b, pc_axis(b.axes, i), n, slop, found); }
-  for (uint i = 0u; i < 3u && !found; i++) {
-    for (uint j = 0u; j < 3u; j++) {
-      if (pc_has_line(a, i) && pc_has_line(b, j)) {
-        Vec3 c = pc_cross(pc_axis(a.axes, i), pc_axis(b.axes, j)); Real squared = pc_dot(c, c);
-        if (squared > PC_REAL(1e-4)) pc_try_normal(k, a, b, pc_scale(c, pc_div(PC_REAL(1.0), pc_sqrt(squared))), n, slop, found);
-      }
+  for (uint i = 0u; i < 3u; i++) { if (pc_has_face(a, i)) pc_try_normal(k, a, b, pc_face_normal(a, i, n), n, slop, found); }
+  for (uint i = 0u; i < 3u; i++) { if (pc_has_face(b, i)) pc_try_normal(k, a, b, pc_face_normal(b, i, pc_negate(n)), n, slop, found); }
+  Lines la; Lines lb; la.count = 0u;
+  if (!found) { la = pc_core_lines(a, n); lb = pc_core_lines(b, pc_negate(n)); }
+  for (uint i = 0u; i < la.count && !found; i++) {
+    Vec3 u = pc_line_direction(a, la, i);
+    for (uint j = 0u; j < lb.count; j++) {
+      Vec3 c = pc_cross(u, pc_line_direction(b, lb, j)); Real squared = pc_dot(c, c);
+      if (squared > PC_REAL(1e-4)) pc_try_normal(k, a, b, pc_scale(c, pc_div(PC_REAL(1.0), pc_sqrt(squared))), n, slop, found);
     }
   }
   // beside a round side: square to its axis, straight at the other's axis or corner
   for (uint side = 0u; side < 2u; side++) {
-    Vec3 y = side == 0u ? a.axes.y : b.axes.y; bool round_ = side == 0u ? a.kind != PC_BOX : b.kind != PC_BOX;
+    Vec3 y = side == 0u ? a.axes.y : b.axes.y; bool round_ = side == 0u ? pc_is_round(a) : pc_is_round(b);
     if (round_ && !found) {
       Vec3 own = side == 0u ? a.p : b.p; Vec3 other = side == 0u ? b.p : a.p;
-      if (side == 0u && b.kind == PC_BOX) other = pc_core_support(b, pc_negate(n));
-      if (side == 1u && a.kind == PC_BOX) other = pc_core_support(a, n);
+      if (side == 0u && pc_is_flat(b)) other = pc_core_support(b, pc_negate(n));
+      if (side == 1u && pc_is_flat(a)) other = pc_core_support(a, n);
       Vec3 d = pc_sub(other, own);
       pc_try_normal(k, a, b, pc_unit_or_zero(pc_madd(d, y, -pc_dot(d, y))), n, slop, found);
       pc_try_normal(k, a, b, pc_unit_or_zero(pc_madd(n, y, -pc_dot(n, y))), n, slop, found);
@@ -43,12 +64,19 @@ PC_FN_LARGE void pc_sharpen(PC_INOUT(Contact) k, Core a, Core b) {
 }
 
 // ---- features -------------------------------------------------------------------------------------------
-struct Face { uint sides; Vec3 c; Vec3 n; Vec3 e1; Vec3 e2; Real h1; Real h2; uint id; };  // sides: 0 none, 4 rectangle, 8 disc
+// A rectangle of half sides h1 and h2, a disc of that radius, which clips as an octagon, or face `id` of a hull.
+struct Face { uint kind; uint sides; Vec3 c; Vec3 n; Vec3 e1; Vec3 e2; Real h1; Real h2; uint id; HullRef hull; };  // kind: of its core; sides: 0 for no face
 struct Line { Vec3 c; Vec3 u; Real h; };
 
 PC_FN_LARGE Face pc_core_face(Core c, Vec3 d) {
-  Face f; f.sides = 0u; f.c = c.p; f.n = d; f.e1 = c.axes.z; f.e2 = c.axes.x; f.h1 = c.size.x; f.h2 = c.size.x; f.id = 0u;
+  Face f; f.kind = c.kind; f.hull = c.hull; f.sides = 0u; f.c = c.p; f.n = d; f.e1 = c.axes.z; f.e2 = c.axes.x; f.h1 = c.size.x; f.h2 = c.size.x; f.id = 0u;
   Vec3 l = pc_to_local(c.axes, d); uint i = 1u;
+  if (c.kind == PC_HULL) {
+    f.id = pc_hull_facing(c.hull, l); f.sides = pc_hull_sides(c.hull, f.id); uint row = pc_hull_face_row(c.hull, f.id);
+    f.n = pc_to_world(c.axes, pc_hull_vec(c.hull, row)); f.e1 = pc_to_world(c.axes, pc_hull_vec(c.hull, row + 3u)); f.e2 = pc_to_world(c.axes, pc_hull_vec(c.hull, row + 6u));
+    f.c = pc_add(c.p, pc_to_world(c.axes, pc_hull_vec(c.hull, row + 9u))); f.h1 = pc_hull_real(c.hull, row + 12u); f.h2 = f.h1;
+    return f;
+  }
   if (c.kind == PC_BOX) {
     i = pc_greatest_component(pc_abs3(l)); uint i1 = pc_next(i); uint i2 = pc_next(i1);
     f.sides = 4u; f.e1 = pc_axis(c.axes, i1); f.e2 = pc_axis(c.axes, i2); f.h1 = pc_component(c.size, i1); f.h2 = pc_component(c.size, i2);
@@ -65,7 +93,11 @@ PC_FN_LARGE Face pc_core_face(Core c, Vec3 d) {
 PC_FN_LARGE Line pc_core_line(Core c, Vec3 d) {
   Line o; o.c = c.p; o.u = c.axes.y; o.h = c.size.y;
   Vec3 l = pc_to_local(c.axes, d);
-  if (c.kind == PC_BOX) {
+  if (c.kind == PC_HULL) {
+    uint v = pc_hull_support(c.hull, l); Vec3 from = pc_hull_vertex(c.hull, v); Vec3 to = pc_hull_vertex(c.hull, pc_hull_edge(c.hull, v, l));
+    precise Vec3 middle = (from + to) * PC_REAL(0.5); precise Vec3 half_edge = (to - from) * PC_REAL(0.5);
+    o.c = pc_add(c.p, pc_to_world(c.axes, middle)); o.h = pc_length(half_edge); o.u = pc_unit_or_zero(pc_to_world(c.axes, half_edge));
+  } else if (c.kind == PC_BOX) {
     uint i = pc_least_component(l);
     o.u = pc_axis(c.axes, i); o.h = pc_component(c.size, i); o.c = pc_add(c.p, pc_to_world(c.axes, pc_edge_middle(c.size, i, l)));
   } else if (c.kind == PC_CYLINDER) {
@@ -85,7 +117,9 @@ PC_FN Vec3 pc_flat(Over o, Vec3 v) { precise Real s = -pc_dot(v, o.fn) * o.slant
 
 PC_FN uint pc_polygon(PC_INOUT(NarrowPolygon) polygon, Face f) {
   polygon.count = f.sides;
-  if (f.sides == 4u) {
+  if (f.kind == PC_HULL) {
+    pc_hull_polygon(f.hull, f.id, polygon);
+  } else if (f.kind == PC_BOX) {
     polygon.x[0] = -f.h1; polygon.y[0] = -f.h2; polygon.x[1] = f.h1; polygon.y[1] = -f.h2;
     polygon.x[2] = f.h1; polygon.y[2] = f.h2; polygon.x[3] = -f.h1; polygon.y[3] = f.h2;
   } else {
@@ -99,7 +133,8 @@ PC_FN uint pc_polygon(PC_INOUT(NarrowPolygon) polygon, Face f) {
 
 // Side k of a face: the half-plane x cosine + y sine <= off.
 PC_FN Vec3 pc_side(Face f, uint k) {
-  if (f.sides == 4u) {
+  if (f.kind == PC_HULL) return pc_hull_vec(f.hull, pc_hull_first_side(f.hull, f.id) + k * PC_HULL_SIDE_REALS + 2u);
+  if (f.kind == PC_BOX) {
     if (k == 0u) return Vec3(PC_REAL(1.0), PC_REAL(0.0), f.h1);
     if (k == 1u) return Vec3(PC_REAL(0.0), PC_REAL(1.0), f.h2);
     if (k == 2u) return Vec3(PC_REAL(-1.0), PC_REAL(0.0), f.h1);
@@ -134,10 +169,11 @@ PC_FN_LARGE void pc_face_over_face(Face reference, Face f, Over o, Pads pads, Re
   precise Real g0 = pc_dot(c, o.fn) * o.slant; precise Real g1 = pc_dot(f.e1, o.fn) * o.slant; precise Real g2 = pc_dot(f.e2, o.fn) * o.slant;
   for (uint i = 0u; i < polygon.count; i++) { precise Real s = g0 + g1 * polygon.x[i] + g2 * polygon.y[i]; polygon.s[i] = s; }
   precise Real farthest = margin + pads.reference + pads.incident;
-  pc_reduce(polygon, farthest, pc_min(f.h1, f.h2));
+  precise Real rocking = pc_min(f.h1, f.h2) * PC_FLAT_SLOP;
+  pc_reduce(polygon, farthest, rocking);
   for (uint i = 0u; i < polygon.count; i++) {
     Vec3 x = pc_combine(f.e1, polygon.x[i], f.e2, polygon.y[i], f.c, PC_REAL(1.0)); uint corner = polygon.id[i];
-    pc_push_over(m, x, o, polygon.s[i], pads, margin, tag + (corners << 12u) + corner);
+    pc_push_over(m, x, o, polygon.s[i], pads, margin, tag + ((corners & 15u) << 12u) + corner);
   }
 }
 
@@ -145,8 +181,8 @@ PC_FN_LARGE void pc_line_over_face(Face reference, Line line, Over o, Pads pads,
   Vec3 c = pc_sub(line.c, reference.c); Vec3 c0 = pc_flat(o, c); Vec3 u = pc_flat(o, line.u);
   Real low = -line.h; Real high = line.h;
   Real cx = pc_dot(c0, reference.e1); Real cy = pc_dot(c0, reference.e2); Real ux = pc_dot(u, reference.e1); Real uy = pc_dot(u, reference.e2);
-  if (reference.sides == 4u) {
-    for (uint k = 0u; k < 4u; k++) {
+  if (reference.kind != PC_CYLINDER) {
+    for (uint k = 0u; k < reference.sides; k++) {
       Vec3 s = pc_side(reference, k); precise Real slope = s.x * ux + s.y * uy; precise Real room = s.z - s.x * cx - s.y * cy;
       if (pc_abs(slope) > PC_REAL(1e-6)) {
         Real t = pc_div(room, slope);
@@ -173,6 +209,11 @@ PC_FN_LARGE void pc_line_over_face(Face reference, Line line, Over o, Pads pads,
   }
 }
 
+// Numbers of both faces, up to 127 each, beside the bits of corners (0 to 15) and of which shape has the reference (24, 25).
+PC_FN uint pc_face_tag(Face reference, Face incident) {
+  return ((reference.id & 15u) << 16u) | ((incident.id & 15u) << 20u) | ((reference.id >> 4u) << 26u) | ((incident.id >> 4u) << 29u);
+}
+
 PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INOUT(NarrowManifold) m) {
   m.normal = k.n;
   Face fa = pc_core_face(a, k.n); Face fb = pc_core_face(b, pc_negate(k.n));
@@ -185,12 +226,12 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
   Over o; Pads pads;
   if (use_a) {
     o.n = k.n; o.fn = fa.n; o.slant = pc_div(PC_REAL(1.0), flat_a); pads.reference = a.radius; pads.incident = b.radius;
-    uint tag = 0x1000000u + (fa.id << 16u) + (fb.id << 20u);
+    uint tag = 0x1000000u + pc_face_tag(fa, fb);
     if (fb.sides > 0u) pc_face_over_face(fa, fb, o, pads, margin, tag, m);
     else pc_line_over_face(fa, pc_core_line(b, pc_negate(k.n)), o, pads, margin, tag, m);
   } else if (use_b) {
     o.n = pc_negate(k.n); o.fn = fb.n; o.slant = pc_div(PC_REAL(1.0), flat_b); pads.reference = b.radius; pads.incident = a.radius;
-    uint tag = 0x2000000u + (fb.id << 16u) + (fa.id << 20u);
+    uint tag = 0x2000000u + pc_face_tag(fb, fa);
     if (fa.sides > 0u) pc_face_over_face(fb, fa, o, pads, margin, tag, m);
     else pc_line_over_face(fb, pc_core_line(a, k.n), o, pads, margin, tag, m);
   } else {
@@ -205,7 +246,8 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
   if (use_a) closest = pc_madd(pc_core_support(b, pc_negate(k.n)), k.n, -k.gap);
   else if (use_b) closest = pc_core_support(a, k.n);
   precise Real separation = k.gap - a.radius - b.radius;
-  precise Real deepest = separation + pc_min(a.reach, b.reach) * PC_HELD_SLOP;
+  Real held_slop = m.count == 4u && separation < PC_REAL(0.0) ? PC_FLAT_SLOP : PC_HELD_SLOP;
+  precise Real deepest = separation + pc_min(a.reach, b.reach) * held_slop;
   bool held = false; uint shallowest = 0u;
   for (uint i = 0u; i < m.count; i++) {
     held = held || m.points[i].separation <= deepest;

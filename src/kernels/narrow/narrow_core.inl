@@ -1,13 +1,15 @@
 // Convex shapes as a core with a radius: what GJK, EPA and the general manifold know of a shape.
 // D = A - B is the Minkowski difference of two cores; h(n) = max over D of n . w is their overlap along n.
 
-struct Core { uint kind; Vec3 p; Axes axes; Vec3 size; Real radius; Real reach; };  // reach: radius of a ball around the core
+struct Core { uint kind; Vec3 p; Axes axes; Vec3 size; Real radius; Real reach; HullRef hull; };  // reach: radius of a ball around the core
 struct Support { Vec3 w; Vec3 a; };                                                 // w = a - b
 
 PC_FN Core pc_core(NarrowShape s) {
-  Core c; c.kind = s.kind; c.p = s.p; c.axes = pc_axes(s.q); c.size = s.size; c.radius = PC_REAL(0.0);
+  Core c; c.kind = s.kind; c.p = s.p; c.axes = pc_axes(s.q); c.size = s.size; c.radius = PC_REAL(0.0); c.hull = s.hull;
   Vec3 corner = s.size;
   if (s.kind == PC_CAPSULE) { c.radius = s.size.x; corner = Vec3(PC_REAL(0.0), s.size.y, PC_REAL(0.0)); c.size = corner; }
+  if (s.kind == PC_SPHERE) { c.radius = s.size.x; corner = pc_zero3(); c.size = corner; }
+  if (s.kind == PC_HULL) { corner = Vec3(s.size.x, PC_REAL(0.0), PC_REAL(0.0)); c.size = corner; }
   if (s.kind == PC_CYLINDER) corner = Vec3(s.size.x, s.size.y, PC_REAL(0.0));
   c.reach = pc_length(corner);
   return c;
@@ -16,6 +18,7 @@ PC_FN Core pc_core(NarrowShape s) {
 // The part of a long shape that another within `reach` of `centre` can meet: what lies farther away than any
 // way out is cut off, so that a floor of 200 m has numbers of the size of what lies on it.
 PC_FN_LARGE NarrowShape pc_window(NarrowShape s, Vec3 centre, Real reach, Real margin) {
+  if (s.kind == PC_HULL) return s;
   bool box = s.kind == PC_BOX; Vec3 h = box ? s.size : Vec3(PC_REAL(0.0), s.size.y, PC_REAL(0.0));
   Real least = box ? pc_smallest(h) : s.size.x;
   precise Real window = least * PC_REAL(2.0) + reach * PC_REAL(4.0) + margin;
@@ -38,7 +41,9 @@ PC_FN_LARGE NarrowShape pc_window(NarrowShape s, Vec3 centre, Real reach, Real m
 }
 
 PC_FN Vec3 pc_core_support(Core c, Vec3 d) {
-  Vec3 l = pc_to_local(c.axes, d); Vec3 v = Vec3(PC_REAL(0.0), l.y < PC_REAL(0.0) ? -c.size.y : c.size.y, PC_REAL(0.0));
+  Vec3 l = pc_to_local(c.axes, d);
+  if (c.kind == PC_HULL) return pc_add(c.p, pc_to_world(c.axes, pc_hull_vertex(c.hull, pc_hull_support(c.hull, l))));
+  Vec3 v = Vec3(PC_REAL(0.0), l.y < PC_REAL(0.0) ? -c.size.y : c.size.y, PC_REAL(0.0));
   if (c.kind == PC_BOX) {
     v = Vec3(l.x < PC_REAL(0.0) ? -c.size.x : c.size.x, v.y, l.z < PC_REAL(0.0) ? -c.size.z : c.size.z);
   } else if (c.kind == PC_CYLINDER) {

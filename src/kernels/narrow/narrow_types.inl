@@ -11,7 +11,8 @@ const uint PC_SPHERE = 0u;
 const uint PC_CAPSULE = 1u;
 const uint PC_BOX = 2u;
 const uint PC_CYLINDER = 3u;
-const uint PC_PLANE = 4u;
+const uint PC_HULL = 4u;
+const uint PC_PLANE = 5u;
 
 // squared sine of 1.5 and 3 degrees: between them two lines pass from parallel (two points) to crossing (one)
 #define PC_PARALLEL_FULL PC_REAL(0.000685237)
@@ -31,10 +32,12 @@ const uint PC_PLANE = 4u;
 #define PC_CLIP_SLOP PC_REAL(2e-3)
 // gains below these are noise when four points are chosen (length and area, relative)
 #define PC_DEEPER_SLOP PC_REAL(1e-4)
+// the same of overlapping faces with many corners, since a loaded stack rocks by more: another choice loses the impulses
+#define PC_FLAT_SLOP PC_REAL(1e-3)
 #define PC_WIDER_SLOP PC_REAL(1.01)
 
 struct Axes { Vec3 x; Vec3 y; Vec3 z; };
-struct NarrowShape { uint kind; Vec3 size; Vec3 p; Quaternion q; };
+struct NarrowShape { uint kind; Vec3 size; Vec3 p; Quaternion q; HullRef hull; };
 struct NarrowPoint { Vec3 p; Real separation; uint feature; };
 struct NarrowManifold { Vec3 normal; uint count; NarrowPoint points[4]; };
 

@@ -1,0 +1,316 @@
+// Makes hulls: qhull finds the triangles, then planes become faces, and the solid's moments its frame.
+#include "world/hull.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "pcphys/constants.h"
+#include "world/validate.h"
+
+namespace pcphys {
+namespace {
+
+using Point = Eigen::Vector3d;
+using Polygon = std::vector<std::uint32_t>;
+
+struct Solid {
+  std::vector<Point> vertices;
+  std::vector<Polygon> faces;  // counter-clockwise seen from outside
+  std::vector<Point> normals;
+};
+
+// ---- checks of the points --------------------------------------------------------------------------------
+
+Error flat(const std::string& what) {
+  return {ErrorCode::degenerate_shape, what + "; a hull needs four points that span a volume."};
+}
+
+/// Whether the points span a volume, by their extents along their own principal axes.
+Status check_spread(std::span<const Vec3> points) {
+  Eigen::Matrix3Xd p(3, points.size());
+  for (std::size_t i = 0; i < points.size(); i++) p.col(Eigen::Index(i)) = Point(points[i].x, points[i].y, points[i].z);
+  p.colwise() -= Point(0.5 * (p.rowwise().minCoeff() + p.rowwise().maxCoeff()));
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(p * p.transpose());
+  const Eigen::Matrix3Xd along = axes.eigenvectors().transpose() * p;
+  Point extent = along.rowwise().maxCoeff() - along.rowwise().minCoeff();
+  std::sort(extent.begin(), extent.end());
+  const double least = std::max(extent[2] * constants::hull_flatness, 2 * constants::smallest_extent);
+  const std::string count = "The " + std::to_string(points.size()) + " points of a hull ";
+  if (extent[2] < least) return flat(count + "lie in one place");
+  if (extent[1] < least) return flat(count + "lie on one line");
+  if (extent[0] < least) return flat(count + "lie in one plane");
+  if (0.5 * extent[2] > constants::largest_extent)
+    return Error{ErrorCode::degenerate_shape, count + "lie more than 2e6 m apart; a shape's half extents may be up to 1e6 m."};
+  return {};
+}
+
+Status check_points(std::span<const Vec3> points) {
+  for (const Vec3& p : points)
+    if (Status ok = check_finite(p, "position of a point of a hull"); !ok) return ok;
+  if (points.size() < 4) return flat("A hull has " + std::to_string(points.size()) + (points.size() == 1 ? " point" : " points"));
+  return check_spread(points);
+}
+
+// ---- faces -----------------------------------------------------------------------------------------------
+
+struct Flat {
+  double x, y;
+  std::uint32_t vertex;
+};
+/// Twice the area of the triangle a b c over its longest side from a: how far b is from the line a c.
+double bulge(const Flat& a, const Flat& b, const Flat& c) {
+  const double x = c.x - a.x, y = c.y - a.y, area = (b.x - a.x) * y - (b.y - a.y) * x;
+  return area / std::max(std::hypot(x, y), 1e-300);
+}
+
+/// The convex polygon around points of a plane (Andrew's monotone chain), counter-clockwise, without those that lie
+/// within `tolerance` of its sides.
+Polygon around(std::vector<Flat> points, double tolerance) {
+  std::sort(points.begin(), points.end(),
+            [](const Flat& a, const Flat& b) { return std::tie(a.x, a.y, a.vertex) < std::tie(b.x, b.y, b.vertex); });
+  std::vector<Flat> ring;
+  for (int pass = 0; pass < 2; pass++) {
+    const std::size_t start = ring.size();
+    for (const Flat& p : points) {
+      while (ring.size() > start + 1 && bulge(ring[ring.size() - 2], ring.back(), p) <= tolerance) ring.pop_back();
+      ring.push_back(p);
+    }
+    ring.pop_back();  // the first of the other pass
+    std::reverse(points.begin(), points.end());
+  }
+  for (std::size_t i = 0; i < ring.size() && ring.size() > 2;) {  // the two ends of the chains
+    const std::size_t n = ring.size();
+    if (bulge(ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]) <= tolerance)
+      ring.erase(ring.begin() + std::ptrdiff_t(i)), i = 0;
+    else
+      i++;
+  }
+  Polygon polygon;
+  for (const Flat& p : ring) polygon.push_back(p.vertex);
+  return polygon;
+}
+
+/// Normal of a polygon that is plane but for rounding (Newell).
+Point normal_of(const std::vector<Point>& vertices, const Polygon& polygon) {
+  Point sum = Point::Zero();
+  for (std::size_t i = 0; i < polygon.size(); i++)
+    sum +=
+        (vertices[polygon[i]] - vertices[polygon[0]]).cross(vertices[polygon[(i + 1) % polygon.size()]] - vertices[polygon[0]]);
+  return sum.normalized();
+}
+
+/// A plane of the hull, with area of the triangle that gave it.
+struct Plane {
+  double area;
+  Point normal;
+  std::array<std::uint32_t, 3> triangle;
+};
+
+std::vector<Plane> planes_of(const std::vector<Point>& points, const std::vector<std::uint32_t>& triangles, double tolerance) {
+  Point inside = Point::Zero();
+  for (std::uint32_t i : triangles) inside += points[i] / double(triangles.size());
+  std::vector<Plane> planes;
+  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
+    const Point &a = points[triangles[i]], &b = points[triangles[i + 1]], &c = points[triangles[i + 2]];
+    const Point n = (b - a).cross(c - a);
+    const double longest = std::sqrt(std::max({(b - a).squaredNorm(), (c - a).squaredNorm(), (c - b).squaredNorm()}));
+    if (!(n.norm() > tolerance * longest)) continue;  // a sliver is part of an edge
+    const double side = n.dot(a - inside) < 0 ? -1 : 1;
+    planes.push_back({n.norm(), side * n.normalized(), {triangles[i], triangles[i + 1], triangles[i + 2]}});
+  }
+  std::stable_sort(planes.begin(), planes.end(), [](const Plane& a, const Plane& b) { return a.area > b.area; });
+  return planes;
+}
+
+/// The first of the vertices in each place.
+Polygon apart(const std::vector<Point>& points, const Polygon& vertices, double tolerance) {
+  Polygon kept;
+  for (std::uint32_t v : vertices)
+    if (std::none_of(kept.begin(), kept.end(), [&](std::uint32_t k) { return (points[k] - points[v]).norm() < tolerance; }))
+      kept.push_back(v);
+  return kept;
+}
+
+/// Faces of the hull of the vertices that are left: for each plane, largest triangle first, the polygon around the
+/// vertices in it. A vertex of fewer than three faces lies in a face or on an edge and goes; then all are made anew.
+std::vector<Polygon> faces_of(const std::vector<Point>& points, const std::vector<Plane>& planes, Polygon& vertices,
+                              double tolerance) {
+  for (;;) {
+    std::vector<Polygon> faces;
+    std::vector<std::pair<Point, double>> taken;
+    std::vector<int> uses(points.size(), 0);
+    for (const Plane& plane : planes) {
+      const auto in = [&](const std::pair<Point, double>& other) {
+        return std::all_of(plane.triangle.begin(), plane.triangle.end(),
+                           [&](std::uint32_t v) { return other.first.dot(points[v]) > other.second - tolerance; });
+      };
+      if (std::any_of(taken.begin(), taken.end(), in)) continue;
+      double top = -1e300;
+      for (std::uint32_t v : vertices) top = std::max(top, plane.normal.dot(points[v]));
+      const Point u = plane.normal.unitOrthogonal(), w = plane.normal.cross(u);
+      std::vector<Flat> near;
+      for (std::uint32_t v : vertices)
+        if (plane.normal.dot(points[v]) > top - tolerance) near.push_back({u.dot(points[v]), w.dot(points[v]), v});
+      if (near.size() < 3) continue;
+      Polygon face = around(std::move(near), tolerance);
+      if (face.size() < 3) continue;
+      std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
+      taken.push_back({plane.normal, top});
+      if (std::find(faces.begin(), faces.end(), face) != faces.end()) continue;
+      for (std::uint32_t v : face) uses[v]++;
+      faces.push_back(std::move(face));
+    }
+    if (std::erase_if(vertices, [&](std::uint32_t v) { return uses[v] < 3; }) == 0) return faces;
+  }
+}
+
+/// Whether every side of every face is that of one other face, run through the other way.
+bool closed(const std::vector<Polygon>& faces) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+  for (const Polygon& face : faces)
+    for (std::size_t i = 0; i < face.size(); i++) sides[{face[i], face[(i + 1) % face.size()]}]++;
+  return faces.size() >= 4 && std::all_of(sides.begin(), sides.end(), [&](const auto& side) {
+           const auto other = sides.find({side.first.second, side.first.first});
+           return side.second == 1 && other != sides.end();
+         });
+}
+
+Error too_many(std::size_t points, std::size_t vertices) {
+  return {ErrorCode::buffer_full, "The hull of " + std::to_string(points) + " points has " + std::to_string(vertices) +
+                                      " vertices and room for " + std::to_string(constants::largest_hull_vertices) +
+                                      "; leave some of the points out, or use several hulls."};
+}
+
+/// In coordinates of size 1 about the middle of the points.
+Result<Solid> solid_of(const std::vector<Point>& points) {
+  std::vector<double> coordinates;
+  for (const Point& p : points) coordinates.insert(coordinates.end(), p.begin(), p.end());
+  const std::vector<std::uint32_t> triangles = qhull_triangles(coordinates);
+  Polygon all(triangles);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  if (all.size() > 16 * constants::largest_hull_vertices) return too_many(points.size(), all.size());
+  // points of a mesh in float lie in one plane to about 1e-7; where the tolerance makes faces that do not fit
+  // together, finer ones do
+  for (double tolerance = constants::hull_planarity; tolerance > 1e-12 && !triangles.empty(); tolerance *= 0.01) {
+    Polygon vertices = apart(points, all, tolerance);
+    const std::vector<Polygon> faces = faces_of(points, planes_of(points, triangles, tolerance), vertices, tolerance);
+    if (!closed(faces)) continue;
+    if (vertices.size() > constants::largest_hull_vertices) return too_many(points.size(), vertices.size());
+    Solid solid;
+    std::vector<std::uint32_t> number(points.size(), 0);
+    for (std::uint32_t v : vertices) {
+      number[v] = std::uint32_t(solid.vertices.size());
+      solid.vertices.push_back(points[v]);
+    }
+    for (const Polygon& face : faces) {
+      solid.faces.push_back(face);
+      for (std::uint32_t& v : solid.faces.back()) v = number[v];
+    }
+    return solid;
+  }
+  return Error{ErrorCode::degenerate_shape,
+               "The points of a hull are too close together for faces between them; weld them first."};
+}
+
+// ---- the frame -------------------------------------------------------------------------------------------
+
+/// Integrals over the solid: of 1, of x, and of x x^T about the centre of mass.
+struct Moments {
+  double volume = 0;
+  Point centre = Point::Zero();
+  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+};
+/// Exact, by tetrahedra from the origin to a triangle of each face.
+Moments integrate(const Solid& solid) {
+  Moments m;
+  for (const Polygon& face : solid.faces)
+    for (std::size_t i = 1; i + 1 < face.size(); i++) {
+      const Point &a = solid.vertices[face[0]], &b = solid.vertices[face[i]], &c = solid.vertices[face[i + 1]];
+      const double six = a.dot(b.cross(c));
+      const Point sum = a + b + c;
+      m.volume += six / 6;
+      m.centre += six / 24 * sum;
+      m.second += six / 120 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+    }
+  m.centre /= m.volume;
+  m.second -= m.volume * m.centre * m.centre.transpose();
+  return m;
+}
+
+/// The principal axes as columns, in the order and with the signs that turn the given axes least. Axes that are
+/// principal already stay.
+Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& second) {
+  const Eigen::Matrix3d off = second - Eigen::Matrix3d(second.diagonal().asDiagonal());
+  if (off.cwiseAbs().maxCoeff() < 1e-12 * second.trace()) return Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d found = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(second).eigenvectors();
+  Eigen::Matrix3d best = found;
+  double most = -4;
+  std::array<int, 3> order{0, 1, 2};
+  do
+    for (int signs = 0; signs < 8; signs++) {
+      Eigen::Matrix3d axes;
+      for (int k = 0; k < 3; k++) axes.col(k) = (signs >> k & 1 ? -1 : 1) * found.col(order[std::size_t(k)]);
+      if (axes.determinant() > 0 && axes.trace() > most + 1e-9) {
+        most = axes.trace();
+        best = axes;
+      }
+    }
+  while (std::next_permutation(order.begin(), order.end()));
+  return best;
+}
+
+}  // namespace
+
+Result<Hull> make_hull(std::span<const Vec3> points) {
+  if (Status ok = check_points(points); !ok) return ok.error();
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(Point(p.x, p.y, p.z));
+  const Point middle = box.center();
+  const double size = box.sizes().maxCoeff();
+  std::vector<Point> scaled;
+  for (const Vec3& p : points) scaled.push_back((Point(p.x, p.y, p.z) - middle) / size);
+  Result<Solid> made = solid_of(scaled);
+  if (!made) return made.error();
+  Solid& solid = *made;
+
+  const Moments m = integrate(solid);
+  const Eigen::Matrix3d axes = principal_axes(m.second);
+  for (Point& p : solid.vertices) p = size * (axes.transpose() * (p - m.centre));
+  auto data = std::make_shared<HullData>();
+  data->volume = m.volume * size * size * size;
+  const Point along = (axes.transpose() * m.second * axes).diagonal() * (size * size * size * size * size);
+  data->moments = {along.y() + along.z(), along.x() + along.z(), along.x() + along.y()};
+  data->frame = {Vec3(Point(middle + size * m.centre)), Quat(Eigen::Quaterniond(axes).normalized())};
+  data->inner_radius = 1e300;
+  data->first = {0};
+  for (const Point& p : solid.vertices) {
+    data->vertices.push_back(p);
+    data->radius = std::max(data->radius, p.norm());
+  }
+  for (const Polygon& face : solid.faces) {
+    data->corners.insert(data->corners.end(), face.begin(), face.end());
+    data->first.push_back(std::uint32_t(data->corners.size()));
+    const Point n = normal_of(solid.vertices, face);
+    data->normals.push_back(n);
+    data->inner_radius = std::min(data->inner_radius, n.dot(solid.vertices[face[0]]));
+  }
+  write_table(*data);
+  return Hull(std::move(data));
+}
+
+std::span<const Vec3> Hull::vertices() const { return data_ ? std::span<const Vec3>(data_->vertices) : std::span<const Vec3>(); }
+std::size_t Hull::face_count() const { return data_ ? data_->normals.size() : 0; }
+std::span<const std::uint32_t> Hull::face(std::size_t i) const { return data_->face(i); }
+double Hull::volume() const { return data_ ? data_->volume : 0; }
+Vec3 Hull::moments() const { return data_ ? data_->moments : Vec3{}; }
+double Hull::radius() const { return data_ ? data_->radius : 0; }
+double Hull::inner_radius() const { return data_ ? data_->inner_radius : 0; }
+Pose Hull::frame() const { return data_ ? data_->frame : Pose{}; }
+
+}  // namespace pcphys
