@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "pcphys/step.h"
 #include "scenes/scene.h"
@@ -88,5 +89,7 @@ class Engine {
 };
 
 std::unique_ptr<Engine> make_pcphys(Place place);
+/// A peer by its name in peers/peer.h; nullptr when it was not found. What it has no equal of, a trial reports as refused.
+std::unique_ptr<Engine> make_peer(std::string_view name);
 
 }  // namespace pcphys::cases

@@ -111,6 +111,10 @@ Status set_precision(const RunOptions& options, Setup& setup) {
 
 void add_scene_argument(CLI::App& app, RunOptions& options) {
   app.add_option("SCENE", options.scene, "name of the scene; `pcphys scenes` lists them")->required();
+  add_scene_options(app, options);
+}
+
+void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--count", options.count, "how many of the scene's objects");
   app.add_option("--seed", options.seed, "of the scene's random draws (default: the scene's own)");
   app.add_option("--ratio", options.ratio, "mass ratio of chain, chainswing and heavy")->capture_default_str();

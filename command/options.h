@@ -39,6 +39,14 @@ struct CaseOptions {
   std::string json, csv;
 };
 
+/// Of `compare`, beside those of a run.
+struct CompareOptions {
+  std::vector<std::string> scenes;  // "balls" or "balls:1000"; none: all
+  std::string peers;                // names with commas between; empty: `compare` chooses
+  long long peer_substeps = 0, peer_iterations = 0;
+  double budget = 20;  // of stepping, for each peer and scene [s]
+};
+
 /// The options in the library's own terms.
 struct Setup {
   std::string scene;
@@ -51,9 +59,11 @@ struct Setup {
 
 /// Adds SCENE and the options of a run.
 void add_scene_argument(CLI::App& app, RunOptions& options);
+void add_scene_options(CLI::App& app, RunOptions& options);
 void add_run_options(CLI::App& app, RunOptions& options);
 void add_output_options(CLI::App& app, RunOptions& options);
 void add_case_options(CLI::App& app, CaseOptions& options);
+void add_compare_options(CLI::App& app, CompareOptions& options);
 
 // Errors: bad_argument with a sentence that names the option and what it accepts.
 Status check_range(const char* option, long long value, long long low, long long high);

@@ -67,6 +67,8 @@ Result<ResultFiles> ResultFiles::open(const std::string& json, const std::string
   auto json_file = OutputFile::open(json), csv_file = OutputFile::open(csv);
   if (!json_file) return json_file.error();
   if (!csv_file) return csv_file.error();
+  if (json_file->standard_output() && csv_file->standard_output())
+    return Error{ErrorCode::bad_argument, "--json - prints nothing but JSON; give --csv a file."};
   return ResultFiles{std::move(*json_file), std::move(*csv_file)};
 }
 

@@ -104,6 +104,20 @@ class Bullet : public Peer {
     return {rigid_[body]->getMass(), from_bullet(rigid_[body]->getLocalInertia())};
   }
 
+  Status set_wrench(std::size_t body, const Wrench& wrench) override {
+    change_wrench(bodies_, pushed_, body, wrench);
+    return {};
+  }
+  Status set_gravity(Vec3 gravity) override {
+    world_.setGravity(to_bullet(gravity));  // of the bodies too
+    return {};
+  }
+  Status set_velocity(std::size_t body, Vec3 velocity, Vec3 angular_velocity) override {
+    rigid_[body]->setLinearVelocity(to_bullet(velocity));
+    rigid_[body]->setAngularVelocity(to_bullet(angular_velocity));
+    return {};
+  }
+
   std::size_t contacts() const override {
     std::size_t count = 0;
     for_each_point([&](const btManifoldPoint&) { ++count; });

@@ -100,6 +100,11 @@ bool Description::collides(std::size_t body) const {
   return std::any_of(shapes.begin(), shapes.end(), [](const ShapeDef& shape) { return shape.filter.mask != 0; });
 }
 
+void change_wrench(std::vector<Body>& bodies, std::vector<std::size_t>& pushed, std::size_t body, const Wrench& wrench) {
+  bodies[body].wrench = wrench;
+  if (bodies[body].dynamic && std::find(pushed.begin(), pushed.end(), body) == pushed.end()) pushed.push_back(body);
+}
+
 bool may_touch(const Filter& a, const Filter& b) {
   if (a.group != 0 && a.group == b.group) return a.group > 0;
   return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;

@@ -61,6 +61,9 @@ struct Description {
   bool collides(std::size_t body) const;
 };
 
+/// Takes a body's new wrench, and lists it among those that are pushed if it is not there.
+void change_wrench(std::vector<Body>& bodies, std::vector<std::size_t>& pushed, std::size_t body, const Wrench& wrench);
+
 /// Whether the filters of two shapes let them touch: `Filter` in types.h.
 bool may_touch(const Filter& a, const Filter& b);
 

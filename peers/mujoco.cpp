@@ -12,8 +12,8 @@
 namespace pcphys::peers {
 namespace {
 
-constexpr double own_step = 0.002;    // MuJoCo's default [s]
-constexpr double most_gigabytes = 3;  // of its dense arrays
+constexpr double own_step = 0.002;      // MuJoCo's default [s]
+constexpr double most_gigabytes = 1.9;  // of its dense arrays: above, version 2.2.2 fails to make them
 constexpr const char* file = "world.xml";
 
 struct DeleteModel {
@@ -44,22 +44,23 @@ class Mujoco : public Peer {
   }
 
   Status build(const Options& options, MujocoIntegrator integrator) {
-    const Vec3 g = description_.gravity;
-    std::string attributes = "gravity='" + std::to_string(g.x) + " " + std::to_string(g.y) + " " + std::to_string(g.z) + "'";
-    if (integrator == MujocoIntegrator::rk4) attributes += " integrator='RK4'";
+    std::string attributes = integrator == MujocoIntegrator::rk4 ? "integrator='RK4'" : "integrator='Euler'";
     if (options.iterations > 0) attributes += " iterations='" + std::to_string(options.iterations) + "'";
     made_ = make_mujoco_model(description_, attributes);
     if (made_.gigabytes > most_gigabytes)
-      return Error{ErrorCode::unavailable, "MuJoCo's dense arrays would take " + std::to_string(int(std::ceil(made_.gigabytes))) +
-                                               " GiB for this scene; it runs up to " + std::to_string(int(most_gigabytes)) + "."};
+      return Error{ErrorCode::unavailable, "MuJoCo's arrays of constraints are dense and would take " +
+                                               std::to_string(int(std::ceil(made_.gigabytes))) +
+                                               " GiB for this scene; above 2 it cannot make them."};
     untranslated_.insert(untranslated_.end(), made_.untranslated.begin(), made_.untranslated.end());
     if (auto status = load(); !status) return status;
-    for (int k = 0; k < 3; ++k) model_->opt.gravity[k] = k == 0 ? g.x : k == 1 ? g.y : g.z;
+    (void)set_gravity(description_.gravity);
     for (std::size_t i = 0; i < description_.bodies.size(); ++i)
       ids_.push_back(mj_name2id(model_.get(), mjOBJ_BODY, body_name(int(i)).c_str()));
     hold_points();
     place_joints();
-    set_velocities();
+    std::vector<Speeds> speeds;
+    for (const Body& body : description_.bodies) speeds.push_back({body.velocity, body.angular_velocity});
+    take_velocities(speeds);
     for (std::size_t i = 0; i < ids_.size(); ++i) push(i);
     return {};
   }
@@ -84,8 +85,8 @@ class Mujoco : public Peer {
 
   Pose pose(std::size_t body) const override {
     refresh();
-    const mjtNum *p = data_->xipos + 3 * ids_[body], *q = data_->xquat + 4 * ids_[body];
-    return {{p[0], p[1], p[2]}, {q[1], q[2], q[3], q[0]}};
+    const mjtNum* p = data_->xipos + 3 * ids_[body];
+    return {{p[0], p[1], p[2]}, orientation(body)};
   }
   Vec3 velocity(std::size_t body) const override { return speeds(body).linear; }
   Vec3 angular_velocity(std::size_t body) const override { return speeds(body).angular; }
@@ -93,6 +94,26 @@ class Mujoco : public Peer {
     const mjtNum* moments = model_->body_inertia + 3 * ids_[body];
     return {model_->body_mass[ids_[body]], {moments[0], moments[1], moments[2]}};
   }
+
+  Status set_wrench(std::size_t body, const Wrench& wrench) override {
+    const Vec3 f = wrench.force, t = wrench.torque;
+    const mjtNum both[6] = {f.x, f.y, f.z, t.x, t.y, t.z};
+    if (description_.bodies[body].dynamic) std::copy(both, both + 6, data_->xfrc_applied + 6 * ids_[body]);
+    return {};
+  }
+  Status set_gravity(Vec3 gravity) override {
+    const mjtNum g[3] = {gravity.x, gravity.y, gravity.z};
+    std::copy(g, g + 3, model_->opt.gravity);
+    return {};
+  }
+  Status set_velocity(std::size_t body, Vec3 velocity, Vec3 angular_velocity) override {
+    std::vector<Speeds> all;
+    for (std::size_t i = 0; i < ids_.size(); ++i) all.push_back(speeds(i));
+    all[body] = {velocity, angular_velocity};
+    take_velocities(all);
+    return {};
+  }
+
   std::size_t contacts() const override { return std::size_t(data_->ncon); }
   std::optional<double> deepest() const override {
     double depth = 0;
@@ -102,10 +123,6 @@ class Mujoco : public Peer {
   std::uint64_t failures() const override { return failures_; }
 
  private:
-  struct Speeds {
-    Vec3 linear, angular;
-  };
-
   Status load() {
     take_reports();
     std::unique_ptr<mjVFS, DeleteFiles> files(new mjVFS);
@@ -157,19 +174,27 @@ class Mujoco : public Peer {
     }
   }
 
+  struct Speeds {
+    Vec3 linear, angular;
+  };
+
   /// The velocities that joints allow and that are nearest to those given, by kinetic energy: M v = sum of J^T p.
-  void set_velocities() {
+  void take_velocities(const std::vector<Speeds>& given) {
     mj_forward(model_.get(), data_.get());
     std::vector<mjtNum> momentum(std::size_t(model_->nv), 0);
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const Body& body = description_.bodies[i];
       if (!body.dynamic) continue;
-      const Vec3 p = body.mass.mass * body.velocity, w = rotate(conjugate(body.pose.orientation), body.angular_velocity);
-      const Vec3 i_w{body.mass.moments.x * w.x, body.mass.moments.y * w.y, body.mass.moments.z * w.z};
-      apply(i, p, rotate(body.pose.orientation, i_w), momentum.data());
+      const Quat turn = orientation(i);
+      const Vec3 w = rotate(conjugate(turn), given[i].angular), m = body.mass.moments;
+      apply(i, body.mass.mass * given[i].linear, rotate(turn, {m.x * w.x, m.y * w.y, m.z * w.z}), momentum.data());
     }
     if (model_->nv > 0) mj_solveM(model_.get(), data_.get(), data_->qvel, momentum.data(), 1);
     mj_forward(model_.get(), data_.get());
+  }
+  Quat orientation(std::size_t body) const {
+    const mjtNum* q = data_->xquat + 4 * ids_[body];
+    return {q[1], q[2], q[3], q[0]};
   }
 
   void apply(std::size_t body, Vec3 force, Vec3 torque, mjtNum* target) const {
@@ -185,10 +210,7 @@ class Mujoco : public Peer {
         if (stepping_) stepping_->drag();
       };
     }
-    if (!body.pushed()) return;
-    const Vec3 f = body.wrench.force, t = body.wrench.torque;
-    const mjtNum both[6] = {f.x, f.y, f.z, t.x, t.y, t.z};
-    std::copy(both, both + 6, data_->xfrc_applied + 6 * ids_[index]);
+    (void)set_wrench(index, body.wrench);
   }
 
   /// Force -F m v and torque -F L, at each stage of the integrator.
@@ -196,8 +218,7 @@ class Mujoco : public Peer {
     for (std::size_t i : dragging_) {
       const Body& body = description_.bodies[i];
       const Speeds now = read_speeds(i);
-      const mjtNum* q = data_->xquat + 4 * ids_[i];
-      const Quat turn{q[1], q[2], q[3], q[0]};
+      const Quat turn = orientation(i);
       const Vec3 w = rotate(conjugate(turn), now.angular), m = body.mass.moments;
       const Vec3 momentum = rotate(turn, {m.x * w.x, m.y * w.y, m.z * w.z});
       apply(i, -body.linear_drag * body.mass.mass * now.linear, -body.angular_drag * momentum, data_->qfrc_passive);

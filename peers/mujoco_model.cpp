@@ -208,7 +208,7 @@ class Writer {
   };
   /// MuJoCo's arrays are made once and are dense. What does not fit is dropped, and counted as a failure.
   Sizes sizes() {
-    constexpr std::size_t of_round = 6, of_others = 16;  // points a body, as piles of the scenes have them and more
+    constexpr std::size_t of_round = 6, of_others = 12;  // points a body, as piles of the scenes have them and more
     std::size_t contacts = 64, freedoms = 0;
     for (std::size_t i = 0; i < description_.bodies.size(); ++i) {
       const Body& body = description_.bodies[i];

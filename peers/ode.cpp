@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdarg>
+#include <cstdio>
 #include <numbers>
+#include <stdexcept>
 
 #include "engines.h"
 
@@ -12,10 +15,21 @@ namespace pcphys::peers {
 namespace {
 
 constexpr int points_a_pair = 8;
-constexpr double largest_middle_angle = 1.45;  // of three Euler angles [rad]: at pi / 2 they are singular
+constexpr std::size_t most_direct_rows = 2000;  // of the direct step: about a second a step
+constexpr double largest_middle_angle = 1.45;   // of three Euler angles [rad]: at pi / 2 they are singular
+
+/// ODE's ways to end the process are thrown instead, and caught by `step`.
+[[noreturn]] void give_up(int, const char* message, va_list arguments) {
+  char text[300];
+  std::vsnprintf(text, sizeof text, message, arguments);
+  throw std::runtime_error(text);
+}
 
 /// ODE is set up once a process; the data of this thread too.
 void set_up_ode() {
+  dSetErrorHandler(give_up);
+  dSetDebugHandler(give_up);
+  dSetMessageHandler([](int, const char*, va_list) {});
   static const bool once = dInitODE2(0) != 0 && dAllocateODEDataForThread(dAllocateMaskAll) != 0;
   (void)once;
 }
@@ -55,20 +69,11 @@ class Ode : public Peer {
   Status step(double dt) override {
     const double h = dt / substeps_;
     if (h != damped_for_) set_damping(h);
-    for (int k = 0; k < substeps_; ++k) {
-      points_ = 0;
-      deepest_ = 0;
-      dSpaceCollide(moving_, this, near);
-      dSpaceCollide2(reinterpret_cast<dGeomID>(moving_), reinterpret_cast<dGeomID>(standing_), this, near);
-      for (std::size_t i = 0; i < ids_.size(); ++i) {
-        const Body& body = description_.bodies[i];
-        if (!body.pushed()) continue;
-        dBodyAddForce(ids_[i], body.wrench.force.x, body.wrench.force.y, body.wrench.force.z);
-        dBodyAddTorque(ids_[i], body.wrench.torque.x, body.wrench.torque.y, body.wrench.torque.z);
-      }
-      if (!(how_ == OdeStep::quick ? dWorldQuickStep(world_, h) : dWorldStep(world_, h)))
-        return Error{ErrorCode::unavailable, "ODE had no memory for a step."};
-      dJointGroupEmpty(contacts_);
+    try {
+      for (int k = 0; k < substeps_; ++k)
+        if (!substep(h)) return Error{ErrorCode::unavailable, "ODE had no memory for a step."};
+    } catch (const std::runtime_error& error) {
+      return Error{ErrorCode::unavailable, std::string("ODE gave up: ") + error.what() + "."};
     }
     return {};
   }
@@ -88,11 +93,41 @@ class Ode : public Peer {
     dBodyGetMass(ids_[body], &mass);
     return {mass.mass, {mass.I[0], mass.I[5], mass.I[10]}};
   }
+
+  Status set_wrench(std::size_t body, const Wrench& wrench) override {
+    change_wrench(description_.bodies, pushed_, body, wrench);
+    return {};
+  }
+  Status set_gravity(Vec3 g) override {
+    dWorldSetGravity(world_, g.x, g.y, g.z);
+    return {};
+  }
+  Status set_velocity(std::size_t body, Vec3 v, Vec3 w) override {
+    if (!ids_[body]) return {};
+    dBodySetLinearVel(ids_[body], v.x, v.y, v.z);
+    dBodySetAngularVel(ids_[body], w.x, w.y, w.z);
+    return {};
+  }
+
   std::size_t contacts() const override { return points_; }
   std::optional<double> deepest() const override { return deepest_; }
 
  private:
   static Vec3 vector(const dReal* v) { return v ? Vec3{v[0], v[1], v[2]} : Vec3{}; }
+
+  bool substep(double h) {
+    points_ = 0;
+    deepest_ = 0;
+    dJointGroupEmpty(contacts_);  // those of the last sub-step
+    dSpaceCollide(moving_, this, near);
+    dSpaceCollide2(reinterpret_cast<dGeomID>(moving_), reinterpret_cast<dGeomID>(standing_), this, near);
+    for (std::size_t i : pushed_) {
+      const Body& body = description_.bodies[i];
+      dBodyAddForce(ids_[i], body.wrench.force.x, body.wrench.force.y, body.wrench.force.z);
+      dBodyAddTorque(ids_[i], body.wrench.torque.x, body.wrench.torque.y, body.wrench.torque.z);
+    }
+    return (how_ == OdeStep::quick ? dWorldQuickStep(world_, h) : dWorldStep(world_, h)) != 0;
+  }
 
   static void near(void* self, dGeomID a, dGeomID b) { static_cast<Ode*>(self)->touch(a, b); }
 
@@ -151,6 +186,7 @@ class Ode : public Peer {
       dBodySetLinearVel(id, body.velocity.x, body.velocity.y, body.velocity.z);
       dBodySetAngularVel(id, body.angular_velocity.x, body.angular_velocity.y, body.angular_velocity.z);
     }
+    if (body.pushed()) pushed_.push_back(ids_.size());
     ids_.push_back(id);
     for (const ShapeDef& shape : body.shapes) {
       if (shape.filter.mask == 0) continue;
@@ -285,15 +321,32 @@ class Ode : public Peer {
   dWorldID world_;
   dSpaceID moving_, standing_;
   dJointGroupID contacts_;
-  std::vector<dBodyID> ids_;  // by body; none of fixed ones
+  std::vector<dBodyID> ids_;         // by body; none of fixed ones
+  std::vector<std::size_t> pushed_;  // by a constant force
   std::vector<std::unique_ptr<Contact>> shapes_;
 };
+
+/// Rows of contacts and joints, as piles of the scenes have them, if all of it stands together.
+std::size_t expected_rows(const Description& description) {
+  std::size_t rows = 0;
+  for (std::size_t i = 0; i < description.bodies.size(); ++i) {
+    if (!description.bodies[i].dynamic || !description.collides(i)) continue;
+    for (const ShapeDef& shape : description.bodies[i].shapes)
+      rows += shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule ? 6 : 24;
+  }
+  return rows + 3 * description.joints.size();
+}
 
 }  // namespace
 
 std::string ode_version() { return dODE_VERSION; }
 
 Result<std::unique_ptr<Peer>> make_ode(const Description& description, const Options& options, OdeStep step) {
+  const std::size_t rows = expected_rows(description);
+  if (step == OdeStep::dantzig && rows > most_direct_rows)
+    return Error{ErrorCode::unavailable, "ODE's direct step takes time with the cube of its rows; this scene may have " +
+                                             std::to_string(rows) + ", and it runs up to " + std::to_string(most_direct_rows) +
+                                             "."};
   return std::unique_ptr<Peer>(std::make_unique<Ode>(description, options, step));
 }
 

@@ -53,6 +53,14 @@ const std::vector<Entry>& entries() {
 
 }  // namespace
 
+namespace {
+const Error cannot{ErrorCode::unavailable, "This peer cannot be changed while it runs."};
+}
+
+Status Peer::set_wrench(std::size_t, const Wrench&) { return cannot; }
+Status Peer::set_gravity(Vec3) { return cannot; }
+Status Peer::set_velocity(std::size_t, Vec3, Vec3) { return cannot; }
+
 std::span<const Variant> variants() {
   static const std::vector<Variant> all = [] {
     std::vector<Variant> result;

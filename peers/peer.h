@@ -55,6 +55,12 @@ class Peer {
   /// As the engine has it, which is not always what it was given.
   virtual MassProperties mass_properties(std::size_t body) const = 0;
 
+  /// In place of what acted before. Errors: unavailable where the engine cannot, as for the next two.
+  virtual Status set_wrench(std::size_t body, const Wrench& wrench);
+  virtual Status set_gravity(Vec3 gravity);
+  /// Of the centre of mass, and about it; world axes.
+  virtual Status set_velocity(std::size_t body, Vec3 velocity, Vec3 angular_velocity);
+
   /// Points in contact, and the deepest overlap among them [m], of the last sub-step, as the engine sees them.
   virtual std::size_t contacts() const = 0;
   virtual std::optional<double> deepest() const = 0;

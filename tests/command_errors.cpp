@@ -74,7 +74,16 @@ const Case cases[] = {
     {"accuracy A2 --repeats 0", 2, "--repeats is 0"},
     {"accuracy A2 --backend cuda", 2, "cpu, gl"},
     {"accuracy A2 --json /no/such/folder/a.json", 1, "folder that exists"},
-    {"compare balls --csv x.csv", 1, "later version"},
+    {"compare marbles", 2, "choose one of balls"},
+    {"compare balls:many", 2, "balls:1000"},
+    {"compare balls:-1", 2, "--count is -1"},
+    {"compare balls --peers havok", 2, "mujoco-rk4"},
+    {"compare balls --peer-substeps -1", 2, "--peer-substeps is -1"},
+    {"compare balls --peer-iterations -1", 2, "--peer-iterations is -1"},
+    {"compare balls --budget 0", 2, "--budget"},
+    {"compare balls --steps 0", 2, "--steps is 0"},
+    {"compare balls --json - --csv -", 2, "--json -"},
+    {"compare balls --json /no/such/folder/a.json", 1, "folder that exists"},
 };
 
 }  // namespace

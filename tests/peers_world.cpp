@@ -226,6 +226,15 @@ TEST_CASE("peers: drag, constant force and constant torque") {
     CHECK(peer->angular_velocity(0).z == Approx(0.5 / moment).epsilon(1e-4));
     CHECK(peer->velocity(1).x == Approx(3 * std::exp(-0.25)).epsilon(1e-3));
     CHECK(peer->angular_velocity(1).y == Approx(2 * std::exp(-0.4)).epsilon(1e-3));
+    // what may be changed on the way
+    CHECK(peer->set_wrench(0, {{0, 2, 0}, {}}));
+    CHECK(peer->set_velocity(0, {1, 0, 0}, {0, 0, 3}));
+    CHECK(peer->set_gravity({0, 0, 5}));
+    run(*peer, 100, 1e-3);
+    CHECK(peer->velocity(0).x == Approx(1).epsilon(1e-4));
+    CHECK(peer->velocity(0).y == Approx(0.1).epsilon(1e-4));
+    CHECK(peer->velocity(0).z == Approx(0.5).epsilon(1e-4));
+    CHECK(peer->angular_velocity(0).z == Approx(3).epsilon(1e-4));
   });
 }
 
