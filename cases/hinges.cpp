@@ -1,5 +1,6 @@
 // A9, A19, A20: hinges, a hinge's limit as a stop, and steps of changing length.
 #include <numbers>
+#include <utility>
 
 #include "case.h"
 #include "measures.h"
@@ -70,11 +71,11 @@ void door(Trial& trial, Hinge hinge, Motor motor, const Csv& reference) {
     }
   } else {
     if (motor == Motor::drag) run.set_wrench(0, {{}, motor_torque * axis});
-    walk_with_acceleration(run, trial.dt(), reference, 10, [&](std::size_t row, double) {
+    walk_with_neighbours(run, trial.dt(), reference, 10, [&](std::size_t row, double) {
       compare(row);
-      return [&, row](Vec3 acceleration) {
+      return [&, row](const Neighbours& n) {
         const Vec3 expected = reference.vector(row, "F");
-        force.add(length(door_mass * (acceleration - down) - expected));
+        force.add(length(door_mass * (n.acceleration() - down) - expected));
         largest_force.add(length(expected));
       };
     });
@@ -102,17 +103,21 @@ void stop_at_limit(Trial& trial) {
     builder.add_joint(joint);
   });
   const double e0 = energy(run);
-  double hit = -1, beyond = 0, later = 0, amplitude = 0, gained = 0;
+  double hit = -1, beyond = 0, later = 0, amplitude = 0, gained = 0, last = 0.5 * pi;
   bool fast = false;
+  Neighbours n;
+  n.dt = trial.dt();
+  n.now = n.after = run.pose(0);
   for (long k = 1, hit_step = 0, steps = trial.steps(5); k <= steps; ++k) {
     run.step(trial.dt());
-    const Vec3 p = run.pose(0).position;
-    const double angle = std::atan2(p.x, -p.z), speed = length(run.angular_velocity(0));
+    n.before = std::exchange(n.now, std::exchange(n.after, run.pose(0)));
+    const Vec3 p = n.after.position;
+    const double angle = std::atan2(p.x, -p.z), speed = std::fabs(angle - std::exchange(last, angle)) / trial.dt();
     fast = fast || speed > w_hit;
-    if (hit < 0 && fast && angle < 0 && speed < 0.5 * w_hit) hit = double(hit_step = k) * trial.dt();
+    if (hit < 0 && fast && angle < 0 && speed < 0.5 * w_hit) hit = double((hit_step = k) - 1) * trial.dt();
     beyond = std::max(beyond, limit - angle);
     if (hit_step > 0 && k >= hit_step + 3) later = std::max(later, limit - angle), amplitude = std::max(amplitude, angle);
-    gained = std::max(gained, (energy(run) - e0) / gravity);
+    if (k > 1) gained = std::max(gained, (n.energy(run.mass(0), down) - e0) / gravity);
   }
   trial.report("instant of the stop [s]", std::fabs(hit - t_hit), 1.001 * trial.dt());
   trial.report("beyond the limit at the stop [rad]", beyond, w_hit * trial.dt());

@@ -50,6 +50,20 @@ double angle_between(Quat a, Quat b) {
   return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
 }
 
+Vec3 Neighbours::angular_velocity() const {
+  Quat d = after.orientation * conjugate(before.orientation);
+  if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
+  const Vec3 v{d.x, d.y, d.z};
+  const double s = length(v);
+  return (s > 0 ? std::atan2(s, d.w) / (s * dt) : 0) * v;
+}
+
+double Neighbours::energy(const MassProperties& mass, Vec3 gravity) const {
+  const Vec3 v = velocity(), w = rotate(conjugate(now.orientation), angular_velocity()), i = mass.moments;
+  return 0.5 * mass.mass * dot(v, v) + 0.5 * (i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z) -
+         mass.mass * dot(gravity, now.position);
+}
+
 Vec3 spin_momentum(const Simulated& run, int body) {
   const Quat q = run.pose(body).orientation;
   const Vec3 w = rotate(conjugate(q), run.angular_velocity(body)), i = run.mass(body).moments;

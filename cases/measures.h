@@ -46,21 +46,37 @@ template <class Tell> void walk(Simulated& run, double dt, const Csv& reference,
   }
 }
 
-/// The same, and the acceleration of body 0 at each of the times, from three positions.
-template <class Tell> void walk_with_acceleration(Simulated& run, double dt, const Csv& reference, double seconds, Tell&& tell) {
+/// Three poses of a body, dt apart: motion from poses alone, the same for engines that store velocities in different
+/// phases.
+struct Neighbours {
+  Pose before, now, after;
+  double dt = 0;
+
+  Vec3 velocity() const { return (0.5 / dt) * (after.position - before.position); }
+  Vec3 acceleration() const { return (1 / (dt * dt)) * ((after.position - now.position) - (now.position - before.position)); }
+  Vec3 angular_velocity() const;
+  /// Kinetic, and potential in `gravity`, of a body of this mass [J].
+  double energy(const MassProperties& mass, Vec3 gravity) const;
+};
+
+/// As `walk`; `tell(row, t)` sees the run at each time and gives what takes the neighbours of body 0 there.
+template <class Tell> void walk_with_neighbours(Simulated& run, double dt, const Csv& reference, double seconds, Tell&& tell) {
   long done = 0;
   for (std::size_t row = 1; row < reference.rows.size(); ++row) {
     const double t = reference.rows[row][0];
     const long k = std::lround(t / dt);
     if (t > seconds + 1e-9 || std::fabs(double(k) * dt - t) > 1e-9 || k <= done) continue;
     run.step(dt, k - 1 - done);
-    const Vec3 before = run.pose(0).position;
+    Neighbours n;
+    n.dt = dt;
+    n.before = run.pose(0);
     run.step(dt);
-    const Vec3 now = run.pose(0).position;
-    const auto rest = tell(row, t);  // takes the acceleration
+    n.now = run.pose(0);
+    const auto rest = tell(row, t);
     run.step(dt);
+    n.after = run.pose(0);
     done = k + 1;
-    rest((1 / (dt * dt)) * (run.pose(0).position - now - (now - before)));
+    rest(n);
   }
 }
 

@@ -88,7 +88,8 @@ class Engine {
   virtual bool has_substeps() const { return true; }
 };
 
-std::unique_ptr<Engine> make_pcphys(Place place);
+/// `lanes` as in StepSettings.
+std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes = 0);
 /// A peer by its name in peers/peer.h; nullptr when it was not found. What it has no equal of, a trial reports as refused.
 std::unique_ptr<Engine> make_peer(std::string_view name);
 
