@@ -54,6 +54,8 @@ class Trial {
   const Meter& meter() const { return meter_; }
   /// Ends the trial after so many steps, all simulations together.
   void set_limit(long steps) { meter_.limit = steps; }
+  /// A trial whose steps take longer fails [s].
+  void set_budget(double seconds) { meter_.budget = seconds; }
   /// To be called when the variant's function is done.
   void finish();
 

@@ -32,7 +32,7 @@ class Other final : public Simulated {
 
 class PeerEngine final : public Engine {
  public:
-  explicit PeerEngine(const peers::Variant& variant) : variant_(variant) {}
+  PeerEngine(const peers::Variant& variant, double budget) : variant_(variant), budget_(budget) {}
 
   Result<std::unique_ptr<Simulated>> start(Problem problem, const Conditions& conditions) override {
     peers::Options options;
@@ -46,18 +46,20 @@ class PeerEngine final : public Engine {
       return Error{ErrorCode::unavailable, "Not its own motion: " + missing.front() + "."};
     return std::unique_ptr<Simulated>(std::make_unique<Other>(std::move(problem), std::move(*peer)));
   }
+  double budget() const override { return budget_; }
   std::string peer() const override { return std::string(variant_.name); }
   bool has(Precision precision) const override { return (variant_.precision == "double") == (precision == Precision::f64); }
 
  private:
   const peers::Variant& variant_;
+  double budget_;
 };
 
 }  // namespace
 
-std::unique_ptr<Engine> make_peer(std::string_view name) {
+std::unique_ptr<Engine> make_peer(std::string_view name, double budget) {
   for (const peers::Variant& variant : peers::variants())
-    if (variant.name == name && variant.found) return std::make_unique<PeerEngine>(variant);
+    if (variant.name == name && variant.found) return std::make_unique<PeerEngine>(variant, budget);
   return nullptr;
 }
 

@@ -51,6 +51,7 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
 std::unique_ptr<Trial> make_trial(Engine& engine, const Variant& variant, const Setting& setting, long limit) {
   auto trial = std::make_unique<Trial>(engine, setting.precision, setting.dt, setting.substeps);
   trial->set_limit(limit);
+  trial->set_budget(engine.budget());
   variant.run(*trial);
   trial->finish();
   return trial;
@@ -79,7 +80,7 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
   std::vector<Row> rows;
   for (const Finding& finding : trial.findings()) {
     row.metric = finding.metric;
-    row.error = finding.error;
+    row.error = row.failure.empty() ? finding.error : std::numeric_limits<double>::quiet_NaN();
     row.must = finding.must;
     row.target = finding.target;
     // NaN fails too

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace pcphys::cases {
 namespace {
@@ -83,7 +84,8 @@ void Simulated::step(double dt, long count) {
   Meter& meter = *meter_;
   while (count > 0 && meter.error.code == ErrorCode::none && meter.steps < meter.limit) {
     const long until_hash = meter.steps < hashed_steps ? hashed_steps - meter.steps : count;
-    const long batch = std::min({count, until_hash, meter.limit - meter.steps});
+    const long until_look = std::isfinite(meter.budget) ? 10 : count;
+    const long batch = std::min({count, until_hash, meter.limit - meter.steps, until_look});
     const double begin = now();
     for (long i = 0; i < batch; ++i)
       if (auto status = advance(dt); !status) {
@@ -94,6 +96,7 @@ void Simulated::step(double dt, long count) {
     meter.steps += batch;
     meter.body_steps += moving_ * double(batch);
     if (meter.steps == hashed_steps) meter.hash = hash();
+    if (meter.seconds > meter.budget) refuse("It took longer than its budget.");
     count -= batch;
   }
 }

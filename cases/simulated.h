@@ -23,8 +23,9 @@ struct Meter {
   long steps = 0;
   double body_steps = 0;  // sum over the steps of the bodies that can move
   long limit = std::numeric_limits<long>::max();
-  Error error;             // of the first step that was refused
-  std::uint64_t hash = 0;  // after `hashed_steps` steps, or after the last where there are fewer
+  double budget = std::numeric_limits<double>::infinity();  // of `seconds`; more is an error
+  Error error;                                              // of the first step that was refused
+  std::uint64_t hash = 0;                                   // after `hashed_steps` steps, or after the last where there are fewer
 };
 inline constexpr long hashed_steps = 600;
 
@@ -86,11 +87,14 @@ class Engine {
   /// Whether it has this precision, and makes of `substeps` a difference.
   virtual bool has(Precision) const { return true; }
   virtual bool has_substeps() const { return true; }
+  /// A trial whose steps take longer is given up [s].
+  virtual double budget() const { return std::numeric_limits<double>::infinity(); }
 };
 
 /// `lanes` as in StepSettings.
 std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes = 0);
-/// A peer by its name in peers/peer.h; nullptr when it was not found. What it has no equal of, a trial reports as refused.
-std::unique_ptr<Engine> make_peer(std::string_view name);
+/// A peer by its name in peers/peer.h; nullptr when it was not found. Its trials fail for what it has no equal of, and
+/// when their steps take longer than `budget` [s].
+std::unique_ptr<Engine> make_peer(std::string_view name, double budget);
 
 }  // namespace pcphys::cases

@@ -9,6 +9,7 @@
 
 #include "commands.h"
 #include "output.h"
+#include "peers/peer.h"
 
 namespace pcphys::command {
 namespace {
@@ -99,6 +100,23 @@ Result<cases::Selection> resolve(const CaseOptions& options, const std::string& 
   return selection;
 }
 
+/// With `all`, those that were not found are named and left out; one that is asked for by name must be there.
+Result<std::vector<std::string>> peers_to_run(const CaseOptions& options) {
+  if (auto status = check_budget(options.budget); !status) return status.error();
+  auto names = peer_names(options.peers);
+  if (!names) return names.error();
+  for (const peers::Variant& variant : peers::variants()) {
+    const auto name = std::find(names->begin(), names->end(), variant.name);
+    if (variant.found || name == names->end()) continue;
+    const std::string sentence = std::string(variant.engine) + " was not found when pcphys was built; install " +
+                                 std::string(variant.package) + " and configure again.";
+    if (options.peers != "all") return Error{ErrorCode::unavailable, sentence};
+    std::cerr << "pcphys: without " << variant.name << ": " << sentence << "\n";
+    names->erase(name);
+  }
+  return names;
+}
+
 int list_cases(const std::string& groups) {
   for (const cases::Case& c : cases::list()) {
     if (groups.find(c.group()) == std::string::npos) continue;
@@ -121,6 +139,9 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
       ->capture_default_str();
   app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 1 s runs once")
       ->capture_default_str();
+  app.add_option("--peers", options.peers, "other engines beside pcphys: all, none, or names with commas between")
+      ->capture_default_str();
+  app.add_option("--budget", options.budget, "a trial of a peer that takes longer is given up [s]")->capture_default_str();
   app.add_option("--json", options.json, "write the rows to this file; - is standard output");
   app.add_option("--csv", options.csv, "write the rows as a table to this file");
 }
@@ -129,11 +150,18 @@ int run_cases(const CaseOptions& options, const char* command, const std::string
   if (options.list) return list_cases(groups);
   const auto selection = resolve(options, groups);
   if (!selection) return fail(selection.error());
+  const auto peer_list = peers_to_run(options);
+  if (!peer_list) return fail(peer_list.error());
   auto files = ResultFiles::open(options.json, options.csv);
   if (!files) return fail(files.error());
 
   const std::unique_ptr<cases::Engine> own = cases::make_pcphys(Place::cpu);
-  const std::vector<cases::Engine*> engines{own.get()};
+  std::vector<std::unique_ptr<cases::Engine>> others;
+  std::vector<cases::Engine*> engines{own.get()};
+  for (const std::string& name : *peer_list) {
+    others.push_back(cases::make_peer(name, options.budget));
+    engines.push_back(others.back().get());
+  }
   std::vector<cases::Row> rows;
   {
     Progress progress(command, cases::count_trials(*selection, engines), "trial");
@@ -153,10 +181,11 @@ int run_cases(const CaseOptions& options, const char* command, const std::string
     csv += csv_line(json.back());
   }
   if (auto status = files->write(json, csv); !status) return fail(status.error());
-  const auto missed =
-      std::count_if(rows.begin(), rows.end(), [](const cases::Row& row) { return row.peer.empty() && !row.pass; });
+  const auto is_own = [](const cases::Row& row) { return row.peer.empty(); };
+  const auto missed = std::count_if(rows.begin(), rows.end(), [&](const cases::Row& row) { return is_own(row) && !row.pass; });
   if (missed == 0) return exit_ok;
-  std::cerr << "pcphys: " << missed << " of " << rows.size() << " rows miss what they must reach.\n";
+  std::cerr << "pcphys: " << missed << " of " << std::count_if(rows.begin(), rows.end(), is_own)
+            << " rows miss what they must reach.\n";
   return exit_missed;
 }
 

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <iostream>
-#include <sstream>
 
 #include "commands.h"
 #include "compare_table.h"
@@ -14,7 +13,7 @@ namespace pcphys::command {
 namespace {
 
 /// Which peers take part when none is named: Runge and Kutta's method is for smooth motion.
-constexpr std::string_view usual[] = {"bullet", "ode", "ode-dantzig", "mujoco"};
+constexpr const char* usual = "bullet,ode,ode-dantzig,mujoco";
 
 struct Entry {
   std::string scene;
@@ -56,23 +55,6 @@ Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_
   return result;
 }
 
-Result<std::vector<std::string>> peer_names(const CompareOptions& options) {
-  std::vector<std::string> names(std::begin(usual), std::end(usual));
-  if (options.peers.empty()) return names;
-  names.clear();
-  if (options.peers == "none") return names;
-  std::istringstream list(options.peers);
-  for (std::string name; std::getline(list, name, ',');) {
-    const auto all = peers::variants();
-    std::string known;
-    for (const peers::Variant& variant : all) known += (known.empty() ? "" : ", ") + std::string(variant.name);
-    if (std::none_of(all.begin(), all.end(), [&](const peers::Variant& v) { return v.name == name; }))
-      return Error{ErrorCode::unknown_name, "There is no peer '" + name + "'; choose of " + known + ", with commas between."};
-    names.push_back(name);
-  }
-  return names;
-}
-
 Json peers_json() {
   Json list = Json::array();
   for (const peers::Variant& variant : peers::variants())
@@ -101,15 +83,15 @@ Result<Contest> hold(const Setup& setup, std::span<const std::string> names, con
 Status check(const CompareOptions& options) {
   if (auto status = check_range("peer-substeps", options.peer_substeps, 0, 1000); !status) return status;
   if (auto status = check_range("peer-iterations", options.peer_iterations, 0, 100000); !status) return status;
-  if (options.budget > 0) return {};
-  return Error{ErrorCode::bad_argument, "--budget is not above 0; give seconds of stepping for each peer and scene."};
+  return check_budget(options.budget);
 }
 
 }  // namespace
 
 void add_compare_options(CLI::App& app, CompareOptions& options) {
   app.add_option("SCENE", options.scenes, "names of scenes, with a count of their own as balls:1000; all when none is given");
-  app.add_option("--peers", options.peers, "bullet, ode, ode-dantzig, mujoco, mujoco-rk4, with commas between; none");
+  app.add_option("--peers", options.peers,
+                 "bullet, ode, ode-dantzig, mujoco, mujoco-rk4 with commas between; all or none (default: all but the last)");
   app.add_option("--peer-substeps", options.peer_substeps, "sub-steps of the peers; 0: each one's own")->capture_default_str();
   app.add_option("--peer-iterations", options.peer_iterations, "of their solvers; 0: each one's own")->capture_default_str();
   app.add_option("--budget", options.budget, "a peer stops after this time in a scene [s]")->capture_default_str();
@@ -117,7 +99,7 @@ void add_compare_options(CLI::App& app, CompareOptions& options) {
 
 int compare(const CompareOptions& options, const RunOptions& run_options) {
   if (auto status = check(options); !status) return fail(status.error());
-  const auto names = peer_names(options);
+  const auto names = peer_names(options.peers.empty() ? usual : options.peers);
   if (!names) return fail(names.error());
   const auto all = setups(options, run_options);
   if (!all) return fail(all.error());

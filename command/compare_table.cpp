@@ -16,10 +16,12 @@ template <class... Values> std::string format(const char* pattern, Values... val
   return buffer;
 }
 
-/// pcphys's median step over this entrant's; 0 when either made none.
+/// pcphys's median step over this entrant's, of as many steps as it made; 0 when it made none.
 double time_ratio(const Contest& contest, std::size_t entrant) {
-  const double own = median(contest.score(0).ms), its = median(contest.score(entrant).ms);
-  return its > 0 ? own / its : 0;
+  const std::vector<double>&all = contest.score(0).ms, &its = contest.score(entrant).ms;
+  if (its.empty()) return 0;
+  const std::vector<double> own(all.begin(), all.begin() + std::ptrdiff_t(std::min(all.size(), its.size())));
+  return median(own) / median(its);
 }
 
 bool has_cones(const Contest& contest) {

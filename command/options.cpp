@@ -1,9 +1,13 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <sstream>
+
+#include "peers/peer.h"
 
 namespace pcphys::command {
 namespace {
@@ -38,6 +42,30 @@ Status check_range(const char* option, long long value, long long low, long long
   if (value >= low && value <= high) return {};
   return bad(std::string("--") + option + " is " + std::to_string(value) + "; give a whole number from " + std::to_string(low) +
              " to " + std::to_string(high) + ".");
+}
+
+Status check_budget(double seconds) {
+  if (seconds > 0) return {};
+  return bad("--budget is " + std::to_string(seconds) + "; give seconds of stepping above 0.");
+}
+
+Result<std::vector<std::string>> peer_names(const std::string& list) {
+  std::vector<std::string> all, names;
+  std::string known;
+  for (const peers::Variant& variant : peers::variants()) {
+    all.emplace_back(variant.name);
+    known += (known.empty() ? "" : ", ") + all.back();
+  }
+  if (list == "all") return all;
+  if (list == "none") return names;
+  std::istringstream text(list);
+  for (std::string name; std::getline(text, name, ',');) {
+    if (std::find(all.begin(), all.end(), name) == all.end())
+      return Error{ErrorCode::unknown_name,
+                   "There is no peer '" + name + "'; give all, none, or some of " + known + " with commas between."};
+    names.push_back(name);
+  }
+  return names;
 }
 
 Status check_choice(const char* option, const std::string& value, std::initializer_list<const char*> choices) {

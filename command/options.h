@@ -35,6 +35,8 @@ struct CaseOptions {
   std::vector<std::string> names;
   std::string precision = "both", backend = "cpu", dt;
   long long repeats = 1;
+  std::string peers = "none";
+  double budget = 5;  // of stepping, for each trial of a peer [s]
   bool all = false, list = false;
   std::string json, csv;
 };
@@ -42,7 +44,7 @@ struct CaseOptions {
 /// Of `compare`, beside those of a run.
 struct CompareOptions {
   std::vector<std::string> scenes;  // "balls" or "balls:1000"; none: all
-  std::string peers;                // names with commas between; empty: `compare` chooses
+  std::string peers;                // empty: `compare` chooses
   long long peer_substeps = 0, peer_iterations = 0;
   double budget = 20;  // of stepping, for each peer and scene [s]
 };
@@ -68,6 +70,9 @@ void add_compare_options(CLI::App& app, CompareOptions& options);
 // Errors: bad_argument with a sentence that names the option and what it accepts.
 Status check_range(const char* option, long long value, long long low, long long high);
 Status check_choice(const char* option, const std::string& value, std::initializer_list<const char*> choices);
+Status check_budget(double seconds);
+/// Names of peers with commas between; all or none. Those that were not found are among them. Errors: unknown_name.
+Result<std::vector<std::string>> peer_names(const std::string& list);
 /// "0.01" or "1/60" [s].
 Result<double> time_step(const std::string& text);
 
