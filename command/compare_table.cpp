@@ -59,6 +59,7 @@ Json measures(const Contest& contest, std::size_t entrant) {
   const bool boxes = !contest.scene().supports.empty();
   return {{"steps", score.steps},
           {"dt", contest.dt()},
+          {"clock", contest.processor_time() ? "processor" : "wall"},
           {"median_ms", median(score.ms)},
           {"p99_ms", quantile(score.ms, 0.99)},
           {"time_ratio", time_ratio(contest, entrant)},

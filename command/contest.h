@@ -40,6 +40,8 @@ class Contest {
   const std::vector<Entrant>& entrants() const { return entrants_; }  // pcphys first
   const Score& score(std::size_t entrant) const { return scores_[entrant]; }
   double dt() const { return setup_.dt; }
+  /// Times are those of the processor where all runs on it, and of the wall clock where a GPU takes part.
+  bool processor_time() const;
 
  private:
   Contest(const Setup& setup, World world, scenes::Scene scene)
