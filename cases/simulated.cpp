@@ -61,6 +61,9 @@ class OwnEngine final : public Engine {
     return std::unique_ptr<Simulated>(std::make_unique<Own>(std::move(problem), stepper_, settings));
   }
   std::string backend() const override { return name(place_); }
+  Status resolve(SphereContact& contact, Precision precision) override {
+    return cases::resolve(contact, precision, place_, lanes_);
+  }
 
  private:
   Place place_;
@@ -96,6 +99,10 @@ void Simulated::step(double dt, long count) {
     if (meter.steps == hashed_steps) meter.hash = hash();
     count -= batch;
   }
+}
+
+Status Engine::resolve(SphereContact&, Precision) {
+  return Error{ErrorCode::unavailable, "This engine cannot be given a single contact."};
 }
 
 void Simulated::refuse(const std::string& what) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "direct.h"
 #include "pcphys/step.h"
 #include "scenes/scene.h"
 
@@ -85,6 +86,8 @@ class Engine {
   /// Whether it has this precision, and makes of `substeps` a difference.
   virtual bool has(Precision) const { return true; }
   virtual bool has_substeps() const { return true; }
+  /// One contact, straight through the solver; pcphys alone can be given one.
+  virtual Status resolve(SphereContact& contact, Precision precision);
 };
 
 /// `lanes` as in StepSettings.

@@ -141,7 +141,7 @@ def draw_variant(axes, variant, rows, published):
 
 
 def draw_case(plt, case, title, rows, published, path):
-    rows = [r for r in rows if not r["metric"].startswith("2 - order of")]
+    rows = [r for r in rows if not r["metric"].startswith("2 - order of") and r["total_ms"] > 0]
     variants = group(rows, "variant")
     columns = min(4, len(variants))
     lines = math.ceil(len(variants) / columns)
