@@ -19,7 +19,7 @@ struct Problem {
 
 /// What a trial has used so far, and where it must stop.
 struct Meter {
-  double seconds = 0;  // that the steps took, nothing else
+  double seconds = 0;  // of the thread's clock that the steps took, nothing else
   long steps = 0;
   double body_steps = 0;  // sum over the steps of the bodies that can move
   long limit = std::numeric_limits<long>::max();
