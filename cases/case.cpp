@@ -1,6 +1,7 @@
 #include "case.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace pcphys::cases {
@@ -50,6 +51,15 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
   running_.push_back(simulated ? std::move(*simulated) : std::make_unique<Still>(make()));
   running_.back()->attach(meter_);
   return *running_.back();
+}
+
+void Trial::resolve(SphereContact& contact) {
+  if (meter_.steps >= meter_.limit) return;
+  ++meter_.steps;
+  if (auto status = engine_.resolve(contact, conditions_.precision); !status && meter_.error.code == ErrorCode::none)
+    meter_.error = status.error();
+  for (const Vec3& v : {contact.v1, contact.v2, contact.w1, contact.w2})
+    for (double x : {v.x, v.y, v.z}) meter_.hash = (meter_.hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 1099511628211u;
 }
 
 void Trial::report(std::string metric, double error, std::optional<double> must, std::optional<double> target) {

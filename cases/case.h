@@ -43,6 +43,9 @@ class Trial {
   /// unless `tune` sets one.
   Simulated& start(const std::function<void(scenes::Builder&)>& build, const std::function<void(StepSettings&)>& tune = {});
 
+  /// The contact's velocities after it; counts as one step, without a clock.
+  void resolve(SphereContact& contact);
+
   void report(std::string metric, double error, std::optional<double> must = {}, std::optional<double> target = {});
   /// A bound that depends on the precision.
   double either(double twice, double single) const { return is_double() ? twice : single; }
@@ -74,6 +77,7 @@ struct Variant {
   std::vector<double> steps{ladder.begin(), ladder.end()};
   std::vector<std::uint32_t> substeps{1};
   bool single = true;          // runs in single precision too
+  bool direct = false;         // uses `resolve`: in pcphys alone, with steps of its own
   std::string second_order{};  // the metric whose slope must be 1.9 at least, in double
   std::vector<double> slow{};  // step lengths that only --all runs
 };

@@ -31,12 +31,13 @@ bool same(double a, double b) { return std::fabs(a / b - 1) < 1e-9; }
 
 std::vector<Setting> settings(const Selection& selection, const Variant& variant, const Engine& engine) {
   std::vector<Setting> result;
-  if (!variant.name.starts_with(selection.variant)) return result;
+  if (!variant.name.starts_with(selection.variant) || (variant.direct && !engine.peer().empty())) return result;
   for (Precision precision : {Precision::f64, Precision::f32}) {
     const bool twice = precision == Precision::f64;
     if (!(twice ? selection.twice : selection.single && variant.single) || !engine.has(precision)) continue;
+    const std::vector<double> steps = variant.direct ? std::vector<double>{direct_step(precision)} : variant.steps;
     for (std::uint32_t substeps : variant.substeps)
-      for (double dt : variant.steps) {
+      for (double dt : steps) {
         const bool slow = std::any_of(variant.slow.begin(), variant.slow.end(), [dt](double s) { return same(s, dt); });
         if ((slow && !selection.slow) || (selection.dt && !same(*selection.dt, dt))) continue;
         // what is slow with one sub-step is slower with more

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "direct.h"
 #include "pcphys/step.h"
 #include "scenes/scene.h"
 
@@ -19,7 +20,7 @@ struct Problem {
 
 /// What a trial has used so far, and where it must stop.
 struct Meter {
-  double seconds = 0;  // that the steps took, nothing else
+  double seconds = 0;  // of the thread's clock that the steps took, nothing else
   long steps = 0;
   double body_steps = 0;  // sum over the steps of the bodies that can move
   long limit = std::numeric_limits<long>::max();
@@ -89,6 +90,8 @@ class Engine {
   virtual bool has_substeps() const { return true; }
   /// A trial whose steps take longer is given up [s].
   virtual double budget() const { return std::numeric_limits<double>::infinity(); }
+  /// One contact, straight through the solver; pcphys alone can be given one.
+  virtual Status resolve(SphereContact& contact, Precision precision);
 };
 
 /// `lanes` as in StepSettings.

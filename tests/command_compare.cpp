@@ -43,6 +43,7 @@ TEST_CASE("compare: the JSON has every key of the contract, and a row for each e
                             "untranslated",
                             "steps",
                             "dt",
+                            "clock",
                             "median_ms",
                             "p99_ms",
                             "time_ratio",

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cases/direct.h"
 #include "cases/measures.h"
 #include "pcphys/pcphys.h"
 
@@ -58,15 +59,8 @@ Momenta momenta_in_phase(const World& world);
 /// From what is stored: positions at the end of the sub-step, velocities over it. This is what impulses conserve.
 Momenta momenta_stored(const World& world);
 
-/// Two spheres that touch, and what the impulse stage makes of their velocities.
-struct SphereContact {
-  double mass1 = 1, mass2 = 1, radius1 = 0.1, radius2 = 0.2;
-  Vec3 normal{1, 0, 0};  // unit, from 1 to 2
-  Vec3 v1, v2, w1, w2;   // before and after
-  double friction = 0, restitution = 0;
-};
-/// Runs the kernels of one step, as the plan orders them, on exactly this configuration: the narrow phase
-/// cannot give it, since the digits of a gap end where those of the positions do.
+using cases::SphereContact;
+/// A step that is refused fails the test.
 void resolve(SphereContact& contact, const Mode& mode);
 
 }  // namespace physics

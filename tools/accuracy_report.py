@@ -4,6 +4,7 @@
     pcphys accuracy --json rows.json
     tools/accuracy_report.py rows.json [MORE.json...]     rewrites the generated part of docs/accuracy.md, docs/img/accuracy/*.svg
     tools/accuracy_report.py --out FOLDER rows.json       writes both there instead
+    tools/accuracy_report.py rows.json --hashes gl.json   with the hashes of a run with --backend gl
 
 Rows of peers (their `peer` is set) are drawn beside pcphys's. Needs matplotlib (Debian: python3-matplotlib).
 """
@@ -25,6 +26,11 @@ def group(rows, *keys):
     for row in rows:
         result.setdefault(tuple(row[k] for k in keys), []).append(row)
     return result
+
+
+def cell(text):
+    """A bar would end the cell of a Markdown table."""
+    return text.replace("|", "\\|")
 
 
 def number(value):
@@ -79,7 +85,7 @@ def misses(rows):
         named = "; ".join(variants[:3]) + (f" and {len(variants) - 3} more" if len(variants) > 3 else "")
         must = "finite" if worst["must"] is None else number(worst["must"])
         at = f"{worst['variant']}, {worst['precision']}, dt {step(worst['dt'])}, n = {worst['substeps']}"
-        lines.append(f"| {case} | {named} | {metric} | {len(of_metric)} | {number(worst['error'])} ({must}) | {at} |")
+        lines.append(f"| {case} | {named} | {cell(metric)} | {len(of_metric)} | {number(worst['error'])} ({must}) | {at} |")
     return lines
 
 
@@ -95,6 +101,16 @@ def colour_of_peer(name):
 def draw_series(axes, rows, **style):
     rows = sorted((r for r in rows if r["error"] is not None), key=lambda r: -r["dt"])
     axes.plot([r["total_ms"] for r in rows], [max(r["error"], FLOOR) for r in rows], markersize=4, linewidth=1, **style)
+
+
+def widen(limits):
+    """To at least a decade, so that a tick with a number is in sight."""
+    low, high = math.log10(limits[0]), math.log10(limits[1])
+    if high - low < 1.2:
+        low, high = math.floor(low), math.ceil(high)
+        high = max(high, low + 1)
+        low, high = low - 0.1, high + 0.1
+    return 10 ** low, 10 ** high
 
 
 def draw_variant(axes, variant, rows, published):
@@ -117,16 +133,19 @@ def draw_variant(axes, variant, rows, published):
     axes.set_xlabel("run time [ms]", fontsize=6, labelpad=1)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.tick_params(labelsize=6, which="both")
+    axes.set_xlim(widen(axes.get_xlim()))
+    axes.set_ylim(widen(axes.get_ylim()))
+    axes.minorticks_off()
+    axes.tick_params(labelsize=6)
     axes.grid(True, linewidth=0.3)
 
 
 def draw_case(plt, case, title, rows, published, path):
-    rows = [r for r in rows if not r["metric"].startswith("2 - order of")]
+    rows = [r for r in rows if not r["metric"].startswith("2 - order of") and r["total_ms"] > 0]
     variants = group(rows, "variant")
     columns = min(4, len(variants))
     lines = math.ceil(len(variants) / columns)
-    figure, axes = plt.subplots(lines, columns, figsize=(2.7 * columns + 0.3, 2.3 * lines + 0.9), squeeze=False)
+    figure, axes = plt.subplots(lines, columns, figsize=(max(4.2, 2.7 * columns + 0.3), 2.3 * lines + 0.9), squeeze=False)
     flat = list(axes.flat)
     for (variant,), of_variant in variants.items():
         draw_variant(flat.pop(0), variant, of_variant, [p for p in published if p["case"] == case])
@@ -137,7 +156,7 @@ def draw_case(plt, case, title, rows, published, path):
         for handle, label in zip(*panel.get_legend_handles_labels()):
             labels.setdefault(label, handle)
     figure.suptitle(f"{case}: {title}", fontsize=9)
-    across = min(len(labels), 2 * columns)
+    across = min(len(labels), max(3, 2 * columns))
     figure.legend(labels.values(), labels.keys(), loc="lower center", ncol=across, fontsize=6, frameon=False)
     legend_height = 0.12 + 0.14 * math.ceil(len(labels) / across)
     figure.tight_layout(rect=(0, legend_height / figure.get_figheight(), 1, 1))
@@ -165,6 +184,14 @@ def draw_all(rows, titles, folder, kind):
         draw_case(plt, case, titles.get(case, ""), of_case, published, folder / f"{case}.{kind}")
 
 
+def add_hashes(rows, others):
+    """What another run tells of the same trials on gl."""
+    def key(row):
+        return tuple(row[k] for k in ("case", "variant", "precision", "dt", "substeps", "metric", "peer"))
+    known = {key(row): row["gl_hash"] for row in others}
+    return [dict(row, gl_hash=row["gl_hash"] or known.get(key(row))) for row in rows]
+
+
 # ---- the page --------------------------------------------------------------------------------------
 def generated_part(rows, titles, pictures):
     own = [r for r in rows if not r["peer"]]
@@ -187,9 +214,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rows", nargs="+", type=Path, help="JSON of `pcphys accuracy`")
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of accuracy.md and img/accuracy")
+    parser.add_argument("--hashes", type=Path, help="JSON of `pcphys accuracy --backend gl`: its hashes go into the table")
     parser.add_argument("--png", action="store_true", help="pictures as PNG only, to look at")
     arguments = parser.parse_args()
     rows = [row for path in arguments.rows for row in json.loads(path.read_text())]
+    if arguments.hashes:
+        rows = add_hashes(rows, json.loads(arguments.hashes.read_text()))
     titles = {row["case"]: row["title"] for row in rows}
     arguments.out.mkdir(parents=True, exist_ok=True)
     draw_all(rows, titles, arguments.out / "img/accuracy", "png" if arguments.png else "svg")
