@@ -2,30 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
+
+#include "clock.h"
 
 namespace pcphys::cases {
 namespace {
-
-/// Of this thread's own work [s]: what else runs on the machine does not count.
-double thread_clock() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
-
-/// What reading the clock twice takes by itself [s]; steps can be that short.
-double clock_cost() {
-  static const double cost = [] {
-    double least = 1;
-    for (int i = 0; i < 1000; ++i) {
-      const double begin = thread_clock();
-      least = std::min(least, thread_clock() - begin);
-    }
-    return least;
-  }();
-  return cost;
-}
 
 class Own final : public Simulated {
  public:

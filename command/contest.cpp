@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cases/clock.h"
 #include "output.h"
 #include "pcphys/version.h"
 
@@ -116,12 +117,13 @@ bool Contest::processor_time() const {
 Status Contest::turn(std::size_t entrant, std::uint64_t count, double budget) {
   Entrant& who = entrants_[entrant];
   Score& score = scores_[entrant];
-  const auto clock = processor_time() ? processor_now : now;
+  const bool of_processor = processor_time();
+  const auto clock = of_processor ? cases::thread_clock : now;
   if (!who.engine || !who.problem.empty()) return {};
   for (std::uint64_t k = 0; k < count; ++k) {
     const double begin = clock();
     const Status status = who.engine->step(setup_.dt);
-    const double took = clock() - begin;
+    const double took = std::max(0.0, clock() - begin - (of_processor ? cases::clock_cost() : 0));
     if (!status) {
       if (entrant == 0) return status;
       who.problem = "ended after " + std::to_string(score.steps) + " steps: " + status.error().message;

@@ -1,6 +1,5 @@
 #include "output.h"
 
-#include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -101,12 +100,6 @@ void Progress::show(std::uint64_t done) {
 }
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-double processor_now() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
-}
 
 int fail(const Error& error) {
   std::cerr << "pcphys: " << error.message << "\n";

@@ -61,9 +61,6 @@ class Progress {
 /// Seconds of a clock that only goes forward.
 double now();
 
-/// Seconds that the processor has spent on this thread: what others do on the machine hardly changes it.
-double processor_now();
-
 /// Exit codes of the command.
 enum Exit : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unsound = 3, exit_missed = 4 };
 
