@@ -45,7 +45,7 @@ StepPlan plan_of_contact(Place place, bool restitution) {
   PlanSignature signature;
   signature.substeps = 1;
   signature.places.fill(place);
-  signature.bodies = signature.shapes = signature.contacts = true;
+  signature.bodies = signature.shapes = signature.free_contacts = true;
   signature.restitution = restitution;
   return make_plan(signature);
 }

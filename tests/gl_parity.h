@@ -62,7 +62,7 @@ template <class Scalar> std::size_t packed_size(Buffer buffer, const State<Scala
 inline std::vector<Range> ranges_of(Kernel kernel, std::uint32_t bodies, const std::vector<Range>& contacts,
                                     const std::vector<Range>& joints, std::uint32_t width) {
   if (schema(kernel).domain == Domain::body) return {{0, bodies}};
-  std::vector<Range> ranges = schema(kernel).domain == Domain::contact ? contacts : joints;
+  std::vector<Range> ranges = schema(kernel).domain == Domain::joint ? joints : contacts;
   for (Range& range : ranges) range = {range.begin / width, range.end / width};
   return ranges;
 }

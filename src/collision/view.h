@@ -110,6 +110,7 @@ void remember_impulses(const Scalar* before, const std::uint32_t* before_feature
   bool taken[4] = {}, given[4] = {};
   const auto hand_on = [&](int i, int j) {
     out[20 + i] = before[20 + j];
+    out[32 + i] = before[32 + j];
     given[i] = taken[j] = true;
   };
   for (int i = 0; i < count; i++)
