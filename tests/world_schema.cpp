@@ -78,7 +78,8 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
       CHECK((bound.contains(Buffer::tree_ends) || bound.contains(Buffer::tree_order)));
     }
     if (s.domain == Domain::tree_contact) CHECK(bound.contains(Buffer::contact_paths));
-    if (s.domain == Domain::contact || s.domain == Domain::free_contact) CHECK((bound.contains(Buffer::contact_ends) || bound.contains(Buffer::contact_order)));
+    if (s.domain == Domain::contact || s.domain == Domain::free_contact)
+      CHECK((bound.contains(Buffer::contact_ends) || bound.contains(Buffer::contact_order)));
   }
 }
 
