@@ -75,7 +75,7 @@ double error_of(const Simulated& run, const Collision& c) {
 
 /// From 0.05 m apart, to a few steps after the impact; momenta at every step.
 void collide(Trial& trial, const std::vector<Collision>& all) {
-  Worst velocity, linear, angular, gained;
+  Worst velocity, bouncing, linear, angular, gained;
   for (const Collision& c : all) {
     const double gap = 0.05 / c.normal.x;
     Simulated& run = start(trial, c, gap);
@@ -87,9 +87,12 @@ void collide(Trial& trial, const std::vector<Collision>& all) {
       angular.add(length(angular_momentum(run) - l0) / spin_scale);
       gained.add(kinetic_energy(run) / e0 - 1);
     }
-    velocity.add(error_of(run, c));
+    const double error = error_of(run, c);
+    velocity.add(error);
+    if (c.e > 0) bouncing.add(error);
   }
   trial.report("velocity and spin, relative", velocity, 2 * trial.dt() / (radius1 + radius2));
+  trial.report("velocity and spin where e > 0, relative", bouncing, 2 * trial.dt() / (radius1 + radius2));
   trial.report("momentum, relative", linear, trial.either(1e-12, 1e-6));
   trial.report("angular momentum, relative", angular, trial.either(1e-12, 1e-6));
   trial.report("energy gained, relative", gained, trial.either(1e-9, 1e-6));

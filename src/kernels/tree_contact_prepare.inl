@@ -25,12 +25,13 @@ PC_FN Sym6 pc_side_response(PC_IO Index body, Index own, Vec3 arm) {
 
 // How body b of a tree moves, at its arm and in the contact frame, when body a of it feels the impulses f.
 PC_FN Six pc_across(PC_IO Way w, Slot m, Frame frame, Arms arms, Six f) {
-  for (uint i = 0u; i < w.below; i++) {
-    uint k = w.below - 1u - i; Link link = pc_link(PC_PASS PC_EACH(contact_paths, m, pc_level_below(w, k, 0u)));
+  uint levels_a = pc_levels_below(w, 0u); uint levels_b = pc_levels_below(w, 1u);
+  for (uint i = 0u; i < w.below_a; i++) {
+    Link link = pc_link(PC_PASS PC_EACH(contact_paths, m, pc_entry(w, levels_a + (w.below_a - 1u - i))));
     f = pc_up(link, f, pc_on_joint(link, f));
   }
   Six x = pc_sym6_mul(pc_response(PC_PASS PC_EACH(contact_paths, m, pc_entry(w, PATH_COMMON))), f);
-  for (uint k = 0u; k < w.below; k++) x = pc_down(pc_link(PC_PASS PC_EACH(contact_paths, m, pc_level_below(w, k, 1u))), x, pc_zero3());
+  for (uint k = 0u; k < w.below_b; k++) x = pc_down(pc_link(PC_PASS PC_EACH(contact_paths, m, pc_entry(w, levels_b + k))), x, pc_zero3());
   precise Vec3 xl = pc_in_frame(frame, pc_add(x.l, pc_cross(x.a, arms.b))) * PC_REAL(0.9); precise Vec3 xa = pc_in_frame(frame, x.a) * PC_REAL(0.9);
   return pc_six(xl, xa);
 }
@@ -58,7 +59,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Responses r; r.l = pc_sym_in_frame(frame, both.l); r.a = pc_sym_in_frame(frame, both.a);
   Vec3 c1 = pc_in_frame(frame, pc_mat_tmul(both.c, frame.t1)); Vec3 c2 = pc_in_frame(frame, pc_mat_tmul(both.c, frame.t2)); Vec3 cn = pc_in_frame(frame, pc_mat_tmul(both.c, frame.n));
   r.w1 = Vec3(c1.x, c2.x, cn.x); r.w2 = Vec3(c1.y, c2.y, cn.y); r.wn = Vec3(c1.z, c2.z, cn.z);
-  if (w.below > 0u) {  // lint: allow (the same for all lanes; where a contact is not within one tree it takes out zeros)
+  if (w.below_a + w.below_b > 0u) {  // lint: allow (the same for all lanes; where a contact is not within one tree it takes out zeros)
     Vec3 zero = pc_zero3();
     Six x0 = pc_across(PC_PASS w, m, frame, arms, pc_six(frame.t1, pc_cross(arms.a, frame.t1))); Six x1 = pc_across(PC_PASS w, m, frame, arms, pc_six(frame.t2, pc_cross(arms.a, frame.t2))); Six x2 = pc_across(PC_PASS w, m, frame, arms, pc_six(frame.n, pc_cross(arms.a, frame.n)));
     Six y0 = pc_across(PC_PASS w, m, frame, arms, pc_six(zero, frame.t1)); Six y1 = pc_across(PC_PASS w, m, frame, arms, pc_six(zero, frame.t2)); Six y2 = pc_across(PC_PASS w, m, frame, arms, pc_six(zero, frame.n));

@@ -48,7 +48,7 @@ class ColouredSlots {
                    const TreeNodes* trees);
 
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
-  std::vector<char> leading_;
+  std::vector<std::uint8_t> kinds_;
   const TreeNodes* trees_ = nullptr;
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
