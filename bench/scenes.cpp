@@ -10,10 +10,8 @@
 #include <cstdlib>
 
 #include "pcphys/step.h"
+#include "peers/peer.h"
 #include "scenes/metrics.h"
-#ifdef PCPHYS_HAVE_BULLET
-#include "bullet_world.h"
-#endif
 
 namespace {
 
@@ -63,9 +61,9 @@ void compare(benchmark::State& state, Case scene_case, Variant variant) {
   settings.lanes = variant.lanes;
   settings.timings = false;
   Stepper stepper(settings);
-#ifdef PCPHYS_HAVE_BULLET
-  bench::BulletWorld bullet(*scene, world);
-#endif
+  std::vector<BodyId> ids;
+  for (const scenes::SceneBody& body : scene->bodies) ids.push_back(body.id);
+  const auto bullet = peers::make("bullet", world, ids);  // without it the benchmark still runs
 
   std::vector<double> own, peer;
   scenes::RimWatch rim;
@@ -76,11 +74,9 @@ void compare(benchmark::State& state, Case scene_case, Variant variant) {
       const int count = std::min(turn, steps - done);
       for (int k = 0; k < count && error.code == ErrorCode::none; ++k) {
         own.push_back(clock_ms([&] { error = stepper.step(world, dt).error; }));
-        rim.look(*scene, world);
+        rim.look(*scene, scenes::poses(*scene, world));
       }
-#ifdef PCPHYS_HAVE_BULLET
-      for (int k = 0; k < count; ++k) peer.push_back(clock_ms([&] { bullet.step(dt); }));
-#endif
+      for (int k = 0; k < count && bullet; ++k) peer.push_back(clock_ms([&] { (void)(*bullet)->step(dt); }));
     }
     state.SetIterationTime(median(own) / 1000);
   }
@@ -93,15 +89,16 @@ void compare(benchmark::State& state, Case scene_case, Variant variant) {
   if (end.escapes.through || end.nonfinite || end.drift.fallen)
     state.counters["lost"] = double(end.escapes.through + end.nonfinite + end.drift.fallen);
   std::string label = stepper.device(variant.place);
-#ifdef PCPHYS_HAVE_BULLET
-  const std::vector<Pose> poses = bullet.poses();
-  state.counters["bullet_ms"] = median(peer);
-  state.counters["bullet_overlap_mm"] = 1000 * scenes::penetration(*scene, world, poses).max;
-  state.counters["ratio"] = median(own) / median(peer);
-  char text[64];
-  std::snprintf(text, sizeof text, "; %.2f of Bullet's time", median(own) / median(peer));
-  label += text;
-#endif
+  if (bullet) {
+    std::vector<Pose> poses;
+    for (std::size_t i = 0; i < ids.size(); ++i) poses.push_back((*bullet)->pose(i));
+    state.counters["bullet_ms"] = median(peer);
+    state.counters["bullet_overlap_mm"] = 1000 * scenes::penetration(*scene, world, poses).max;
+    state.counters["ratio"] = median(own) / median(peer);
+    char text[64];
+    std::snprintf(text, sizeof text, "; %.2f of Bullet's time", median(own) / median(peer));
+    label += text;
+  }
   state.SetLabel(label);
 }
 

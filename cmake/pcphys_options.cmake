@@ -6,6 +6,7 @@ option(PCPHYS_BUILD_COMMAND "Build the command pcphys" ${PROJECT_IS_TOP_LEVEL})
 option(PCPHYS_INSTALL "Install the library and its CMake package" ${PROJECT_IS_TOP_LEVEL})
 option(PCPHYS_WERROR "Treat warnings in pcphys as errors" ${PROJECT_IS_TOP_LEVEL})
 option(BUILD_SHARED_LIBS "Build pcphys as a shared library" OFF)
+option(PCPHYS_WITH_PEERS "Other engines to compare with, those that are found" ON)
 set(PCPHYS_WITH_FCL AUTO CACHE STRING "FCL as a selectable narrow phase: AUTO, ON or OFF")
 set_property(CACHE PCPHYS_WITH_FCL PROPERTY STRINGS AUTO ON OFF)
 

@@ -7,6 +7,7 @@
 #include "pcphys/device.h"
 #include "pcphys/step.h"
 #include "pcphys/version.h"
+#include "peers/peer.h"
 #include "step/backend.h"
 
 namespace pcphys::command {
@@ -69,6 +70,19 @@ bool has_fcl() {
   return bool(Stepper().configure(settings));
 }
 
+/// Engines by name, one for all of its variants.
+Json peers_json(Json& missing) {
+  Json found = Json::object();
+  for (const peers::Variant& variant : peers::variants()) {
+    const std::string engine(variant.engine);
+    if (found.contains(engine)) continue;
+    found[engine] = variant.found ? Json(variant.version) : Json(nullptr);
+    if (!variant.found)
+      missing.push_back({{"what", engine + " when pcphys was built, for `pcphys compare`"}, {"package", variant.package}});
+  }
+  return found;
+}
+
 void print_arithmetic(const char* label, const GlArithmetic& a) {
   if (!a.supported) {
     std::printf("    %-7s not supported\n", label);
@@ -110,12 +124,14 @@ int doctor(const OutputOptions& options) {
   if (!usable && !reports.front().package.empty())
     missing.push_back({{"what", "OpenGL 4.3 through EGL, for --backend gl"}, {"package", reports.front().package}});
   if (!has_fcl()) missing.push_back({{"what", "FCL when pcphys was built, for --narrow fcl"}, {"package", "libfcl-dev"}});
+  const Json peers = peers_json(missing);
   const Json report{{"version", PCPHYS_VERSION},
                     {"processor", processor()},
                     {"lanes_float", lanes_of(Precision::f32)},
                     {"lanes_double", lanes_of(Precision::f64)},
                     {"gl", devices},
                     {"fcl", has_fcl()},
+                    {"peers", peers},
                     {"missing", missing}};
 
   if (auto status = files->write(report, table); !status) return fail(status.error());
@@ -124,6 +140,8 @@ int doctor(const OutputOptions& options) {
                 report["lanes_float"].dump().c_str(), report["lanes_double"].dump().c_str());
     for (const GlReport& r : reports) print_device(r);
     std::printf("FCL narrow phase: %s\n", has_fcl() ? "there" : "not there");
+    for (const auto& [engine, version] : peers.items())
+      std::printf("peer %s: %s\n", engine.c_str(), version.is_null() ? "not there" : version.get<std::string>().c_str());
     for (const Json& item : missing)
       std::printf("missing: %s; install %s\n", item["what"].get<std::string>().c_str(),
                   item["package"].get<std::string>().c_str());

@@ -9,15 +9,6 @@
 
 using namespace pcphys::command;
 
-namespace pcphys::command {
-
-int comes_later(const char* command) {
-  std::cerr << "pcphys: '" << command << "' comes with a later version; this one has run, scenes, plan, tables and doctor.\n";
-  return exit_failed;
-}
-
-}  // namespace pcphys::command
-
 namespace {
 
 /// One line, whatever CLI11 has to say.
@@ -61,8 +52,16 @@ int main(int argc, char** argv) {
   run_command->add_flag("--hash", run_options.hash, "print nothing but the hash of the final state");
   run_command->add_flag("--poses", run_options.poses, "add the final pose and velocity of every body to the JSON");
   for (CLI::App* command : {scenes_command, doctor_command}) add_report_options(*command, output_options);
-  const char* const later[] = {"accuracy", "stability", "compare"};
-  for (const char* name : later) app.add_subcommand(name, "comes with a later version")->allow_extras();
+  CaseOptions case_options;
+  CLI::App* accuracy_command = app.add_subcommand("accuracy", "errors against motion that is known, and what they must reach");
+  CLI::App* stability_command = app.add_subcommand("stability", "stiff and extreme cases, and what they must reach");
+  for (CLI::App* command : {accuracy_command, stability_command}) add_case_options(*command, case_options);
+  CompareOptions compare_options;
+  CLI::App* compare_command = app.add_subcommand("compare", "scenes in pcphys and in other engines, in the same run");
+  add_compare_options(*compare_command, compare_options);
+  add_scene_options(*compare_command, run_options);
+  add_run_options(*compare_command, run_options);
+  add_output_options(*compare_command, run_options);
 
   const auto is_first_word = [&](CLI::App* command) { return command->check_name(argv[1]); };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first_word).empty())
@@ -78,7 +77,8 @@ int main(int argc, char** argv) {
   if (*tables_command) return tables(run_options);
   if (*scenes_command) return scenes_list(output_options);
   if (*doctor_command) return doctor(output_options);
-  for (const char* name : later)
-    if (app.got_subcommand(name)) return comes_later(name);
+  if (*accuracy_command) return run_cases(case_options, "accuracy", "A");
+  if (*stability_command) return run_cases(case_options, "stability", "BC");
+  if (*compare_command) return compare(compare_options, run_options);
   return usage_error("A sub-command is missing.");
 }

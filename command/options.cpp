@@ -1,9 +1,13 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <sstream>
+
+#include "peers/peer.h"
 
 namespace pcphys::command {
 namespace {
@@ -23,7 +27,8 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// "0.01" or "1/60".
+}  // namespace
+
 Result<double> time_step(const std::string& text) {
   const std::size_t slash = text.find('/');
   const auto above = number(std::string_view(text).substr(0, slash));
@@ -39,6 +44,30 @@ Status check_range(const char* option, long long value, long long low, long long
              " to " + std::to_string(high) + ".");
 }
 
+Status check_budget(double seconds) {
+  if (seconds > 0) return {};
+  return bad("--budget is " + std::to_string(seconds) + "; give seconds of stepping above 0.");
+}
+
+Result<std::vector<std::string>> peer_names(const std::string& list) {
+  std::vector<std::string> all, names;
+  std::string known;
+  for (const peers::Variant& variant : peers::variants()) {
+    all.emplace_back(variant.name);
+    known += (known.empty() ? "" : ", ") + all.back();
+  }
+  if (list == "all") return all;
+  if (list == "none") return names;
+  std::istringstream text(list);
+  for (std::string name; std::getline(text, name, ',');) {
+    if (std::find(all.begin(), all.end(), name) == all.end())
+      return Error{ErrorCode::unknown_name,
+                   "There is no peer '" + name + "'; give all, none, or some of " + known + " with commas between."};
+    names.push_back(name);
+  }
+  return names;
+}
+
 Status check_choice(const char* option, const std::string& value, std::initializer_list<const char*> choices) {
   std::string list;
   for (const char* choice : choices) {
@@ -47,6 +76,8 @@ Status check_choice(const char* option, const std::string& value, std::initializ
   }
   return bad(std::string("--") + option + " is '" + value + "'; give one of " + list + ".");
 }
+
+namespace {
 
 /// What the contract of the command already names and this version does not do.
 Status check_later(const RunOptions& options) {
@@ -108,6 +139,10 @@ Status set_precision(const RunOptions& options, Setup& setup) {
 
 void add_scene_argument(CLI::App& app, RunOptions& options) {
   app.add_option("SCENE", options.scene, "name of the scene; `pcphys scenes` lists them")->required();
+  add_scene_options(app, options);
+}
+
+void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--count", options.count, "how many of the scene's objects");
   app.add_option("--seed", options.seed, "of the scene's random draws (default: the scene's own)");
   app.add_option("--ratio", options.ratio, "mass ratio of chain, chainswing and heavy")->capture_default_str();

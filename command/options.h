@@ -1,8 +1,10 @@
 // What stands on the command line of `run`, `plan` and `tables`, and what it means to the library.
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pcphys/result.h"
 #include "pcphys/step.h"
@@ -28,6 +30,25 @@ struct RunOptions {
   bool hash = false, poses = false;
 };
 
+/// Of `accuracy` and `stability`.
+struct CaseOptions {
+  std::vector<std::string> names;
+  std::string precision = "both", backend = "cpu", dt;
+  long long repeats = 1;
+  std::string peers = "none";
+  double budget = 5;  // of stepping, for each trial of a peer [s]
+  bool all = false, list = false;
+  std::string json, csv;
+};
+
+/// Of `compare`, beside those of a run.
+struct CompareOptions {
+  std::vector<std::string> scenes;  // "balls" or "balls:1000"; none: all
+  std::string peers;                // empty: `compare` chooses
+  long long peer_substeps = 0, peer_iterations = 0;
+  double budget = 20;  // of stepping, for each peer and scene [s]
+};
+
 /// The options in the library's own terms.
 struct Setup {
   std::string scene;
@@ -40,8 +61,20 @@ struct Setup {
 
 /// Adds SCENE and the options of a run.
 void add_scene_argument(CLI::App& app, RunOptions& options);
+void add_scene_options(CLI::App& app, RunOptions& options);
 void add_run_options(CLI::App& app, RunOptions& options);
 void add_output_options(CLI::App& app, RunOptions& options);
+void add_case_options(CLI::App& app, CaseOptions& options);
+void add_compare_options(CLI::App& app, CompareOptions& options);
+
+// Errors: bad_argument with a sentence that names the option and what it accepts.
+Status check_range(const char* option, long long value, long long low, long long high);
+Status check_choice(const char* option, const std::string& value, std::initializer_list<const char*> choices);
+Status check_budget(double seconds);
+/// Names of peers with commas between; all or none. Those that were not found are among them. Errors: unknown_name.
+Result<std::vector<std::string>> peer_names(const std::string& list);
+/// "0.01" or "1/60" [s].
+Result<double> time_step(const std::string& text);
 
 /// Errors: bad_argument with a sentence that names the option and what it accepts.
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps);

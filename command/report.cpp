@@ -125,7 +125,7 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"max_joint_separation", end.separation.max},
       {"mean_joint_separation", end.separation.mean},
       {"peak_joint_separation", outcome.peaks.joint_separation},
-      {"limit_excess_degrees", end.limit_excess * degrees},
+      {"limit_excess_degrees", end.limit_excess.any * degrees},
       {"peak_limit_excess_degrees", outcome.peaks.limit_excess * degrees},
       {"energy_start", outcome.start.energy()},
       {"energy_end", end.energy()},
@@ -173,7 +173,7 @@ std::string to_text(const Simulation& simulation, const Outcome& outcome) {
   if (simulation.world.joint_count() > 0)
     text += format("joints            apart max %.4f mm, mean %.4f mm, peak %.4f mm; beyond limits %.2f degrees\n",
                    mm * end.separation.max, mm * end.separation.mean, mm * outcome.peaks.joint_separation,
-                   degrees * end.limit_excess);
+                   degrees * end.limit_excess.any);
   if (!simulation.scene.supports.empty())
     text += format("boxes             moved sideways %.4f m, fallen %d\n", end.drift.sideways, end.drift.fallen);
   text += format("energy            %.6g J at the start, %.6g J at the end, %.6g J at most\n", outcome.start.energy(),

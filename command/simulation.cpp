@@ -68,7 +68,8 @@ Watch::Watch(const Simulation& simulation, Outcome& outcome) : simulation_(simul
 
 void Watch::after(std::uint64_t step) {
   const World& world = simulation_.world;
-  rim_.look(simulation_.scene, world);
+  const std::vector<Pose> poses = scenes::poses(simulation_.scene, world);
+  rim_.look(simulation_.scene, poses);
   const bool small = simulation_.scene.bodies.size() <= small_scene, last = step == simulation_.setup.steps;
   const std::uint64_t every = small ? 20 : 60;
   Peaks& peaks = outcome_.peaks;
@@ -80,11 +81,10 @@ void Watch::after(std::uint64_t step) {
   }
   if (last) outcome_.end = scenes::measure(simulation_.scene, world, rim_);
   if (!last && step % every != 0) return;
-  const std::vector<Pose> poses = scenes::poses(simulation_.scene, world);
   peaks.penetration = std::max(peaks.penetration, scenes::penetration(simulation_.scene, world, poses).max);
-  peaks.joint_separation = std::max(peaks.joint_separation, scenes::joint_separation(simulation_.scene, world).max);
+  peaks.joint_separation = std::max(peaks.joint_separation, scenes::joint_separation(simulation_.scene, world, poses).max);
   if (double(step) * simulation_.setup.dt >= settling_time)
-    peaks.limit_excess = std::max(peaks.limit_excess, scenes::limit_excess(simulation_.scene, world));
+    peaks.limit_excess = std::max(peaks.limit_excess, scenes::limit_excess(simulation_.scene, world, poses).any);
 }
 
 }  // namespace pcphys::command

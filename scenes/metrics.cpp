@@ -27,14 +27,30 @@ JointAngles angles(Quat frame_a, Quat frame_b) {
 
 double outside(double value, double lower, double upper) { return std::max({0.0, lower - value, value - upper}); }
 
-double excess(const JointDef& joint, Quat qa, Quat qb) {
+LimitExcess excess(const JointDef& joint, Quat qa, Quat qb) {
   const AngleFreedom& freedom = joint.freedom;
-  if (freedom.kind == AngleFreedom::Kind::free) return 0;
+  if (freedom.kind == AngleFreedom::Kind::free) return {};
   const JointAngles is = angles(qa * joint.frame_a.orientation, qb * joint.frame_b.orientation);
-  if (freedom.kind == AngleFreedom::Kind::cone_twist)
-    return std::max(outside(is.swing, 0, freedom.cone), outside(is.roll, -freedom.twist, freedom.twist));
-  return std::max({outside(is.roll, freedom.lower.x, freedom.upper.x), outside(is.pitch, freedom.lower.y, freedom.upper.y),
-                   outside(is.yaw, freedom.lower.z, freedom.upper.z)});
+  if (freedom.kind == AngleFreedom::Kind::cone_twist) {
+    const double cone = outside(is.swing, 0, freedom.cone);
+    return {std::max(cone, outside(is.roll, -freedom.twist, freedom.twist)), cone};
+  }
+  return {std::max({outside(is.roll, freedom.lower.x, freedom.upper.x), outside(is.pitch, freedom.lower.y, freedom.upper.y),
+                    outside(is.yaw, freedom.lower.z, freedom.upper.z)}),
+          0};
+}
+
+/// The scene's joints with the poses of their bodies.
+template <class Action> void for_each_joint(const Scene& scene, const World& world, std::span<const Pose> poses, Action action) {
+  std::vector<const Pose*> of;  // by index of the body's id
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const std::size_t index = scene.bodies[i].id.index;
+    if (index >= of.size()) of.resize(index + 1);
+    of[index] = &poses[i];
+  }
+  const auto pose = [&](BodyId body) { return body.index < of.size() && of[body.index] ? *of[body.index] : Pose{}; };
+  for (JointId id : scene.joints)
+    if (const auto joint = world.joint(id)) action(*joint, pose(joint->a), pose(joint->b));  // the ground has no pose of its own
 }
 
 /// Beyond the walls of the open-lidded box, or below its floor.
@@ -56,39 +72,47 @@ std::vector<Pose> poses(const Scene& scene, const World& world) {
   return result;
 }
 
-Separation joint_separation(const Scene& scene, const World& world) {
-  constexpr double lost = 1e30;  // of a joint whose bodies are nowhere
-  Separation result;
-  for (JointId joint : scene.joints) {
-    const auto distance = world.joint_separation(joint);
-    const double d = distance && std::isfinite(*distance) ? *distance : lost;
-    result.max = std::max(result.max, d);
-    result.mean += d / double(scene.joints.size());
+State state(const Scene& scene, const World& world) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  State result;
+  result.poses = poses(scene, world);
+  for (const SceneBody& body : scene.bodies) {
+    const auto velocity = world.velocity(body.id), spin = world.angular_velocity(body.id);
+    result.velocities.push_back(velocity ? *velocity : Vec3{nan, nan, nan});
+    result.angular_velocities.push_back(spin ? *spin : Vec3{nan, nan, nan});
   }
   return result;
 }
 
-double limit_excess(const Scene& scene, const World& world) {
-  double worst = 0;
-  for (JointId id : scene.joints) {
-    const auto joint = world.joint(id);
-    if (!joint) continue;
-    const auto a = world.pose(joint->a), b = world.pose(joint->b);
-    if (a && b) worst = std::max(worst, excess(*joint, a->orientation, b->orientation));
-  }
+Separation joint_separation(const Scene& scene, const World& world, std::span<const Pose> poses) {
+  constexpr double lost = 1e30;  // of a joint whose bodies are nowhere
+  Separation result;
+  for_each_joint(scene, world, poses, [&](const JointDef& joint, const Pose& a, const Pose& b) {
+    const double distance = length(transform(a, joint.frame_a.position) - transform(b, joint.frame_b.position));
+    const double d = std::isfinite(distance) ? distance : lost;
+    result.max = std::max(result.max, d);
+    result.mean += d / double(scene.joints.size());
+  });
+  return result;
+}
+
+LimitExcess limit_excess(const Scene& scene, const World& world, std::span<const Pose> poses) {
+  LimitExcess worst;
+  for_each_joint(scene, world, poses, [&](const JointDef& joint, const Pose& a, const Pose& b) {
+    const LimitExcess here = excess(joint, a.orientation, b.orientation);
+    worst = {std::max(worst.any, here.any), std::max(worst.cone, here.cone)};
+  });
   return worst;
 }
 
-void RimWatch::look(const Scene& scene, const World& world) {
+void RimWatch::look(const Scene& scene, std::span<const Pose> poses) {
   if (scene.inner_width == 0) return;
-  above_.resize(scene.bodies.size());
+  above_.resize(poses.size());
   for (std::size_t i = 0; i < above_.size(); ++i) {
     if (scene.bodies[i].kind != BodyKind::dynamic) continue;
-    const auto pose = world.pose(scene.bodies[i].id);
-    if (!pose) continue;
-    if (pose->position.y > scene.wall_height)
+    if (poses[i].position.y > scene.wall_height)
       above_[i] = true;
-    else if (!outside(scene, pose->position))
+    else if (!outside(scene, poses[i].position))
       above_[i] = false;
   }
 }
@@ -109,14 +133,11 @@ Escapes escapes(const Scene& scene, std::span<const Pose> poses, const RimWatch&
   return result;
 }
 
-long nonfinite(const Scene& scene, const World& world, std::span<const Pose> poses) {
+long nonfinite(const State& state) {
   long count = 0;
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const auto velocity = world.velocity(scene.bodies[i].id);
-    const auto spin = world.angular_velocity(scene.bodies[i].id);
-    count +=
-        !(finite(poses[i].position) && finite(poses[i].orientation) && velocity && finite(*velocity) && spin && finite(*spin));
-  }
+  for (std::size_t i = 0; i < state.poses.size(); ++i)
+    count += !(finite(state.poses[i].position) && finite(state.poses[i].orientation) && finite(state.velocities[i]) &&
+               finite(state.angular_velocities[i]));
   return count;
 }
 
@@ -134,17 +155,39 @@ Drift drift(const Scene& scene, std::span<const Pose> poses) {
   return result;
 }
 
-Metrics measure(const Scene& scene, const World& world, const RimWatch& rim) {
-  const std::vector<Pose> now = poses(scene, world);
+namespace {
+
+/// Adds what one body has of the sums.
+void add_motion(Metrics& sums, const MassProperties& mass, const Pose& pose, Vec3 velocity, Vec3 spin, Vec3 gravity) {
+  const Vec3 w = rotate(conjugate(pose.orientation), spin);
+  const Vec3 inner{mass.moments.x * w.x, mass.moments.y * w.y, mass.moments.z * w.z};
+  const Vec3 momentum = mass.mass * velocity;
+  sums.kinetic += 0.5 * (dot(momentum, velocity) + dot(inner, w));
+  sums.potential -= mass.mass * dot(gravity, pose.position);
+  sums.momentum = sums.momentum + momentum;
+  sums.angular_momentum = sums.angular_momentum + cross(pose.position, momentum) + rotate(pose.orientation, inner);
+}
+
+}  // namespace
+
+Metrics measure(const Scene& scene, const World& world, const State& state, const RimWatch& rim) {
   Metrics result;
-  result.penetration = penetration(scene, world, now);
-  result.separation = joint_separation(scene, world);
-  result.limit_excess = limit_excess(scene, world);
-  result.escapes = escapes(scene, now, rim);
-  result.nonfinite = nonfinite(scene, world, now);
-  result.drift = drift(scene, now);
-  result.kinetic = world.kinetic_energy();
-  result.potential = world.potential_energy();
+  result.penetration = penetration(scene, world, state.poses);
+  result.separation = joint_separation(scene, world, state.poses);
+  result.limit_excess = limit_excess(scene, world, state.poses);
+  result.escapes = escapes(scene, state.poses, rim);
+  result.nonfinite = nonfinite(state);
+  result.drift = drift(scene, state.poses);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    if (scene.bodies[i].kind != BodyKind::dynamic) continue;
+    add_motion(result, *world.mass_properties(scene.bodies[i].id), state.poses[i], state.velocities[i],
+               state.angular_velocities[i], world.gravity());
+  }
+  return result;
+}
+
+Metrics measure(const Scene& scene, const World& world, const RimWatch& rim) {
+  Metrics result = measure(scene, world, state(scene, world), rim);
   result.momentum = world.momentum();
   result.angular_momentum = world.angular_momentum();
   return result;

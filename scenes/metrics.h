@@ -1,5 +1,5 @@
-// How well a run went: the measures of the peers' programs, in the same definitions, from the poses that a
-// world shows. Nothing here is fast; it runs outside of what is timed.
+// How well a run went: the measures of the peers' programs, in the same definitions. They are taken from poses and
+// velocities, whichever engine these came from. Nothing here is fast; it runs outside of what is timed.
 #pragma once
 #include <span>
 #include <vector>
@@ -27,20 +27,33 @@ struct Drift {
   int fallen = 0;                 // boxes that lie more than half a metre lower
 };
 
-/// One pose for each body of the scene; one that cannot be read is not finite.
+/// Where the bodies of a scene are and how they move, one each in the scene's order.
+struct State {
+  std::vector<Pose> poses;
+  std::vector<Vec3> velocities, angular_velocities;  // of the centre of mass, world axes
+};
+
+/// What a world shows; a pose or velocity that cannot be read is not finite.
 std::vector<Pose> poses(const Scene& scene, const World& world);
+State state(const Scene& scene, const World& world);
 
 /// Scenes with supports: vertical overlap of a box with what it was built on. Scenes in the open-lidded box:
 /// overlap of every pair of round bodies, or of hulls, that no joint connects, and of each with floor and walls. Others: floor.
 Penetration penetration(const Scene& scene, const World& world, std::span<const Pose> poses);
-Separation joint_separation(const Scene& scene, const World& world);
-/// How far the worst joint is beyond its cone, twist, pitch, yaw or roll limit; 0 within all limits [rad].
-double limit_excess(const Scene& scene, const World& world);
+
+/// In what follows `world` says how the scene's joints and masses are; where the bodies are is in the poses.
+Separation joint_separation(const Scene& scene, const World& world, std::span<const Pose> poses);
+/// How far the worst joint is beyond its limits; 0 within all of them [rad].
+struct LimitExcess {
+  double any = 0;   // cone, twist, pitch, yaw or roll
+  double cone = 0;  // cones alone
+};
+LimitExcess limit_excess(const Scene& scene, const World& world, std::span<const Pose> poses);
 /// Which bodies went over the rim of the open-lidded box: others threw them out, no wall let them through.
 class RimWatch {
  public:
   /// To be called after each step.
-  void look(const Scene& scene, const World& world);
+  void look(const Scene& scene, std::span<const Pose> poses);
   bool went_over(std::size_t body) const { return body < above_.size() && above_[body]; }
 
  private:
@@ -54,22 +67,25 @@ struct Escapes {
 };
 Escapes escapes(const Scene& scene, std::span<const Pose> poses, const RimWatch& rim = {});
 /// Bodies whose pose or velocity holds NaN or infinity.
-long nonfinite(const Scene& scene, const World& world, std::span<const Pose> poses);
+long nonfinite(const State& state);
 Drift drift(const Scene& scene, std::span<const Pose> poses);
 
 struct Metrics {
   Penetration penetration;
   Separation separation;
-  double limit_excess = 0;  // [rad]
+  LimitExcess limit_excess;
   Escapes escapes;
   long nonfinite = 0;
   Drift drift;
-  double kinetic = 0, potential = 0;  // velocities in phase with positions [J]
+  double kinetic = 0, potential = 0;  // of the velocities as they are given; gravity's is zero at the origin [J]
   Vec3 momentum, angular_momentum;    // [kg m/s], about the origin [kg m^2/s]
 
   double energy() const { return kinetic + potential; }
 };
 
+Metrics measure(const Scene& scene, const World& world, const State& state, const RimWatch& rim = {});
+/// Of the world's own state: energy with velocities in phase with positions, momenta of those that are stored, which
+/// impulses leave unchanged to rounding.
 Metrics measure(const Scene& scene, const World& world, const RimWatch& rim = {});
 
 }  // namespace pcphys::scenes

@@ -32,7 +32,7 @@ struct SceneRun {
     height = low;
     for (long i = 1; i <= steps; i++) {
       run.step(1.0 / 60);
-      rim.look(scene, run.world);
+      rim.look(scene, scenes::poses(scene, run.world));
       sample(i);
     }
     end = scenes::measure(scene, run.world, rim);
@@ -46,11 +46,12 @@ struct SceneRun {
     if (step % 10 == 0) {
       const std::vector<Pose> poses = scenes::poses(scene, run.world);
       escaped = std::max(escaped, scenes::escapes(scene, poses, rim).through);
-      nonfinite = std::max(nonfinite, scenes::nonfinite(scene, run.world, poses));
+      nonfinite = std::max(nonfinite, scenes::nonfinite(scenes::state(scene, run.world)));
     }
     if (step < 240 || scene.joints.empty()) return;
-    separation = std::max(separation, scenes::joint_separation(scene, run.world).max);
-    limit = std::max(limit, scenes::limit_excess(scene, run.world));
+    const std::vector<Pose> poses = scenes::poses(scene, run.world);
+    separation = std::max(separation, scenes::joint_separation(scene, run.world, poses).max);
+    limit = std::max(limit, scenes::limit_excess(scene, run.world, poses).any);
   }
 
   double gain() const { return highest - start; }

@@ -1,0 +1,96 @@
+#include "case.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace pcphys::cases {
+namespace {
+
+/// In place of a simulation that an engine refused to make, so that the variant can go on to its end: nothing moves.
+class Still final : public Simulated {
+ public:
+  using Simulated::Simulated;
+  Pose pose(int body) const override { return problem_.scene.bodies[std::size_t(body)].start; }
+  Vec3 velocity(int) const override { return {}; }
+  Vec3 angular_velocity(int) const override { return {}; }
+  void set_wrench(int, const Wrench&) override {}
+  void set_gravity(Vec3) override {}
+  void set_velocity(int, Vec3, Vec3) override {}
+
+ protected:
+  Status advance(double) override { return {}; }
+};
+
+}  // namespace
+
+Trial::Trial(Engine& engine, Precision precision, double dt, std::uint32_t substeps) : engine_(engine), dt_(dt) {
+  conditions_.precision = precision;
+  conditions_.settings.substeps = substeps;
+  conditions_.settings.restitution_threshold = 0;
+}
+
+long Trial::steps(double seconds) const { return std::lround(seconds / dt_); }
+
+Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, const std::function<void(StepSettings&)>& tune) {
+  const auto fail = [this](const Error& error) {
+    if (meter_.error.code == ErrorCode::none) meter_.error = error;
+  };
+  const auto make = [&] {
+    Problem problem{World({conditions_.precision, {}}), {}};
+    const scenes::SceneOptions options;
+    scenes::Builder builder(problem.world, problem.scene, options);
+    build(builder);
+    fail(builder.error());
+    return problem;
+  };
+  Conditions conditions = conditions_;
+  if (tune) tune(conditions.settings);
+  auto simulated = engine_.start(make(), conditions);
+  if (!simulated) fail(simulated.error());
+  running_.push_back(simulated ? std::move(*simulated) : std::make_unique<Still>(make()));
+  running_.back()->attach(meter_);
+  return *running_.back();
+}
+
+void Trial::resolve(SphereContact& contact) {
+  if (meter_.steps >= meter_.limit) return;
+  ++meter_.steps;
+  if (auto status = engine_.resolve(contact, conditions_.precision); !status && meter_.error.code == ErrorCode::none)
+    meter_.error = status.error();
+  for (const Vec3& v : {contact.v1, contact.v2, contact.w1, contact.w2})
+    for (double x : {v.x, v.y, v.z}) meter_.hash = (meter_.hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 1099511628211u;
+}
+
+void Trial::report(std::string metric, double error, std::optional<double> must, std::optional<double> target) {
+  findings_.push_back({std::move(metric), error, must, target});
+}
+
+std::optional<double> Trial::at(const Bounds& bounds, std::size_t single) const {
+  for (std::size_t i = 0; i < ladder.size(); ++i)
+    if (std::fabs(dt_ / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
+  return {};
+}
+
+void Trial::finish() {
+  if (meter_.error.code == ErrorCode::none && meter_.steps == 0)
+    meter_.error = {ErrorCode::bad_file, "The case made no step; its reference has no time that is a multiple of dt."};
+  if (!running_.empty() && meter_.steps < hashed_steps) meter_.hash = running_.back()->hash();
+}
+
+const std::vector<Case>& list() {
+  static const std::vector<Case> all = [] {
+    std::vector<Case> cases;
+    for (const auto add : {add_free_motion, add_rotation, add_pendulums, add_hinges, add_bounces, add_impacts, add_friction,
+                           add_rolling, add_simbenchmark})
+      add(cases);
+    // a group's letter, then its number
+    std::stable_sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) {
+      return std::pair(a.group(), std::stoi(a.name.substr(1))) < std::pair(b.group(), std::stoi(b.name.substr(1)));
+    });
+    return cases;
+  }();
+  return all;
+}
+
+}  // namespace pcphys::cases
