@@ -196,7 +196,7 @@ def add_hashes(rows, others):
 def generated_part(rows, titles, pictures):
     own = [r for r in rows if not r["peer"]]
     lines = [BEGIN, "## Passes and failures", ""]
-    lines += [f"Rows with a bound that pass, of {len(own)} rows in all.", ""]
+    lines += [f"{len(own)} rows; of those that have a bound, {passed(own)} pass.", ""]
     lines += summary(own, titles)
     lines += ["", "## Rows that miss", ""] + misses(own)
     lines += ["", "## Work-precision diagrams", ""]
