@@ -68,28 +68,27 @@ function(pcphys_list_kernels)
   file(CONFIGURE OUTPUT ${PCPHYS_GENERATED}/kernel_texts.inl CONTENT "${texts}" @ONLY)  # written only when it changed
 endfunction()
 
-# Puts the text of the files into the library as `pcphys::embedded_source(name)`, so that a host ships no shader files.
-# The value of `out` is the generated source; any edit of a file regenerates it.
-function(pcphys_embed out)
-  file(GLOB files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} ${ARGN})
+# Puts the text of the files into the program as `pcphys::NAME_source(file)`, declared in NAME.h, so that nothing has to
+# be shipped beside it. The value of `out` is the generated source; any edit of a file regenerates it.
+function(pcphys_embed out name)
+  file(GLOB files CONFIGURE_DEPENDS ${ARGN})
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed.cmake)
-  set(output ${PCPHYS_GENERATED}/embedded.cpp)
+  set(output ${PCPHYS_GENERATED}/${name}.cpp)
   string(REPLACE ";" "|" joined "${files}")
   add_custom_command(OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DFILES=${joined} -P ${script}
+    COMMAND ${CMAKE_COMMAND} -DOUTPUT=${output} -DNAME=${name} -DFILES=${joined} -P ${script}
     DEPENDS ${files} ${script}
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
-    COMMENT "Embedding kernel sources" VERBATIM)
-  file(WRITE ${PCPHYS_GENERATED}/embedded.h.new [[
-#pragma once
+    COMMENT "Embedding ${name}" VERBATIM)
+  file(WRITE ${PCPHYS_GENERATED}/${name}.h.new "#pragma once
 #include <string_view>
 
 namespace pcphys {
-// Text of a kernel or GLSL file by its file name ("integrate.inl"), or nullptr when there is none of that name.
-const char* embedded_source(std::string_view name);
+// Text of a file by its name (\"integrate.inl\"), or nullptr when there is none of that name.
+const char* ${name}_source(std::string_view name);
 }
-]])
-  file(COPY_FILE ${PCPHYS_GENERATED}/embedded.h.new ${PCPHYS_GENERATED}/embedded.h ONLY_IF_DIFFERENT)
+")
+  file(COPY_FILE ${PCPHYS_GENERATED}/${name}.h.new ${PCPHYS_GENERATED}/${name}.h ONLY_IF_DIFFERENT)
   set(${out} ${output} PARENT_SCOPE)
 endfunction()
 

@@ -13,6 +13,8 @@ int plan(const RunOptions& options);
 int tables(const RunOptions& options);
 int scenes_list(const OutputOptions& options);
 int doctor(const OutputOptions& options);
+/// The cases of these groups: "A" is accuracy, "BC" stability. `command` is shown with the progress.
+int run_cases(const CaseOptions& options, const char* command, const std::string& groups);
 /// For what the contract names and a later version brings.
 int comes_later(const char* command);
 

@@ -12,7 +12,7 @@ using namespace pcphys::command;
 namespace pcphys::command {
 
 int comes_later(const char* command) {
-  std::cerr << "pcphys: '" << command << "' comes with a later version; this one has run, scenes, plan, tables and doctor.\n";
+  std::cerr << "pcphys: '" << command << "' comes with a later version; `pcphys --help` tells what this one has.\n";
   return exit_failed;
 }
 
@@ -61,7 +61,11 @@ int main(int argc, char** argv) {
   run_command->add_flag("--hash", run_options.hash, "print nothing but the hash of the final state");
   run_command->add_flag("--poses", run_options.poses, "add the final pose and velocity of every body to the JSON");
   for (CLI::App* command : {scenes_command, doctor_command}) add_report_options(*command, output_options);
-  const char* const later[] = {"accuracy", "stability", "compare"};
+  CaseOptions case_options;
+  CLI::App* accuracy_command = app.add_subcommand("accuracy", "errors against motion that is known, and what they must reach");
+  CLI::App* stability_command = app.add_subcommand("stability", "stiff and extreme cases, and what they must reach");
+  for (CLI::App* command : {accuracy_command, stability_command}) add_case_options(*command, case_options);
+  const char* const later[] = {"compare"};
   for (const char* name : later) app.add_subcommand(name, "comes with a later version")->allow_extras();
 
   const auto is_first_word = [&](CLI::App* command) { return command->check_name(argv[1]); };
@@ -78,6 +82,8 @@ int main(int argc, char** argv) {
   if (*tables_command) return tables(run_options);
   if (*scenes_command) return scenes_list(output_options);
   if (*doctor_command) return doctor(output_options);
+  if (*accuracy_command) return run_cases(case_options, "accuracy", "A");
+  if (*stability_command) return run_cases(case_options, "stability", "BC");
   for (const char* name : later)
     if (app.got_subcommand(name)) return comes_later(name);
   return usage_error("A sub-command is missing.");

@@ -23,7 +23,8 @@ std::optional<double> number(std::string_view text) {
   return value;
 }
 
-/// "0.01" or "1/60".
+}  // namespace
+
 Result<double> time_step(const std::string& text) {
   const std::size_t slash = text.find('/');
   const auto above = number(std::string_view(text).substr(0, slash));
@@ -47,6 +48,8 @@ Status check_choice(const char* option, const std::string& value, std::initializ
   }
   return bad(std::string("--") + option + " is '" + value + "'; give one of " + list + ".");
 }
+
+namespace {
 
 /// What the contract of the command already names and this version does not do.
 Status check_later(const RunOptions& options) {

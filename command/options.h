@@ -1,8 +1,10 @@
 // What stands on the command line of `run`, `plan` and `tables`, and what it means to the library.
 #pragma once
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "pcphys/result.h"
 #include "pcphys/step.h"
@@ -28,6 +30,15 @@ struct RunOptions {
   bool hash = false, poses = false;
 };
 
+/// Of `accuracy` and `stability`.
+struct CaseOptions {
+  std::vector<std::string> names;
+  std::string precision = "both", backend = "cpu", dt;
+  long long repeats = 1;
+  bool all = false, list = false;
+  std::string json, csv;
+};
+
 /// The options in the library's own terms.
 struct Setup {
   std::string scene;
@@ -42,6 +53,13 @@ struct Setup {
 void add_scene_argument(CLI::App& app, RunOptions& options);
 void add_run_options(CLI::App& app, RunOptions& options);
 void add_output_options(CLI::App& app, RunOptions& options);
+void add_case_options(CLI::App& app, CaseOptions& options);
+
+// Errors: bad_argument with a sentence that names the option and what it accepts.
+Status check_range(const char* option, long long value, long long low, long long high);
+Status check_choice(const char* option, const std::string& value, std::initializer_list<const char*> choices);
+/// "0.01" or "1/60" [s].
+Result<double> time_step(const std::string& text);
 
 /// Errors: bad_argument with a sentence that names the option and what it accepts.
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps);

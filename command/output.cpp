@@ -75,8 +75,13 @@ Status ResultFiles::write(const Json& as_json, const std::string& as_csv) {
   return json.write(as_json.dump(2) + "\n");
 }
 
-Progress::Progress(std::string label, std::uint64_t total)
-    : label_(std::move(label)), total_(total), started_(now()), shown_(started_), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::string label, std::uint64_t total, const char* unit)
+    : label_(std::move(label)),
+      unit_(unit),
+      total_(total),
+      started_(now()),
+      shown_(started_),
+      terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
   if (drawn_) std::fprintf(stderr, "\r\033[K");
@@ -88,7 +93,7 @@ void Progress::show(std::uint64_t done) {
   shown_ = time;
   drawn_ = true;
   const double left = (time - started_) / double(done) * double(total_ - done);
-  std::fprintf(stderr, "\r%s: step %llu of %llu, %.0f s left\033[K", label_.c_str(), (unsigned long long)done,
+  std::fprintf(stderr, "\r%s: %s %llu of %llu, %.0f s left\033[K", label_.c_str(), unit_, (unsigned long long)done,
                (unsigned long long)total_, left);
 }
 

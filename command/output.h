@@ -45,12 +45,14 @@ struct ResultFiles {
 /// A line on standard error that counts up while a long run is under way, on a terminal only.
 class Progress {
  public:
-  Progress(std::string label, std::uint64_t total);
+  /// `unit` is what is counted.
+  Progress(std::string label, std::uint64_t total, const char* unit = "step");
   ~Progress();
   void show(std::uint64_t done);
 
  private:
   std::string label_;
+  const char* unit_;
   std::uint64_t total_;
   double started_, shown_;
   bool terminal_, drawn_ = false;
@@ -60,7 +62,7 @@ class Progress {
 double now();
 
 /// Exit codes of the command.
-enum Exit : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unsound = 3 };
+enum Exit : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unsound = 3, exit_missed = 4 };
 
 /// Prints one line to standard error, and says which code to exit with.
 int fail(const Error& error);

@@ -16,6 +16,7 @@ class Builder {
 
   /// Material of the bodies that follow.
   void set_material(double friction, double restitution) { material_ = {friction, friction, restitution}; }
+  void set_material(const Material& material) { material_ = material; }
   const Material& material() const { return material_; }
 
   /// Index of the new body in the scene; -1 after an error.

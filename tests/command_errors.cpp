@@ -66,9 +66,14 @@ const Case cases[] = {
     {"plan balls --json /no/such/folder/a.json", 1, "folder that exists"},
     {"run balls --backend gl --device 99", 1, "99"},
     {"plan balls --steps 1 --backend gl --device 99", 1, "99"},
-    {"accuracy", 1, "later version"},
-    {"accuracy A1 A2 --json -", 1, "later version"},
-    {"stability", 1, "later version"},
+    {"accuracy A99", 2, "no case 'A99' here; choose of A1, "},
+    {"accuracy B1", 2, "no case 'B1'"},
+    {"stability A1", 2, "no case 'A1'"},
+    {"accuracy A2 --precision half", 2, "float, double, both"},
+    {"accuracy A2 --dt soon", 2, "--dt is 'soon'"},
+    {"accuracy A2 --repeats 0", 2, "--repeats is 0"},
+    {"accuracy A2 --backend cuda", 2, "cpu, gl"},
+    {"accuracy A2 --json /no/such/folder/a.json", 1, "folder that exists"},
     {"compare balls --csv x.csv", 1, "later version"},
 };
 

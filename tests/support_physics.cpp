@@ -77,7 +77,7 @@ double Csv::at(std::size_t row, const char* column) const {
 }
 
 Csv read_csv(const char* file) {
-  const std::string path = std::string(PCPHYS_SOURCE_DIR "/tests/data/") + file;
+  const std::string path = std::string(PCPHYS_SOURCE_DIR "/cases/reference/") + file;
   std::ifstream in(path);
   if (!in) FAIL("Cannot read " << path);
   Csv csv;

@@ -48,7 +48,7 @@ struct Run {
 /// A body that touches nothing.
 BodyDef free_body(double mass, Vec3 moments, Vec3 velocity = {});
 
-/// A table of tests/data: named columns of numbers, '#' starts a comment line.
+/// A table of cases/reference: named columns of numbers, '#' starts a comment line.
 struct Csv {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;

@@ -1,0 +1,94 @@
+// The cases of the validation set: A accuracy, B stiff, C extreme. A case has variants; a variant is a function
+// that builds a world, steps it and reports errors against what is known of the motion. It runs in pcphys and in
+// peers alike, since it sees only poses and velocities.
+#pragma once
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenes/builder.h"
+#include "simulated.h"
+
+namespace pcphys::cases {
+
+/// The step lengths that errors are compared at [s].
+inline constexpr std::array<double, 4> ladder{1.0 / 60, 1.0 / 240, 1.0 / 1200, 1e-4};
+
+/// One bound a step of the ladder.
+using Bounds = std::array<double, 4>;
+
+/// What a trial found: an error with its unit in the metric's name, and what it must and should not exceed.
+struct Finding {
+  std::string metric;
+  double error = 0;
+  std::optional<double> must, target;
+};
+
+/// One run of a variant: an engine, a precision, a step length and a number of sub-steps.
+class Trial {
+ public:
+  Trial(Engine& engine, Precision precision, double dt, std::uint32_t substeps);
+  Trial(const Trial&) = delete;
+
+  double dt() const { return dt_; }
+  std::uint32_t substeps() const { return conditions_.settings.substeps; }
+  bool is_double() const { return conditions_.precision == Precision::f64; }
+  /// Steps that make up this time [s].
+  long steps(double seconds) const;
+
+  /// Builds bodies and joints, and starts their motion. It lives as long as the trial. Restitution has no least speed,
+  /// unless `tune` sets one.
+  Simulated& start(const std::function<void(scenes::Builder&)>& build, const std::function<void(StepSettings&)>& tune = {});
+
+  void report(std::string metric, double error, std::optional<double> must = {}, std::optional<double> target = {});
+  /// A bound that depends on the precision.
+  double either(double twice, double single) const { return is_double() ? twice : single; }
+  /// The bound of this step length; none off the ladder. In single precision only the first `single` of them hold:
+  /// below, rounding stands above the error of every method.
+  std::optional<double> at(const Bounds& bounds, std::size_t single = 2) const;
+
+  const std::vector<Finding>& findings() const { return findings_; }
+  const Meter& meter() const { return meter_; }
+  /// Ends the trial after so many steps, all simulations together.
+  void set_limit(long steps) { meter_.limit = steps; }
+  /// To be called when the variant's function is done.
+  void finish();
+
+ private:
+  Engine& engine_;
+  Conditions conditions_;
+  double dt_;
+  Meter meter_;
+  std::vector<Finding> findings_;
+  std::vector<std::unique_ptr<Simulated>> running_;
+};
+
+struct Variant {
+  std::string name;
+  std::function<void(Trial&)> run;
+  std::vector<double> steps{ladder.begin(), ladder.end()};
+  std::vector<std::uint32_t> substeps{1};
+  bool single = true;          // runs in single precision too
+  bool second_order = false;   // of the first metric: its slope must be 1.9 at least, in double
+  std::vector<double> slow{};  // step lengths that only --all runs
+};
+
+struct Case {
+  std::string name;  // "A7"; the letter is the group
+  std::string title;
+  std::vector<Variant> variants;
+
+  char group() const { return name[0]; }
+};
+
+/// All cases, in the order of their names.
+const std::vector<Case>& list();
+
+// One function a file of cases.
+void add_free_motion(std::vector<Case>& cases);
+void add_pendulums(std::vector<Case>& cases);
+
+}  // namespace pcphys::cases

@@ -1,0 +1,99 @@
+// A1, A2, A5: motion whose exact solution is a formula, under constant force, torque and linear drag.
+#include "case.h"
+#include "measures.h"
+
+namespace pcphys::cases {
+namespace {
+
+const Vec3 start_velocity{3, -2, 8};
+
+/// Position under constant acceleration a and linear drag F after t.
+Vec3 with_drag(Vec3 v0, Vec3 a, double drag, double t) {
+  if (drag == 0) return t * v0 + (0.5 * t * t) * a;
+  const double phi = -std::expm1(-drag * t) / drag;
+  return (t / drag) * a + phi * (v0 - (1 / drag) * a);
+}
+
+Simulated& throw_ball(Trial& trial, double drag) {
+  return trial.start([=](scenes::Builder& builder) {
+    (void)builder.world().set_gravity(down);
+    BodyDef def;
+    def.shapes = {ShapeDef::sphere(0.1)};
+    def.mass = 1;
+    def.velocity = start_velocity;
+    def.linear_drag = drag;
+    builder.add(without_contacts(def));
+  });
+}
+
+// ---- A1 ------------------------------------------------------------------------------------------------
+
+void fall_with_drag(Trial& trial, double drag) {
+  Simulated& run = throw_ball(trial, drag);
+  Worst position, growth;
+  double speed = length(start_velocity);
+  for (long k = 1; k <= trial.steps(5); ++k) {
+    run.step(trial.dt());
+    const double t = double(k) * trial.dt();
+    position.add(length(run.pose(0).position - with_drag(start_velocity, down, drag, t)));
+    speed = std::max(speed, length(run.velocity(0)));
+  }
+  const double limit = std::max(length(start_velocity), gravity / drag);
+  trial.report("position [m]", position, trial.either(1e-11, 1e-4));
+  trial.report("speed above start and terminal [m/s]", std::max(0.0, speed - limit), trial.either(1e-11, 1e-4));
+}
+
+// ---- A2 ------------------------------------------------------------------------------------------------
+
+void projectile(Trial& trial) {
+  Simulated& run = throw_ball(trial, 0);
+  Worst position;
+  // in single precision 1200 steps, whatever their length
+  const long count = trial.is_double() ? trial.steps(5) : 1200;
+  for (long k = 1; k <= count; ++k) {
+    run.step(trial.dt());
+    const Vec3 p = with_drag(start_velocity, down, 0, double(k) * trial.dt());
+    const double error = length(run.pose(0).position - p);
+    if (trial.is_double())
+      position.add(error / (std::max(length(p), 1.0) * std::sqrt(double(k))));
+    else if (k == count)
+      position.add(error / length(p));
+  }
+  trial.report(trial.is_double() ? "position / (max(|p|, 1) sqrt(steps))" : "position / |p|", position,
+               trial.either(1e-12, 2e-6));
+}
+
+// ---- A5 ------------------------------------------------------------------------------------------------
+
+/// The box of A4 from rest under 2.6 N m about z until `seconds_on`, then none, 10 s in all.
+void spin_up(Trial& trial, double seconds_on) {
+  Simulated& run = trial.start([](scenes::Builder& builder) { builder.add(free_body(12, {0.2, 0.4, 0.52})); });
+  const long on = trial.steps(seconds_on), all = trial.steps(10);
+  run.set_wrench(0, {{}, {0, 0, 2.6}});
+  run.step(trial.dt(), on);
+  run.set_wrench(0, {});
+  run.step(trial.dt(), all - on);
+  const double acceleration = 2.6 / 0.52, t1 = double(on) * trial.dt(), t2 = double(all - on) * trial.dt();
+  const double speed = acceleration * t1, angle = 0.5 * acceleration * t1 * t1 + speed * t2;
+  std::optional<double> must;
+  if (trial.is_double()) must = 1e-8;
+  trial.report("angle [rad]", angle_between(run.pose(0).orientation, axis_angle({0, 0, 1}, angle)), must);
+  trial.report("speed [rad/s]", length(run.angular_velocity(0) - Vec3{0, 0, speed}), trial.either(1e-9, 1e-3));
+}
+
+std::vector<double> with_long_step() { return {0.1, ladder[0], ladder[1], ladder[2], ladder[3]}; }
+
+}  // namespace
+
+void add_free_motion(std::vector<Case>& cases) {
+  Case& drag = cases.emplace_back(Case{"A1", "free fall with linear drag, against the closed form", {}});
+  for (const auto& [name, f] : {std::pair{"F = 0.5 1/s", 0.5}, {"F = 1 1/s", 1.0}, {"F = 5 1/s", 5.0}, {"F = 30 1/s", 30.0}})
+    drag.variants.push_back({.name = name, .run = [f = f](Trial& t) { fall_with_drag(t, f); }, .steps = with_long_step()});
+  cases.push_back({"A2", "projectile", {{.name = "thrown", .run = projectile, .steps = with_long_step()}}});
+  cases.push_back({"A5",
+                   "constant torque spins a box up",
+                   {{.name = "10 s", .run = [](Trial& t) { spin_up(t, 10); }},
+                    {.name = "off at 5 s", .run = [](Trial& t) { spin_up(t, 5); }}}});
+}
+
+}  // namespace pcphys::cases

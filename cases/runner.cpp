@@ -1,0 +1,199 @@
+#include "runner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
+
+namespace pcphys::cases {
+namespace {
+
+constexpr double seconds_to_repeat = 1;  // a trial that takes longer is not repeated
+
+std::vector<const Case*> selected(const Selection& selection) {
+  std::vector<const Case*> result;
+  for (const Case& c : list()) {
+    const bool named = std::find(selection.names.begin(), selection.names.end(), c.name) != selection.names.end();
+    if (selection.groups.find(c.group()) != std::string::npos && (named || selection.names.empty())) result.push_back(&c);
+  }
+  return result;
+}
+
+/// The trials of one variant with one engine.
+struct Setting {
+  Precision precision;
+  double dt;
+  std::uint32_t substeps;
+};
+
+bool same(double a, double b) { return std::fabs(a / b - 1) < 1e-9; }
+
+std::vector<Setting> settings(const Selection& selection, const Variant& variant, const Engine& engine) {
+  std::vector<Setting> result;
+  for (Precision precision : {Precision::f64, Precision::f32}) {
+    const bool twice = precision == Precision::f64;
+    if (!(twice ? selection.twice : selection.single && variant.single) || !engine.has(precision)) continue;
+    for (std::uint32_t substeps : variant.substeps)
+      for (double dt : variant.steps) {
+        const bool slow = std::any_of(variant.slow.begin(), variant.slow.end(), [dt](double s) { return same(s, dt); });
+        if ((slow && !selection.slow) || (selection.dt && !same(*selection.dt, dt))) continue;
+        if (substeps > 1 && !engine.has_substeps() && variant.substeps.size() > 1) continue;
+        result.push_back({precision, dt, substeps});
+      }
+  }
+  return result;
+}
+
+std::unique_ptr<Trial> make_trial(Engine& engine, const Variant& variant, const Setting& setting, long limit) {
+  auto trial = std::make_unique<Trial>(engine, setting.precision, setting.dt, setting.substeps);
+  trial->set_limit(limit);
+  variant.run(*trial);
+  trial->finish();
+  return trial;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& variant, const Setting& setting, Engine& engine,
+                         double seconds, const std::string& gl) {
+  Row row;
+  row.case_name = c.name;
+  row.variant = variant.name;
+  row.backend = engine.backend();
+  row.precision = setting.precision;
+  row.dt = setting.dt;
+  row.substeps = setting.substeps;
+  row.total_ms = 1000 * seconds;
+  row.ns_per_body_step = 1e9 * seconds / std::max(1.0, trial.meter().body_steps);
+  row.peer = engine.peer();
+  row.gl = gl;
+  row.failure = trial.meter().error.message;
+  std::vector<Row> rows;
+  for (const Finding& finding : trial.findings()) {
+    row.metric = finding.metric;
+    row.error = finding.error;
+    row.must = finding.must;
+    row.target = finding.target;
+    // NaN fails too
+    row.pass = row.failure.empty() && gl != "differs" && (row.must ? row.error <= *row.must : std::isfinite(row.error));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<Row> run_trial(const Selection& selection, const Case& c, const Variant& variant, const Setting& setting,
+                           Engine& engine, Engine* gl) {
+  constexpr long unlimited = std::numeric_limits<long>::max();
+  const auto trial = make_trial(engine, variant, setting, unlimited);
+  std::vector<double> seconds{trial->meter().seconds};
+  while (int(seconds.size()) < selection.repeats && seconds[0] < seconds_to_repeat)
+    seconds.push_back(make_trial(engine, variant, setting, unlimited)->meter().seconds);
+  std::string equal;
+  if (gl && engine.peer().empty()) {
+    const auto there = make_trial(*gl, variant, setting, hashed_steps);
+    equal = there->meter().error.code == ErrorCode::none && there->meter().hash == trial->meter().hash ? "equal" : "differs";
+  }
+  return rows_of(*trial, c, variant, setting, engine, median(seconds), equal);
+}
+
+/// Fills in the orders, and adds the row that says whether the first metric's is what it must be.
+void add_orders(const Variant& variant, std::vector<Row>& rows) {
+  using Key = std::tuple<std::string, Precision, std::uint32_t, std::string>;
+  const auto key = [](const Row& row) { return Key{row.peer, row.precision, row.substeps, row.metric}; };
+  std::map<Key, std::pair<std::vector<double>, std::vector<double>>> series;
+  for (const Row& row : rows) {
+    series[key(row)].first.push_back(row.dt);
+    series[key(row)].second.push_back(row.error);
+  }
+  for (Row& row : rows) {
+    const auto& [steps, errors] = series[key(row)];
+    row.order = order_of_convergence(steps, errors, row.precision);
+  }
+  if (!variant.second_order || rows.empty()) return;
+  const std::string metric = rows.front().metric;
+  std::vector<Row> added;
+  for (const auto& [k, points] : series) {
+    const auto last = std::find_if(rows.rbegin(), rows.rend(), [&, &k = k](const Row& row) { return key(row) == k; });
+    if (std::get<3>(k) != metric || last->precision != Precision::f64 || !last->peer.empty() || !last->order) continue;
+    Row row = *last;
+    row.metric = "2 - order of " + metric.substr(0, metric.find(" ["));
+    row.error = 2 - *row.order;
+    row.must = 0.1;
+    row.target.reset();
+    row.pass = row.error <= *row.must;
+    added.push_back(row);
+  }
+  rows.insert(rows.end(), added.begin(), added.end());
+}
+
+}  // namespace
+
+Status check(const Selection& selection) {
+  std::string known;
+  for (const Case& c : list())
+    if (selection.groups.find(c.group()) != std::string::npos) known += (known.empty() ? "" : ", ") + c.name;
+  for (const std::string& name : selection.names) {
+    Selection one = selection;
+    one.names = {name};
+    if (selected(one).empty())
+      return Error{ErrorCode::unknown_name, "There is no case '" + name + "' here; choose of " + known + "."};
+  }
+  return {};
+}
+
+std::size_t count_trials(const Selection& selection, std::span<Engine* const> engines) {
+  std::size_t count = 0;
+  for (const Case* c : selected(selection))
+    for (const Variant& variant : c->variants)
+      for (const Engine* engine : engines) count += settings(selection, variant, *engine).size();
+  return count;
+}
+
+std::vector<Row> run(const Selection& selection, std::span<Engine* const> engines,
+                     const std::function<void(std::span<const Row>)>& tell, const std::function<void(std::size_t)>& progress) {
+  const std::unique_ptr<Engine> gl = selection.gl ? make_pcphys(Place::gl) : nullptr;
+  std::vector<Row> all;
+  std::size_t done = 0;
+  for (const Case* c : selected(selection))
+    for (const Variant& variant : c->variants) {
+      std::vector<Row> rows;
+      for (Engine* engine : engines)
+        for (const Setting& setting : settings(selection, variant, *engine)) {
+          const std::vector<Row> found = run_trial(selection, *c, variant, setting, *engine, gl.get());
+          rows.insert(rows.end(), found.begin(), found.end());
+          if (progress) progress(++done);
+        }
+      add_orders(variant, rows);
+      if (tell) tell(rows);
+      all.insert(all.end(), rows.begin(), rows.end());
+    }
+  return all;
+}
+
+std::optional<double> order_of_convergence(std::span<const double> steps, std::span<const double> errors, Precision precision) {
+  const double floor = precision == Precision::f64 ? 1e-11 : 1e-5;
+  std::vector<std::pair<double, double>> points;
+  for (std::size_t i = 0; i < steps.size(); ++i) points.emplace_back(steps[i], errors[i]);
+  std::sort(points.begin(), points.end(), std::greater<>());
+  std::vector<std::pair<double, double>> kept;  // logarithms, from the longest step on while the error falls
+  for (const auto& [dt, error] : points) {
+    if (!(error > floor) || !std::isfinite(error)) break;
+    const double x = std::log(dt), y = std::log(error);
+    if (!kept.empty() && kept.back().second - y < 0.3 * (kept.back().first - x)) break;
+    kept.emplace_back(x, y);
+  }
+  if (kept.size() < 2) return {};
+  const std::size_t first = kept.size() > 3 ? kept.size() - 3 : 0;
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = first; i < kept.size(); ++i) {
+    const auto [x, y] = kept[i];
+    n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+}  // namespace pcphys::cases

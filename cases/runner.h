@@ -1,0 +1,54 @@
+// Runs cases over precisions, step lengths and engines, and makes rows of what they found.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "case.h"
+
+namespace pcphys::cases {
+
+/// One finding, with what it was found with. docs/command.md lists the fields.
+struct Row {
+  std::string case_name, variant, backend;
+  Precision precision = Precision::f64;
+  double dt = 0;
+  std::uint32_t substeps = 1;
+  std::string metric;
+  double error = 0;
+  std::optional<double> must, target;
+  bool pass = true;
+  double ns_per_body_step = 0, total_ms = 0;
+  std::string peer;
+
+  std::optional<double> order;  // of the metric over the step lengths of its variant
+  std::string gl;               // hash beside the cpu's: "equal", "differs", or empty when it was not asked for
+  std::string failure;          // why a step was refused
+};
+
+struct Selection {
+  std::vector<std::string> names;  // empty: all of the group
+  std::string groups = "A";
+  bool single = true, twice = true;
+  std::optional<double> dt;
+  bool slow = false;  // what takes long too
+  bool gl = false;    // the first steps of every trial on gl as well
+  int repeats = 1;    // times are medians; a trial of more than a second runs once
+};
+
+/// Errors: unknown_name for a case that is not in the groups.
+Status check(const Selection& selection);
+
+/// How many trials it takes, `engines` engines each.
+std::size_t count_trials(const Selection& selection, std::span<Engine* const> engines);
+
+/// Rows come in the order of the cases; `tell` sees each variant's when they are complete, `progress` counts trials.
+std::vector<Row> run(const Selection& selection, std::span<Engine* const> engines,
+                     const std::function<void(std::span<const Row>)>& tell, const std::function<void(std::size_t)>& progress);
+
+/// Slope of log(error) over log(dt), by least squares over the three smallest steps above the floor of rounding;
+/// none where fewer than two are. `errors` belong to `steps`, in any order.
+std::optional<double> order_of_convergence(std::span<const double> steps, std::span<const double> errors, Precision precision);
+
+}  // namespace pcphys::cases

@@ -1,0 +1,109 @@
+#include "simulated.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace pcphys::cases {
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+class Own final : public Simulated {
+ public:
+  Own(Problem problem, Stepper& stepper, const StepSettings& settings)
+      : Simulated(std::move(problem)), stepper_(stepper), settings_(settings), wrenches_(std::size_t(bodies())) {}
+
+  Pose pose(int body) const override { return *world().pose(id(body)); }
+  Vec3 velocity(int body) const override { return *world().velocity(id(body)); }
+  Vec3 angular_velocity(int body) const override { return *world().angular_velocity(id(body)); }
+  std::uint64_t hash() const override { return world().hash(); }
+
+  void set_wrench(int body, const Wrench& wrench) override {
+    ForceId& force = wrenches_[std::size_t(body)];
+    if (force != ForceId{}) check(problem_.world.remove(force));
+    auto added = problem_.world.add_force(id(body), wrench);
+    if (!added) return refuse(added.error().message);
+    force = *added;
+  }
+  void set_gravity(Vec3 gravity) override { check(problem_.world.set_gravity(gravity)); }
+  void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity) override {
+    check(problem_.world.set_velocity(id(body), velocity));
+    check(problem_.world.set_angular_velocity(id(body), angular_velocity));
+  }
+
+ protected:
+  Status advance(double dt) override {
+    if (auto status = stepper_.configure(settings_); !status) return status;
+    return stepper_.step(problem_.world, dt).error;
+  }
+
+ private:
+  const World& world() const { return problem_.world; }
+  BodyId id(int body) const { return problem_.scene.bodies[std::size_t(body)].id; }
+  void check(const Status& status) {
+    if (!status) refuse(status.error().message);
+  }
+
+  Stepper& stepper_;  // one for all simulations: a GL context is slow to make
+  StepSettings settings_;
+  std::vector<ForceId> wrenches_;
+};
+
+class OwnEngine final : public Engine {
+ public:
+  explicit OwnEngine(Place place) : place_(place) {}
+
+  Result<std::unique_ptr<Simulated>> start(Problem problem, const Conditions& conditions) override {
+    StepSettings settings = conditions.settings;
+    settings.set_all(place_);
+    settings.timings = false;
+    return std::unique_ptr<Simulated>(std::make_unique<Own>(std::move(problem), stepper_, settings));
+  }
+  std::string backend() const override { return name(place_); }
+
+ private:
+  Place place_;
+  Stepper stepper_;
+};
+
+}  // namespace
+
+Simulated::Simulated(Problem problem) : problem_(std::move(problem)) {
+  for (const scenes::SceneBody& body : problem_.scene.bodies) {
+    const auto mass = problem_.world.mass_properties(body.id);
+    masses_.push_back(mass ? *mass : MassProperties{});
+    moving_ += body.kind == BodyKind::dynamic;
+  }
+}
+
+void Simulated::step(double dt, long count) {
+  if (meter_ == nullptr) return;
+  Meter& meter = *meter_;
+  while (count > 0 && meter.error.code == ErrorCode::none && meter.steps < meter.limit) {
+    const long until_hash = meter.steps < hashed_steps ? hashed_steps - meter.steps : count;
+    const long batch = std::min({count, until_hash, meter.limit - meter.steps});
+    const double begin = now();
+    for (long i = 0; i < batch; ++i)
+      if (auto status = advance(dt); !status) {
+        meter.error = status.error();
+        return;
+      }
+    meter.seconds += now() - begin;
+    meter.steps += batch;
+    meter.body_steps += moving_ * double(batch);
+    if (meter.steps == hashed_steps) meter.hash = hash();
+    count -= batch;
+  }
+}
+
+void Simulated::refuse(const std::string& what) {
+  if (meter_ && meter_->error.code == ErrorCode::none) meter_->error = {ErrorCode::unavailable, what};
+}
+
+void Simulated::set_wrench(int, const Wrench&) { refuse("This engine takes no forces."); }
+void Simulated::set_gravity(Vec3) { refuse("This engine's gravity cannot change."); }
+void Simulated::set_velocity(int, Vec3, Vec3) { refuse("This engine's velocities cannot be set."); }
+
+std::unique_ptr<Engine> make_pcphys(Place place) { return std::make_unique<OwnEngine>(place); }
+
+}  // namespace pcphys::cases

@@ -1,0 +1,92 @@
+// A motion under way, in pcphys or in a peer: what a case may do to it and see of it.
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "pcphys/step.h"
+#include "scenes/scene.h"
+
+namespace pcphys::cases {
+
+/// What is simulated. pcphys steps the world; a peer reads its bodies, joints and gravity from it, as they were built.
+struct Problem {
+  World world;
+  scenes::Scene scene;
+};
+
+/// What a trial has used so far, and where it must stop.
+struct Meter {
+  double seconds = 0;  // that the steps took, nothing else
+  long steps = 0;
+  double body_steps = 0;  // sum over the steps of the bodies that can move
+  long limit = std::numeric_limits<long>::max();
+  Error error;             // of the first step that was refused
+  std::uint64_t hash = 0;  // after `hashed_steps` steps, or after the last where there are fewer
+};
+inline constexpr long hashed_steps = 600;
+
+/// Bodies are counted as in `problem().scene.bodies`. World axes, SI units.
+class Simulated {
+ public:
+  explicit Simulated(Problem problem);
+  virtual ~Simulated() = default;
+
+  /// Steps on; nothing happens after an error, or when the trial's limit is reached.
+  void step(double dt, long count = 1);
+
+  virtual Pose pose(int body) const = 0;
+  /// In phase with the position, where the engine can tell [m/s], [rad/s].
+  virtual Vec3 velocity(int body) const = 0;
+  virtual Vec3 angular_velocity(int body) const = 0;
+
+  /// Acts from now on, in place of what was set before. An engine that cannot do it reports an error.
+  virtual void set_wrench(int body, const Wrench& wrench);
+  virtual void set_gravity(Vec3 gravity);
+  virtual void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity);
+  /// Of the whole state, where the engine has one.
+  virtual std::uint64_t hash() const { return 0; }
+
+  const Problem& problem() const { return problem_; }
+  int bodies() const { return int(problem_.scene.bodies.size()); }
+  JointDef joint(int joint) const { return *problem_.world.joint(problem_.scene.joints[std::size_t(joint)]); }
+  const MassProperties& mass(int body) const { return masses_[std::size_t(body)]; }
+  bool moves(int body) const { return problem_.scene.bodies[std::size_t(body)].kind == BodyKind::dynamic; }
+  void attach(Meter& meter) { meter_ = &meter; }
+
+ protected:
+  virtual Status advance(double dt) = 0;
+  void refuse(const std::string& what);
+
+  Problem problem_;
+
+ private:
+  std::vector<MassProperties> masses_;
+  double moving_ = 0;
+  Meter* meter_ = nullptr;
+};
+
+/// How a trial wants its steps made. `settings` beyond these are pcphys's own, and a peer ignores them.
+struct Conditions {
+  Precision precision = Precision::f64;
+  StepSettings settings;
+};
+
+/// Makes simulations: pcphys with the place of its stages, or a peer.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual Result<std::unique_ptr<Simulated>> start(Problem problem, const Conditions& conditions) = 0;
+  /// As it stands in a row: empty for pcphys.
+  virtual std::string peer() const { return {}; }
+  /// "cpu" or "gl".
+  virtual std::string backend() const { return "cpu"; }
+  /// Whether it has this precision, and makes of `substeps` a difference.
+  virtual bool has(Precision) const { return true; }
+  virtual bool has_substeps() const { return true; }
+};
+
+std::unique_ptr<Engine> make_pcphys(Place place);
+
+}  // namespace pcphys::cases

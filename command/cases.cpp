@@ -1,0 +1,162 @@
+// pcphys accuracy and pcphys stability: the validation cases, with what they must reach.
+#include "cases/runner.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "commands.h"
+#include "output.h"
+
+namespace pcphys::command {
+namespace {
+
+const char* name(Precision precision) { return precision == Precision::f64 ? "double" : "float"; }
+
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json to_json(const cases::Row& row) {
+  return {{"case", row.case_name},
+          {"variant", row.variant},
+          {"backend", row.backend},
+          {"precision", name(row.precision)},
+          {"dt", row.dt},
+          {"substeps", row.substeps},
+          {"metric", row.metric},
+          {"error", row.error},  // null when it is not finite
+          {"must", or_null(row.must)},
+          {"target", or_null(row.target)},
+          {"pass", row.pass},
+          {"ns_per_body_step", row.ns_per_body_step},
+          {"total_ms", row.total_ms},
+          {"peer", or_null(row.peer)},
+          {"order", or_null(row.order)},
+          {"gl_hash", or_null(row.gl)},
+          {"failure", or_null(row.failure)}};
+}
+
+/// One line of the fields of the JSON, in the same order; text in quotes.
+std::string csv_line(const Json& row) {
+  std::string line;
+  for (const auto& [key, value] : row.items()) line += (line.empty() ? "" : ",") + (value.is_null() ? "" : value.dump());
+  return line + "\n";
+}
+
+std::string csv_head(const Json& row) {
+  std::string line;
+  for (const auto& [key, value] : row.items()) line += (line.empty() ? "" : ",") + key;
+  return line + "\n";
+}
+
+std::string step_text(double dt) {
+  char text[32];
+  const double inverse = std::round(1 / dt);
+  if (dt < 0.05 && dt > 5e-4 && std::fabs(inverse * dt - 1) < 1e-9)
+    std::snprintf(text, sizeof text, "1/%.0f", inverse);
+  else
+    std::snprintf(text, sizeof text, "%g", dt);
+  return text;
+}
+
+void print(std::span<const cases::Row> rows) {
+  for (const cases::Row& row : rows) {
+    std::printf("%-4s %-18s %-10s %-6s %-6s n=%-2u %-40s %10.3g", row.case_name.c_str(), row.variant.c_str(),
+                row.peer.empty() ? row.backend.c_str() : row.peer.c_str(), name(row.precision), step_text(row.dt).c_str(),
+                row.substeps, row.metric.c_str(), row.error);
+    if (row.must)
+      std::printf("  must %9.2g", *row.must);
+    else
+      std::printf("  %14s", "");
+    std::printf("  %-6s %8.0f ns", row.must || !row.pass ? (row.pass ? "ok" : "MISSED") : "", row.ns_per_body_step);
+    if (!row.gl.empty()) std::printf("  gl %s", row.gl.c_str());
+    std::printf("%s%s\n", row.failure.empty() ? "" : "  ", row.failure.c_str());
+  }
+  std::fflush(stdout);
+}
+
+Result<cases::Selection> resolve(const CaseOptions& options, const std::string& groups) {
+  cases::Selection selection;
+  selection.groups = groups;
+  selection.names = options.names;
+  selection.slow = options.all;
+  if (auto status = check_choice("precision", options.precision, {"float", "double", "both"}); !status) return status.error();
+  if (auto status = check_choice("backend", options.backend, {"cpu", "gl"}); !status) return status.error();
+  if (auto status = check_range("repeats", options.repeats, 1, 1000); !status) return status.error();
+  selection.single = options.precision != "double";
+  selection.twice = options.precision != "float";
+  selection.gl = options.backend == "gl";
+  selection.repeats = int(options.repeats);
+  if (!options.dt.empty()) {
+    const auto dt = time_step(options.dt);
+    if (!dt) return dt.error();
+    selection.dt = *dt;
+  }
+  if (auto status = cases::check(selection); !status) return status.error();
+  return selection;
+}
+
+int list_cases(const std::string& groups) {
+  for (const cases::Case& c : cases::list()) {
+    if (groups.find(c.group()) == std::string::npos) continue;
+    std::string variants;
+    for (const cases::Variant& variant : c.variants) variants += (variants.empty() ? "" : ", ") + variant.name;
+    std::printf("%-4s %s: %s\n", c.name.c_str(), c.title.c_str(), variants.c_str());
+  }
+  return exit_ok;
+}
+
+}  // namespace
+
+void add_case_options(CLI::App& app, CaseOptions& options) {
+  app.add_option("CASE", options.names, "names of cases; all when none is given");
+  app.add_flag("--list", options.list, "list the cases and their variants");
+  app.add_flag("--all", options.all, "the step lengths that take minutes too");
+  app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
+  app.add_option("--dt", options.dt, "this step length only [s], also as a fraction");
+  app.add_option("--backend", options.backend, "gl: run the first 600 steps of everything there too, and compare hashes")
+      ->capture_default_str();
+  app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 1 s runs once")
+      ->capture_default_str();
+  app.add_option("--json", options.json, "write the rows to this file; - is standard output");
+  app.add_option("--csv", options.csv, "write the rows as a table to this file");
+}
+
+int run_cases(const CaseOptions& options, const char* command, const std::string& groups) {
+  if (options.list) return list_cases(groups);
+  const auto selection = resolve(options, groups);
+  if (!selection) return fail(selection.error());
+  auto files = ResultFiles::open(options.json, options.csv);
+  if (!files) return fail(files.error());
+
+  const std::unique_ptr<cases::Engine> own = cases::make_pcphys(Place::cpu);
+  const std::vector<cases::Engine*> engines{own.get()};
+  std::vector<cases::Row> rows;
+  {
+    Progress progress(command, cases::count_trials(*selection, engines), "trial");
+    rows = cases::run(
+        *selection, engines,
+        [&](std::span<const cases::Row> found) {
+          if (files->printed()) print(found);
+        },
+        [&](std::size_t done) { progress.show(done); });
+  }
+
+  Json json = Json::array();
+  std::string csv;
+  for (const cases::Row& row : rows) {
+    json.push_back(to_json(row));
+    if (csv.empty()) csv = csv_head(json.back());
+    csv += csv_line(json.back());
+  }
+  if (auto status = files->write(json, csv); !status) return fail(status.error());
+  const auto missed =
+      std::count_if(rows.begin(), rows.end(), [](const cases::Row& row) { return row.peer.empty() && !row.pass; });
+  if (missed == 0) return exit_ok;
+  std::cerr << "pcphys: " << missed << " of " << rows.size() << " rows miss what they must reach.\n";
+  return exit_missed;
+}
+
+}  // namespace pcphys::command
