@@ -150,3 +150,107 @@ TEST_CASE("C12: a fast body that flies past touches nobody") {
       step_beside(n, mode, "flying past");
     }
 }
+
+// ---- frozen bodies --------------------------------------------------------------------------------------
+
+namespace {
+
+Status set_all_masses(World& w, BodyId b, double x) { return w.set_mass_properties(b, {x, {x, x, x}}); }
+
+/// Inputs that are accepted one by one, and that no arithmetic survives together.
+const Extreme impossible[] = {
+    {"a force of 1e15 on 1e-30 kg",
+     [](World& w, BodyId b) {
+       const Status ok = set_all_masses(w, b, 1e-30);
+       return ok ? status(w.add_force(b, Wrench{{1e15, 0, 0}, {}})) : ok;
+     }},
+    {"a torque of 1e15 on moments of 1e-30",
+     [](World& w, BodyId b) {
+       const Status ok = set_all_masses(w, b, 1e-30);
+       return ok ? status(w.add_force(b, Wrench{{}, {0, 0, 1e15}})) : ok;
+     }},
+    {"a spin of 1e15 with moments of 1e30",
+     [](World& w, BodyId b) {
+       const Status ok = set_all_masses(w, b, 1e30);
+       return ok ? w.set_angular_velocity(b, {0, 0, 1e15}) : ok;
+     }},
+    {"a callback's force of 1e15 on 1e-30 kg",
+     [](World& w, BodyId b) {
+       const Status ok = set_all_masses(w, b, 1e-30);
+       return ok ? status(w.add_force(b, [](const World&, BodyId) { return Wrench{{0, 1e15, 0}, {}}; })) : ok;
+     }},
+};
+
+}  // namespace
+
+TEST_CASE("C12: a body whose numbers leave the range is frozen and named, and nobody else notices") {
+  for (const Mode& mode : everywhere())
+    for (const Extreme& extreme : impossible) {
+      CAPTURE(mode.name());
+      CAPTURE(std::string(extreme.what));
+      if (mode.is_double() && std::string(extreme.what).starts_with("a spin")) continue;  // double holds its momentum
+      Neighbours n(mode), alone(mode);
+      const BodyId odd = add_extreme(n, extreme);
+      const Pose before = *n.world().pose(odd);
+      for (int i = 0; i < 20; i++) {
+        const StepReport& report = n.run.stepper.step(n.world(), dt);
+        REQUIRE(report);
+        CHECK(report.frozen == (i == 0 ? std::vector<BodyId>{odd} : std::vector<BodyId>{}));
+        alone.run.step(dt);
+        CHECK(same_bits(n.state(), alone.state()));
+      }
+      CHECK(*n.world().frozen(odd));
+      CHECK_FALSE(*n.world().frozen(n.bodies[1]));
+      CHECK(*n.world().pose(odd) == before);
+      CHECK(*n.world().velocity(odd) == Vec3{});
+    }
+}
+
+TEST_CASE("C12: a frozen body stands as a fixed one, and moves again when the host has mended it") {
+  for (const Mode& mode : everywhere()) {
+    CAPTURE(mode.name());
+    Neighbours n(mode);
+    BodyDef def = good_body();
+    def.pose.position = {6, 1, 0};
+    const BodyId odd = n.run.add(def);
+    def.pose.position = {6, 1.5, 0};
+    const BodyId on_top = n.run.add(def);
+    const MassProperties mass = *n.world().mass_properties(odd);
+    REQUIRE(n.world().set_mass_properties(odd, {1e-20, {1e-20, 1e-20, 1e-20}}));
+    const ForceId force = *n.world().add_force(odd, Wrench{{1e15, 0, 0}, {}});
+    n.run.step(dt, 60);
+    CHECK(*n.world().frozen(odd));
+    CHECK(std::fabs(n.run.position(on_top).y - 1.4) < 0.01);  // it has come to rest there
+    // a snapshot knows it
+    const std::vector<std::byte> snapshot = n.world().snapshot();
+    const std::uint64_t hash = n.world().hash();
+    REQUIRE(n.world().remove(force));
+    REQUIRE(n.world().set_mass_properties(odd, mass));
+    CHECK_FALSE(*n.world().frozen(odd));
+    n.run.step(dt, 60);
+    CHECK(std::fabs(n.run.position(odd).y - 0.2) < 0.01);
+    REQUIRE(n.world().restore(snapshot));
+    CHECK(*n.world().frozen(odd));
+    CHECK(n.world().hash() == hash);
+    n.run.step(dt);
+    CHECK(n.run.position(odd).y == 1);
+  }
+}
+
+// The joint tree may well hold what no free body would survive; if not, its bodies stand, and the rest goes on.
+TEST_CASE("C12: a joint tree that cannot be computed leaves the others alone") {
+  for (const Mode& mode : precisions()) {
+    CAPTURE(mode.name());
+    Neighbours n(mode), alone(mode);
+    n.count = alone.count = 4;  // but for the chain
+    REQUIRE(set_all_masses(n.world(), n.bodies[4], 1e-30));
+    REQUIRE(n.world().add_force(n.bodies[4], Wrench{{1e15, 0, 0}, {}}));
+    for (int i = 0; i < 60; i++) {
+      REQUIRE(n.run.stepper.step(n.world(), dt));
+      alone.run.step(dt);
+      CHECK(same_bits(n.state(), alone.state()));
+    }
+    n.count = n.bodies.size();
+    for (double x : n.state()) CHECK(std::isfinite(x));
+  }
+}

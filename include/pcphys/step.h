@@ -42,6 +42,7 @@ struct StepReport {
   std::uint64_t step = 0;  // how many steps this stepper has made
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   std::uint64_t transfer_bytes = 0;  // between host and device
+  std::vector<BodyId> frozen;        // in this step; see World::frozen
   double total_ms = 0;
   std::array<double, std::size_t(Timer::count)> ms{};
 

@@ -18,8 +18,7 @@ bool may_touch(const void* context, std::uint32_t a, std::uint32_t b) {
   const WorldState& s = *static_cast<const WorldState*>(context);
   const ShapeRecord &x = s.shapes[a], &y = s.shapes[b];
   if (x.body == y.body) return false;
-  if (s.bodies[s.body_ids.row(x.body)].kind != BodyKind::dynamic && s.bodies[s.body_ids.row(y.body)].kind != BodyKind::dynamic)
-    return false;
+  if (!s.responds(s.body_ids.row(x.body)) && !s.responds(s.body_ids.row(y.body))) return false;
   if (x.filter.group != 0 && x.filter.group == y.filter.group) {
     if (x.filter.group < 0) return false;
   } else if (!(x.filter.category & y.filter.mask) || !(y.filter.category & x.filter.mask)) {
@@ -94,8 +93,8 @@ void Detector::rebuild(const WorldState& s) {
     const std::uint32_t row = s.body_ids.row(shape.body);
     const auto [across, any] = levers(shape.def);
     proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{}, row, across, any, bounding_radius(shape.def)};
-    pairs_.add(i, s.bodies[row].kind != BodyKind::fixed);
-    some_dynamic |= s.bodies[row].kind == BodyKind::dynamic;
+    pairs_.add(i, !s.stands(row));
+    some_dynamic |= s.responds(row);
     solid++;
   }
   possible_ = some_dynamic && solid > 1;
@@ -146,7 +145,7 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
   const float fall = float(length(s.gravity) * dt * dt), step = float(dt);
   twists_.resize(s.bodies.size());
   for (std::uint32_t row = 0; row < s.bodies.size(); row++)
-    twists_[row] = s.bodies[row].kind == BodyKind::fixed ? Twist() : twist_of<Scalar>(s.tables, row);
+    twists_[row] = s.stands(row) ? Twist() : twist_of<Scalar>(s.tables, row);
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
@@ -155,7 +154,7 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
     const Twist& twist = twists_[proxy.body];
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;
-    reach_[i] = s.bodies[proxy.body].kind == BodyKind::fixed ? 0.0f : step * twist.speed + turned + fall;
+    reach_[i] = s.stands(proxy.body) ? 0.0f : step * twist.speed + turned + fall;
     tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
   }
 }

@@ -33,14 +33,11 @@ class Builder {
   /// What the host reads after a step: every buffer that holds state.
   void results(std::uint32_t substep) {
     for (std::size_t b = 0; b < table_buffer_count; b++)
-      if (holds_state(Buffer(b))) bring(Buffer(b), Place::cpu, substep);
+      if (holds(Buffer(b), Role::state)) bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
   static bool is_rows(Buffer b) { return b >= Buffer::table_buffers && schema(b).reals > 0; }
-  static bool holds_state(Buffer b) {
-    return std::ranges::any_of(properties(), [&](const PropertySchema& p) { return p.buffer == b && p.role == Role::state; });
-  }
 
   void bring(Buffer buffer, Place place, std::uint32_t substep) {
     bool& here = current_[std::size_t(buffer)][std::size_t(place)];

@@ -95,7 +95,8 @@ void Runner::forget() {
 }
 
 void Runner::keep(const WorldState& state, Buffer buffer) {
-  if (gl_ && schema(buffer).table != Table::contact) rollback_.keep(state.tables, buffer);
+  const bool lasts = holds(buffer, Role::state) || holds(buffer, Role::input);
+  if ((lasts || gl_) && schema(buffer).table != Table::contact) rollback_.keep(state.tables, buffer);
 }
 
 void Runner::undo(WorldState& state) {
@@ -204,7 +205,6 @@ Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldStat
   }
   if (gl_)
     if (Status done = at(Place::gl).backend->finish(); !done) return done;
-  rollback_.drop();
   return {};
 }
 

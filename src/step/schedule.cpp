@@ -24,9 +24,8 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
   for (const std::uint32_t row : rows_) {
     std::uint32_t ids[2];
     for (int side = 0; side < 2; side++) {
-      const BodyRecord& body = state.bodies[ends[row][side]];
-      ids[side] = body.index;
-      units_.push_back(body.kind == BodyKind::dynamic ? ends[row][side] : Colouring::fixed_unit);
+      ids[side] = state.bodies[ends[row][side]].index;
+      units_.push_back(state.responds(ends[row][side]) ? ends[row][side] : Colouring::fixed_unit);
       ends_.push_back(ends[row][side]);
     }
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
@@ -51,7 +50,7 @@ void TreeSlots::build(const WorldState& state) {
   std::vector<double> masses(state.bodies.size());
   std::vector<std::uint32_t> ids(state.bodies.size());
   for (std::uint32_t row = 0; row < state.bodies.size(); row++) {
-    masses[row] = state.bodies[row].kind == BodyKind::dynamic ? state.tables.get(Buffer::mass, row, 3) : 0;
+    masses[row] = state.responds(row) ? state.tables.get(Buffer::mass, row, 3) : 0;
     ids[row] = state.bodies[row].index;
   }
   forest_.build(links, masses, ids);
@@ -70,7 +69,7 @@ void Schedule::update_structure(const WorldState& state) {
   bodies.clear();
   drag = gyroscopic = false;
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
-    if (state.bodies[row].kind == BodyKind::fixed) continue;
+    if (state.stands(row)) continue;
     bodies.push_back(row);
     drag |= state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0;
     const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4);
