@@ -1,5 +1,6 @@
 #include "case.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcphys::cases {
@@ -72,6 +73,11 @@ const std::vector<Case>& list() {
     std::vector<Case> cases;
     add_free_motion(cases);
     add_pendulums(cases);
+    add_chains(cases);
+    add_loops(cases);
+    add_stacks(cases);
+    add_ragdolls(cases);
+    std::ranges::stable_sort(cases, {}, [](const Case& c) { return std::pair(c.group(), std::stoi(c.name.substr(1))); });
     return cases;
   }();
   return all;

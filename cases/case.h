@@ -90,5 +90,9 @@ const std::vector<Case>& list();
 // One function a file of cases.
 void add_free_motion(std::vector<Case>& cases);
 void add_pendulums(std::vector<Case>& cases);
+void add_chains(std::vector<Case>& cases);
+void add_loops(std::vector<Case>& cases);
+void add_stacks(std::vector<Case>& cases);
+void add_ragdolls(std::vector<Case>& cases);
 
 }  // namespace pcphys::cases
