@@ -58,7 +58,7 @@ void Trial::report(std::string metric, double error, std::optional<double> must,
 
 std::optional<double> Trial::at(const Bounds& bounds, std::size_t single) const {
   for (std::size_t i = 0; i < ladder.size(); ++i)
-    if (std::fabs(dt_ / ladder[i] - 1) < 1e-9 && (is_double() || i < single)) return bounds[i];
+    if (std::fabs(dt_ / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
   return {};
 }
 
@@ -71,13 +71,13 @@ void Trial::finish() {
 const std::vector<Case>& list() {
   static const std::vector<Case> all = [] {
     std::vector<Case> cases;
-    add_free_motion(cases);
-    add_pendulums(cases);
-    add_chains(cases);
-    add_loops(cases);
-    add_stacks(cases);
-    add_ragdolls(cases);
-    std::ranges::stable_sort(cases, {}, [](const Case& c) { return std::pair(c.group(), std::stoi(c.name.substr(1))); });
+    for (const auto add : {add_free_motion, add_rotation, add_pendulums, add_hinges, add_bounces, add_impacts, add_friction,
+                           add_rolling, add_simbenchmark, add_chains, add_loops, add_stacks, add_ragdolls})
+      add(cases);
+    // a group's letter, then its number
+    std::stable_sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) {
+      return std::pair(a.group(), std::stoi(a.name.substr(1))) < std::pair(b.group(), std::stoi(b.name.substr(1)));
+    });
     return cases;
   }();
   return all;

@@ -46,7 +46,7 @@ class Trial {
   void report(std::string metric, double error, std::optional<double> must = {}, std::optional<double> target = {});
   /// A bound that depends on the precision.
   double either(double twice, double single) const { return is_double() ? twice : single; }
-  /// The bound of this step length; none off the ladder. In single precision only the first `single` of them hold:
+  /// The bound of this step length; none off the ladder, and none where it is infinite. In single precision only the first `single` of them hold:
   /// below, rounding stands above the error of every method.
   std::optional<double> at(const Bounds& bounds, std::size_t single = 2) const;
 
@@ -72,7 +72,7 @@ struct Variant {
   std::vector<double> steps{ladder.begin(), ladder.end()};
   std::vector<std::uint32_t> substeps{1};
   bool single = true;          // runs in single precision too
-  bool second_order = false;   // of the first metric: its slope must be 1.9 at least, in double
+  std::string second_order{};  // the metric whose slope must be 1.9 at least, in double
   std::vector<double> slow{};  // step lengths that only --all runs
 };
 
@@ -89,7 +89,14 @@ const std::vector<Case>& list();
 
 // One function a file of cases.
 void add_free_motion(std::vector<Case>& cases);
+void add_rotation(std::vector<Case>& cases);
 void add_pendulums(std::vector<Case>& cases);
+void add_hinges(std::vector<Case>& cases);
+void add_bounces(std::vector<Case>& cases);
+void add_impacts(std::vector<Case>& cases);
+void add_friction(std::vector<Case>& cases);
+void add_rolling(std::vector<Case>& cases);
+void add_simbenchmark(std::vector<Case>& cases);
 void add_chains(std::vector<Case>& cases);
 void add_loops(std::vector<Case>& cases);
 void add_stacks(std::vector<Case>& cases);

@@ -7,13 +7,6 @@ namespace {
 
 const Vec3 start_velocity{3, -2, 8};
 
-/// Position under constant acceleration a and linear drag F after t.
-Vec3 with_drag(Vec3 v0, Vec3 a, double drag, double t) {
-  if (drag == 0) return t * v0 + (0.5 * t * t) * a;
-  const double phi = -std::expm1(-drag * t) / drag;
-  return (t / drag) * a + phi * (v0 - (1 / drag) * a);
-}
-
 Simulated& throw_ball(Trial& trial, double drag) {
   return trial.start([=](scenes::Builder& builder) {
     (void)builder.world().set_gravity(down);
@@ -35,7 +28,7 @@ void fall_with_drag(Trial& trial, double drag) {
   for (long k = 1; k <= trial.steps(5); ++k) {
     run.step(trial.dt());
     const double t = double(k) * trial.dt();
-    position.add(length(run.pose(0).position - with_drag(start_velocity, down, drag, t)));
+    position.add(length(run.pose(0).position - thrown(start_velocity, down, drag, t)));
     speed = std::max(speed, length(run.velocity(0)));
   }
   const double limit = std::max(length(start_velocity), gravity / drag);
@@ -52,7 +45,7 @@ void projectile(Trial& trial) {
   const long count = trial.is_double() ? trial.steps(5) : 1200;
   for (long k = 1; k <= count; ++k) {
     run.step(trial.dt());
-    const Vec3 p = with_drag(start_velocity, down, 0, double(k) * trial.dt());
+    const Vec3 p = thrown(start_velocity, down, 0, double(k) * trial.dt());
     const double error = length(run.pose(0).position - p);
     if (trial.is_double())
       position.add(error / (std::max(length(p), 1.0) * std::sqrt(double(k))));

@@ -1,21 +1,11 @@
 #include "measures.h"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 
 #include "reference.h"
 
 namespace pcphys::cases {
-namespace {
-
-Vec3 spin_momentum(const Simulated& run, int body) {
-  const Quat q = run.pose(body).orientation;
-  const Vec3 w = rotate(conjugate(q), run.angular_velocity(body)), i = run.mass(body).moments;
-  return rotate(q, {i.x * w.x, i.y * w.y, i.z * w.z});
-}
-
-}  // namespace
 
 double Csv::at(std::size_t row, std::string_view column) const {
   const auto found = std::find(columns.begin(), columns.end(), column);
@@ -58,6 +48,26 @@ Quat exponential(Vec3 rotation) {
 double angle_between(Quat a, Quat b) {
   const Quat d = conjugate(a) * b;
   return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
+}
+
+Vec3 Neighbours::angular_velocity() const {
+  Quat d = after.orientation * conjugate(before.orientation);
+  if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
+  const Vec3 v{d.x, d.y, d.z};
+  const double s = length(v);
+  return (s > 0 ? std::atan2(s, d.w) / (s * dt) : 0) * v;
+}
+
+double Neighbours::energy(const MassProperties& mass, Vec3 gravity) const {
+  const Vec3 v = velocity(), w = rotate(conjugate(now.orientation), angular_velocity()), i = mass.moments;
+  return 0.5 * mass.mass * dot(v, v) + 0.5 * (i.x * w.x * w.x + i.y * w.y * w.y + i.z * w.z * w.z) -
+         mass.mass * dot(gravity, now.position);
+}
+
+Vec3 spin_momentum(const Simulated& run, int body) {
+  const Quat q = run.pose(body).orientation;
+  const Vec3 w = rotate(conjugate(q), run.angular_velocity(body)), i = run.mass(body).moments;
+  return rotate(q, {i.x * w.x, i.y * w.y, i.z * w.z});
 }
 
 double kinetic_energy(const Simulated& run) {
@@ -105,6 +115,39 @@ double joint_gap(const Simulated& run) {
     worst.add(length(pin(joint.a, joint.frame_a.position) - pin(joint.b, joint.frame_b.position)));
   }
   return worst;
+}
+
+Vec3 thrown(Vec3 v0, Vec3 a, double drag, double t) {
+  if (drag == 0) return t * v0 + (0.5 * t * t) * a;
+  const double phi = -std::expm1(-drag * t) / drag;
+  return (t / drag) * a + phi * (v0 - (1 / drag) * a);
+}
+
+void pin(scenes::Builder& builder, BodyId a, Vec3 at_a, int b, Vec3 at_b) {
+  JointDef def;
+  def.a = a;
+  def.b = builder.id(b);
+  def.frame_a.position = at_a;
+  def.frame_b.position = at_b;
+  builder.add_joint(def);
+}
+
+BodyDef hanging_rod(double angle) {
+  BodyDef def;
+  def.shapes = {ShapeDef::box({0.05, 0.05, 0.5})};
+  def.mass = 1;
+  def.pose = {0.5 * Vec3{std::sin(angle), 0, -std::cos(angle)}, exponential({0, -angle, 0})};
+  return without_contacts(def);
+}
+
+double rod_frequency() { return std::sqrt(gravity * 0.5 / (0.25 + (1 + 0.01) / 12)); }
+
+BodyDef floor_plane(Quat orientation) {
+  BodyDef def;
+  def.kind = BodyKind::fixed;
+  def.shapes = {ShapeDef::plane()};
+  def.pose.orientation = orientation * axis_angle({1, 0, 0}, std::acos(0.0));  // a plane's own normal is y
+  return def;
 }
 
 BodyDef free_body(double mass, Vec3 moments, Vec3 velocity) {

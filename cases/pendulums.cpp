@@ -1,4 +1,4 @@
-// A7, A8: what turns about pins, solved directly. Bounds are twice the errors of converged SHAKE.
+// A6 to A8: what turns about pins, solved directly. Bounds are twice the errors of converged second-order methods.
 #include <numbers>
 
 #include "case.h"
@@ -7,39 +7,136 @@
 namespace pcphys::cases {
 namespace {
 
-/// A rod of 1 m and 1 kg whose axis, body z, leans by `angle` from straight down towards x; its centre at `centre`.
-BodyDef rod(double angle, Vec3 centre) {
-  BodyDef def;
-  def.shapes = {ShapeDef::box({0.05, 0.05, 0.5})};
-  def.mass = 1;
-  def.pose = {centre, exponential({0, -angle, 0})};
-  return without_contacts(def);
+constexpr double pi = std::numbers::pi;
+
+// ---- A6 ------------------------------------------------------------------------------------------------
+
+constexpr double top_mass = 2, top_radius = 0.2, top_height = 0.04;
+constexpr double across = top_mass * (top_radius * top_radius / 4 + top_height * top_height / 12);
+constexpr double along = top_mass * top_radius * top_radius / 2;
+
+/// Pinned 0.2 m below its centre of mass at the origin.
+Simulated& pinned_top(Trial& trial, Quat orientation, Vec3 spin) {
+  return trial.start([=](scenes::Builder& builder) {
+    (void)builder.world().set_gravity(down);
+    const Vec3 centre = rotate(orientation, {0, 0, 0.2});
+    BodyDef def = free_body(top_mass, {across, across, along}, cross(spin, centre));
+    def.pose = {centre, orientation};
+    def.angular_velocity = spin;
+    pin(builder, builder.world().ground(), {}, builder.add(def), {0, 0, -0.2});
+  });
 }
 
-void pin(scenes::Builder& builder, BodyId a, Vec3 at_a, int b, Vec3 at_b) {
-  JointDef def;
-  def.a = a;
-  def.b = builder.id(b);
-  def.frame_a.position = at_a;
-  def.frame_b.position = at_b;
-  builder.add_joint(def);
+struct TopBounds {
+  Bounds theta, phi;
+};
+
+void heavy_top(Trial& trial, const Csv& reference, const TopBounds& must) {
+  Simulated& run = pinned_top(trial, reference.quaternion(0, "q"), reference.vector(0, "w"));
+  const auto axial_spin = [&] { return rotate(conjugate(run.pose(0).orientation), run.angular_velocity(0)).z; };
+  const double l0 = angular_momentum(run).z, w0 = axial_spin();
+  Worst theta, phi, spin, momentum;
+  walk(run, trial.dt(), reference, 5, [&](std::size_t row, double) {
+    const Vec3 axis = rotate(run.pose(0).orientation, {0, 0, 1});
+    theta.add(std::fabs(std::acos(axis.z) - reference.at(row, "theta")));
+    phi.add(std::fabs(std::remainder(std::atan2(axis.y, axis.x) - reference.at(row, "phi"), 2 * pi)));
+    spin.add(std::fabs(axial_spin() / w0 - 1));
+    momentum.add(std::fabs(angular_momentum(run).z / l0 - 1));
+  });
+  const auto twice_only = [&](double bound) { return trial.is_double() ? std::optional(bound) : std::nullopt; };
+  trial.report("inclination [rad]", theta, trial.at(must.theta));
+  trial.report("azimuth [rad]", phi, trial.at(must.phi));
+  trial.report("spin about the axis / w3", spin, twice_only(1e-9));
+  trial.report("Lz / Lz0", momentum, twice_only(1e-9));
+}
+
+/// Upright: above the critical spin it stays so, below it must fall.
+void sleeping_top(Trial& trial, double spin, double lean, double seconds, bool falls) {
+  const Quat leaning = axis_angle({0, 1, 0}, lean);
+  Simulated& run = pinned_top(trial, leaning, spin * rotate(leaning, {0, 0, 1}));
+  Worst theta;
+  for (long k = 0, steps = trial.steps(seconds); k < steps; ++k) {
+    run.step(trial.dt());
+    const Vec3 axis = rotate(run.pose(0).orientation, {0, 0, 1});
+    theta.add(std::atan2(std::hypot(axis.x, axis.y), axis.z));
+  }
+  if (falls)
+    trial.report("short of a lean of 0.5 rad [rad]", std::max(0.0, 0.5 - theta), 0);
+  else
+    trial.report("largest lean [rad]", theta, trial.is_double() ? std::optional(1e-9) : std::nullopt);
 }
 
 // ---- A7 ------------------------------------------------------------------------------------------------
 
-void pendulum(Trial& trial, double angle, const Csv& reference, const Bounds& shake) {
-  Simulated& run = trial.start([=](scenes::Builder& builder) {
+struct Amplitude {
+  const char *name, *file;
+  double degrees;
+  Bounds shake;
+};
+const Amplitude amplitudes[] = {{"10 deg", "A07_pendulum_10.csv", 10, {5.5e-4, 3.5e-5, 1.4e-6, 2.0e-8}},
+                                {"90 deg", "A07_pendulum_90.csv", 90, {1.2e-2, 7.3e-4, 2.9e-5, 4.2e-7}},
+                                {"170 deg", "A07_pendulum_170.csv", 170, {1.2e-2, 7.7e-4, 3.1e-5, 4.6e-7}}};
+
+Bounds twice(const Bounds& b) { return {2 * b[0], 2 * b[1], 2 * b[2], 2 * b[3]}; }
+
+Simulated& pendulum(Trial& trial, double angle) {
+  return trial.start([=](scenes::Builder& builder) {
     (void)builder.world().set_gravity(down);
-    const int body = builder.add(rod(angle, 0.5 * Vec3{std::sin(angle), 0, -std::cos(angle)}));
-    pin(builder, builder.world().ground(), {}, body, {0, 0, 0.5});
+    pin(builder, builder.world().ground(), {}, builder.add(hanging_rod(angle)), {0, 0, 0.5});
   });
-  Worst position, gap;
-  walk(run, trial.dt(), reference, 10, [&](std::size_t row, double) {
+}
+
+void swing(Trial& trial, const Amplitude& amplitude, const Csv& reference) {
+  Simulated& run = pendulum(trial, amplitude.degrees * pi / 180);
+  const double e0 = energy(run);
+  Worst position, gap, gained, read, force, largest_force;
+  walk_with_neighbours(run, trial.dt(), reference, 10, [&](std::size_t row, double) {
     position.add(length(run.pose(0).position - Vec3{reference.at(row, "px"), 0, reference.at(row, "pz")}));
     gap.add(joint_gap(run));
+    read.add(std::fabs(energy(run) - e0) / gravity);  // 2 m g l of the rod
+    return [&, row](const Neighbours& n) {
+      const double angle = reference.at(row, "theta");
+      const Vec3 outward{std::sin(angle), 0, -std::cos(angle)}, transverse{std::cos(angle), 0, std::sin(angle)};
+      const Vec3 expected = reference.at(row, "Ft") * transverse - reference.at(row, "Fr") * outward;
+      force.add(length(n.acceleration() - down - expected));
+      largest_force.add(length(expected));
+      gained.add(std::fabs(n.energy(run.mass(0), down) - e0) / gravity);
+    };
   });
-  trial.report("position [m]", position, trial.at({2 * shake[0], 2 * shake[1], 2 * shake[2], 2 * shake[3]}), trial.at(shake));
+  trial.report("position [m]", position, trial.at(twice(amplitude.shake)), trial.at(amplitude.shake, 0));
   trial.report("joint gap [m]", gap, trial.either(1e-12, 2e-6));
+  // with more sub-steps the differences of whole steps are coarser than the motion
+  const bool level = amplitude.degrees == 90 && trial.substeps() == 1;
+  trial.report("energy / (2 m g l)", gained, level ? trial.at({1.36e-3, 8.4e-5, 3.4e-6, 4.8e-8}) : std::nullopt);
+  trial.report("energy of velocities read / (2 m g l)", read);
+  trial.report("pivot force / the largest", force / largest_force, trial.at({infinite, infinite, 1e-2, 1e-2}, 0));
+}
+
+/// No trend of the energy over 1000 s.
+void long_swing(Trial& trial) {
+  Simulated& run = pendulum(trial, 0.5 * pi);
+  const double e0 = energy(run);
+  const long steps = trial.steps(1000), tenth = steps / 10;
+  Worst worst;
+  double first = 0, last = 0;  // means over the first and the last tenth
+  Neighbours n;
+  n.dt = trial.dt();
+  n.now = run.pose(0);
+  run.step(trial.dt());
+  n.after = run.pose(0);
+  for (long k = 0; k < steps; ++k) {
+    n.before = n.now;
+    n.now = n.after;
+    run.step(trial.dt());
+    n.after = run.pose(0);
+    const double error = (n.energy(run.mass(0), down) - e0) / gravity;
+    worst.add(std::fabs(error));
+    if (k < tenth) first += error / double(tenth);
+    if (k >= steps - tenth) last += error / double(tenth);
+  }
+  trial.report("energy / (2 m g l)", worst, trial.at({1.36e-3, 8.4e-5, infinite, infinite}));
+  trial.report("trend of the energy / its oscillation", std::fabs(last - first) / worst,
+               trial.is_double() ? std::optional(0.1) : std::nullopt);
 }
 
 // ---- A8 ------------------------------------------------------------------------------------------------
@@ -48,12 +145,14 @@ void double_pendulum(Trial& trial) {
   static const Csv reference = read_csv("A08_double_pendulum.csv");
   Simulated& run = trial.start([](scenes::Builder& builder) {
     (void)builder.world().set_gravity(down);
-    const double level = 0.5 * std::numbers::pi;
-    const int first = builder.add(rod(level, {0.5, 0, 0})), second = builder.add(rod(level, {1.5, 0, 0}));
+    BodyDef rod = hanging_rod(0.5 * pi);
+    const int first = builder.add(rod);
+    rod.pose.position = {1.5, 0, 0};
+    const int second = builder.add(rod);
     pin(builder, builder.world().ground(), {}, first, {0, 0, 0.5});
     pin(builder, builder.id(first), {0, 0, -0.5}, second, {0, 0, 0.5});
   });
-  Worst early, all;
+  Worst early, all, gap;
   walk(run, trial.dt(), reference, 4, [&](std::size_t row, double t) {
     for (int i = 0; i < 2; ++i) {
       const char* const x[] = {"x1", "x2"};
@@ -62,28 +161,39 @@ void double_pendulum(Trial& trial) {
       if (t <= 2 + 1e-9) early.add(error);
       all.add(error);
     }
+    gap.add(joint_gap(run));
   });
   trial.report("position until 2 s [m]", early, trial.at({1.5e-2, 9.1e-4, 3.6e-5, 5.2e-7}));
   trial.report("position until 4 s [m]", all, trial.at({1e-1, 6e-3, 2.4e-4, 3.5e-6}));
+  trial.report("joint gap [m]", gap);
 }
 
 }  // namespace
 
 void add_pendulums(std::vector<Case>& cases) {
-  Case& compound = cases.emplace_back(Case{"A7", "compound pendulum", {}});
-  struct Amplitude {
-    const char *name, *file;
-    double degrees;
-    Bounds shake;
+  const TopBounds steady{{infinite, 2e-5, 6e-7, infinite}, {infinite, 1.4e-3, 5.4e-5, infinite}};
+  const TopBounds cuspidal{{infinite, 4e-3, 1.6e-4, 2.4e-6}, {infinite, 8e-4, 2.2e-5, 3e-7}};
+  const auto top = [](const char* file, const TopBounds& must) {
+    return [reference = read_csv(file), must](Trial& t) { heavy_top(t, reference, must); };
   };
-  for (const Amplitude& a : {Amplitude{"10 deg", "A07_pendulum_10.csv", 10, {5.5e-4, 3.5e-5, 1.4e-6, 2.0e-8}},
-                             Amplitude{"90 deg", "A07_pendulum_90.csv", 90, {1.2e-2, 7.3e-4, 2.9e-5, 4.2e-7}},
-                             Amplitude{"170 deg", "A07_pendulum_170.csv", 170, {1.2e-2, 7.7e-4, 3.1e-5, 4.6e-7}}})
+  cases.push_back({"A6",
+                   "heavy symmetric top",
+                   {{.name = "a, steady", .run = top("A06a_heavy_top_steady.csv", steady), .second_order = "azimuth [rad]"},
+                    {.name = "b, cusps", .run = top("A06b_heavy_top_cuspidal.csv", cuspidal), .second_order = "azimuth [rad]"},
+                    {.name = "sleeping", .run = [](Trial& t) { sleeping_top(t, 60, 0, 60, false); }},
+                    {.name = "below critical", .run = [](Trial& t) { sleeping_top(t, 25, 1e-3, 10, true); }}}});
+
+  Case& compound = cases.emplace_back(Case{"A7", "compound pendulum", {}});
+  for (const Amplitude& a : amplitudes)
     compound.variants.push_back({.name = a.name,
-                                 .run = [a, reference = read_csv(a.file)](
-                                            Trial& t) { pendulum(t, a.degrees * std::numbers::pi / 180, reference, a.shake); },
-                                 .second_order = true});
-  cases.push_back({"A8", "double compound pendulum", {{.name = "from level", .run = double_pendulum, .second_order = true}}});
+                                 .run = [a, reference = read_csv(a.file)](Trial& t) { swing(t, a, reference); },
+                                 .substeps = {1, 4},
+                                 .second_order = "position [m]"});
+  compound.variants.push_back({.name = "90 deg, 1000 s", .run = long_swing, .steps = {ladder[0], ladder[1]}, .single = false});
+  cases.push_back(
+      {"A8",
+       "double compound pendulum",
+       {{.name = "from level", .run = double_pendulum, .substeps = {1, 4}, .second_order = "position until 2 s [m]"}}});
 }
 
 }  // namespace pcphys::cases

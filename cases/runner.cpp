@@ -38,6 +38,8 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
       for (double dt : variant.steps) {
         const bool slow = std::any_of(variant.slow.begin(), variant.slow.end(), [dt](double s) { return same(s, dt); });
         if ((slow && !selection.slow) || (selection.dt && !same(*selection.dt, dt))) continue;
+        // what is slow with one sub-step is slower with more
+        if (substeps > 1 && same(dt, ladder.back()) && !selection.slow) continue;
         if (substeps > 1 && !engine.has_substeps() && variant.substeps.size() > 1) continue;
         result.push_back({precision, dt, substeps});
       }
@@ -113,8 +115,8 @@ void add_orders(const Variant& variant, std::vector<Row>& rows) {
     const auto& [steps, errors] = series[key(row)];
     row.order = order_of_convergence(steps, errors, row.precision);
   }
-  if (!variant.second_order || rows.empty()) return;
-  const std::string metric = rows.front().metric;
+  const std::string& metric = variant.second_order;
+  if (metric.empty()) return;
   std::vector<Row> added;
   for (const auto& [k, points] : series) {
     const auto last = std::find_if(rows.rbegin(), rows.rend(), [&, &k = k](const Row& row) { return key(row) == k; });
