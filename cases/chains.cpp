@@ -152,7 +152,7 @@ void add_chains(std::vector<Case>& cases) {
     swing.variants.push_back({.name = r.name,
                               .run = [r, csv = read_csv(r.file)](Trial& t) { swing_reference(t, r.links, r.ratio, csv, r.must); },
                               .substeps = {1, 4},
-                              .second_order = true});
+                              .second_order = "position [m]"});
   for (int links : {10, 50})
     for (double ratio : {1.0, 100.0, 1e4}) {
       char name[64];

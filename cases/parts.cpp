@@ -132,8 +132,4 @@ double deepest_contact(const World& world) {
   return deepest;
 }
 
-void report_missing(Trial& trial, const std::string& why) {
-  trial.report("not available: " + why, std::numeric_limits<double>::quiet_NaN(), 0.0);
-}
-
 }  // namespace pcphys::cases

@@ -44,7 +44,4 @@ double largest_speed(const Simulated& run);
 /// Sum over contacts with overlap, and the deepest, as the last step left them [m].
 double deepest_contact(const World& world);
 
-/// Says that the library cannot run this, in a row that fails.
-void report_missing(Trial& trial, const std::string& why);
-
 }  // namespace pcphys::cases

@@ -203,7 +203,7 @@ void add_stacks(std::vector<Case>& cases) {
        {{.name = "cards", .run = [](Trial& t) { card_house(t, StepSettings{}.contact_margin); }, .steps = fine, .substeps = {4}},
         {.name = "cards, margin 0.5 mm", .run = [](Trial& t) { card_house(t, 5e-4); }, .steps = fine, .substeps = {4}},
         {.name = "arch",
-         .run = [](Trial& t) { report_missing(t, "no convex hulls for its stones"); },
+         .run = [](Trial& t) { t.report_missing("no convex hulls for its stones"); },
          .steps = {1.0 / 60},
          .substeps = {4}},
         {.name = "jenga", .run = jenga, .steps = fine, .substeps = {4}},

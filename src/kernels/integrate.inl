@@ -5,6 +5,18 @@
 // last place, the same way each time. Without drag (PC_DRAG not defined) phi = 1: the same bits, less work.
 #include "world_inertia.inl"
 
+#ifdef PC_DRAG
+// What drag leaves of a velocity and what it takes. Up to F h = 1 what it takes is exact to the last place and is
+// subtracted; above, nearly all of u goes (a velocity that was just set is stored e^(F h) times as large), and what
+// is left is computed instead.
+struct Share { Vec3 kept; Vec3 gone; Vec3 low; };
+PC_FN Share pc_share(Real drag_times_h, Vec3 v, Vec3 low, Decay d) {
+  Mask strong = drag_times_h > PC_REAL(1.0);
+  precise Vec3 left = v * d.e; precise Vec3 lost = v * d.loss; precise Vec3 left_low = low * d.e;
+  Share s; s.kept = pc_select3(strong, left, v); s.gone = pc_select3(strong, pc_zero3(), lost); s.low = pc_select3(strong, left_low, low); return s;
+}
+#endif
+
 PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear = PC_GATHER(motion, i, 0u);
   Quad angular = PC_GATHER(motion, i, 1u);
@@ -24,8 +36,12 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Decay calm = pc_decay(y);
   precise Real kick = slow.phi * h;
   precise Real twist = calm.phi * h;
-  precise Vec3 u_change = (acceleration * kick - linear.v * slow.loss) + linear_low.v;
-  precise Vec3 l_change = (turn.v * twist - angular.v * calm.loss) + angular_low.v;
+  Share u_share = pc_share(x, linear.v, linear_low.v, slow);
+  Share l_share = pc_share(y, angular.v, angular_low.v, calm);
+  precise Vec3 u_change = (acceleration * kick - u_share.gone) + u_share.low;
+  precise Vec3 l_change = (turn.v * twist - l_share.gone) + l_share.low;
+  linear.v = pc_select3(dynamic_body, u_share.kept, linear.v);
+  angular.v = pc_select3(dynamic_body, l_share.kept, angular.v);
 #else
   precise Vec3 u_change = acceleration * h + linear_low.v;
   precise Vec3 l_change = turn.v * h + angular_low.v;

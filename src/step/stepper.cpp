@@ -12,7 +12,7 @@
 #include "plan/infos.h"
 #include "plan/plan.h"
 #include "step/processor_state.h"
-#include "step/range.h"
+#include "world/range.h"
 #include "step/runner.h"
 #include "step/schedule.h"
 #include "world/state.h"

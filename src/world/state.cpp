@@ -12,7 +12,7 @@ std::atomic<std::uint64_t> worlds_made{0};
 /// What an acceleration of 1 shifts the stored velocity by, with linear drag: h (phi2 - phi) / e of
 /// kernels/begin.inl, -h / 2 without.
 double half_kick(double drag, double h) {
-  const double x = drag * h, e = std::exp(-x);
+  const double x = drag * h, e = std::exp(-std::min(x, 60.0));  // as the kernels have it
   if (x > 0.1) {
     const double phi = (1 - e) / x, phi2 = (1 - phi) / x;
     return h * (phi2 - phi) / e;

@@ -1,4 +1,4 @@
-#include "step/range.h"
+#include "world/range.h"
 
 #include <algorithm>
 #include <cmath>
