@@ -157,6 +157,7 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
     reach_[i] = s.stands(proxy.body) ? 0.0f : step * twist.speed + turned + fall;
     tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
   }
+  for (Twist& twist : twists_) twist.limit_turn(largest_turn / step);
 }
 
 template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }
