@@ -42,7 +42,7 @@ void symmetric_top(Trial& trial, int axis) {
   std::optional<double> must = trial.at({infinite, infinite, 1e-2, 1.5e-4}, 4);
   trial.report("attitude [rad]", attitude, must, trial.is_double() ? std::optional(1e-9) : std::nullopt);
   trial.report("|L - L0| / |L0|", kept, trial.either(1e-12, 1e-6));
-  trial.report("energy / E0", energy, trial.either(1e-12, 1e-6));
+  trial.report("energy / E0", energy, trial.is_double() ? std::optional(1e-12) : std::nullopt);
 }
 
 // ---- A4 ------------------------------------------------------------------------------------------------
@@ -60,34 +60,39 @@ Simulated& tumbling_box(Trial& trial, Quat q, Vec3 body_spin) {
   });
 }
 
-/// Follows a table; tells the largest errors until 4 s and until the end.
-void tumble(Trial& trial, const Csv& reference, Vec3 body_spin, double seconds, Worst& early, Worst& late) {
+/// Largest errors until 4 s and until the end, and of the angular momentum.
+struct Tumble {
+  Worst early, late, kept;
+};
+
+Tumble tumble(Trial& trial, const Csv& reference, Vec3 body_spin, double seconds) {
   Simulated& run = tumbling_box(trial, reference.quaternion(0, "q"), body_spin);
   const Vec3 l0 = spin_momentum(run, 0);
-  Worst kept;
+  Tumble worst;
   walk(run, trial.dt(), reference, seconds, [&](std::size_t row, double t) {
     const double error = angle_between(run.pose(0).orientation, reference.quaternion(row, "q"));
-    late.add(error);
-    if (t <= 4 + 1e-9) early.add(error);
-    kept.add(relative(spin_momentum(run, 0), l0));
+    worst.late.add(error);
+    if (t <= 4 + 1e-9) worst.early.add(error);
+    worst.kept.add(relative(spin_momentum(run, 0), l0));
   });
-  trial.report("|L - L0| / |L0|", kept, trial.either(1e-11, 2e-5));
+  return worst;
 }
 
 void generic_tumble(Trial& trial) {
   static const Csv reference = read_csv("A04b_tumble_generic.csv");
-  Worst early, late;
-  tumble(trial, reference, generic_spin, 10, early, late);
-  trial.report("attitude [rad]", late, trial.at({4e-2, 2.4e-3, 1e-4, 1.2e-6}, 3), trial.at({9.6e-4, 6.0e-5, 2.4e-6, 3.5e-8}, 0));
+  const Tumble worst = tumble(trial, reference, generic_spin, 10);
+  trial.report("attitude [rad]", worst.late, trial.at({4e-2, 2.4e-3, 1e-4, 1.2e-6}, 3),
+               trial.at({9.6e-4, 6.0e-5, 2.4e-6, 3.5e-8}, 0));
+  trial.report("|L - L0| / |L0|", worst.kept, trial.either(1e-11, 2e-5));
 }
 
 void flips(Trial& trial) {
   static const Csv reference = read_csv("A04a_dzhanibekov.csv");
-  Worst early, late;
-  tumble(trial, reference, flipping_spin, 20, early, late);
-  trial.report("attitude until 4 s [rad]", early, trial.at({6e-3, 4e-4, 1.5e-5, 2e-7}, 3));
-  trial.report("attitude until 20 s [rad]", late, trial.at({infinite, 5e-4, 2e-5, 3e-7}, 0),
+  const Tumble worst = tumble(trial, reference, flipping_spin, 20);
+  trial.report("attitude until 4 s [rad]", worst.early, trial.at({6e-3, 4e-4, 1.5e-5, 2e-7}, 3));
+  trial.report("attitude until 20 s [rad]", worst.late, trial.at({infinite, 5e-4, 2e-5, 3e-7}, 0),
                trial.at({1.2e-4, 7e-6, 2.8e-7, infinite}, 0));
+  trial.report("|L - L0| / |L0|", worst.kept, trial.either(1e-11, 2e-5));
 }
 
 /// Instants at which the spin about the intermediate axis changes sign, by Euler's equations and the classical
@@ -123,8 +128,8 @@ void flip_instants(Trial& trial) {
       worst.add(std::fabs((double(k) - now / (now - before)) * trial.dt() - expected[seen++]));
     before = now;
   }
-  trial.report("flips that are missing", double(expected.size() - seen), 0);
   trial.report("flip time [s]", worst, trial.at({infinite, 5e-4 / 3, 2e-5 / 3, 1e-7}, 0));
+  trial.report("flips that are missing", double(expected.size() - seen), 0);
 }
 
 /// Energy oscillates within bounds and has no trend, 1000 s.

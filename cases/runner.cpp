@@ -31,6 +31,7 @@ bool same(double a, double b) { return std::fabs(a / b - 1) < 1e-9; }
 
 std::vector<Setting> settings(const Selection& selection, const Variant& variant, const Engine& engine) {
   std::vector<Setting> result;
+  if (!variant.name.starts_with(selection.variant)) return result;
   for (Precision precision : {Precision::f64, Precision::f32}) {
     const bool twice = precision == Precision::f64;
     if (!(twice ? selection.twice : selection.single && variant.single) || !engine.has(precision)) continue;
@@ -64,6 +65,7 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
                          double seconds, const std::string& gl) {
   Row row;
   row.case_name = c.name;
+  row.title = c.title;
   row.variant = variant.name;
   row.backend = engine.backend();
   row.precision = setting.precision;

@@ -11,7 +11,7 @@ namespace pcphys::cases {
 
 /// One finding, with what it was found with. docs/command.md lists the fields.
 struct Row {
-  std::string case_name, variant, backend;
+  std::string case_name, title, variant, backend;
   Precision precision = Precision::f64;
   double dt = 0;
   std::uint32_t substeps = 1;
@@ -30,6 +30,7 @@ struct Row {
 struct Selection {
   std::vector<std::string> names;  // empty: all of the group
   std::string groups = "A";
+  std::string variant;  // only those whose names start with this
   bool single = true, twice = true;
   std::optional<double> dt;
   bool slow = false;  // what takes long too

@@ -54,11 +54,12 @@ class Own final : public Simulated {
 
 class OwnEngine final : public Engine {
  public:
-  explicit OwnEngine(Place place) : place_(place) {}
+  OwnEngine(Place place, std::uint32_t lanes) : place_(place), lanes_(lanes) {}
 
   Result<std::unique_ptr<Simulated>> start(Problem problem, const Conditions& conditions) override {
     StepSettings settings = conditions.settings;
     settings.set_all(place_);
+    settings.lanes = lanes_;
     settings.timings = false;
     return std::unique_ptr<Simulated>(std::make_unique<Own>(std::move(problem), stepper_, settings));
   }
@@ -66,6 +67,7 @@ class OwnEngine final : public Engine {
 
  private:
   Place place_;
+  std::uint32_t lanes_;
   Stepper stepper_;
 };
 
@@ -107,6 +109,6 @@ void Simulated::set_wrench(int, const Wrench&) { refuse("This engine takes no fo
 void Simulated::set_gravity(Vec3) { refuse("This engine's gravity cannot change."); }
 void Simulated::set_velocity(int, Vec3, Vec3) { refuse("This engine's velocities cannot be set."); }
 
-std::unique_ptr<Engine> make_pcphys(Place place) { return std::make_unique<OwnEngine>(place); }
+std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes) { return std::make_unique<OwnEngine>(place, lanes); }
 
 }  // namespace pcphys::cases

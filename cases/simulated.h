@@ -90,6 +90,7 @@ class Engine {
   virtual bool has_substeps() const { return true; }
 };
 
-std::unique_ptr<Engine> make_pcphys(Place place);
+/// `lanes` as in StepSettings.
+std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes = 0);
 
 }  // namespace pcphys::cases

@@ -20,6 +20,7 @@ Json or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Js
 
 Json to_json(const cases::Row& row) {
   return {{"case", row.case_name},
+          {"title", row.title},
           {"variant", row.variant},
           {"backend", row.backend},
           {"precision", name(row.precision)},

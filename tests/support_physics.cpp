@@ -1,8 +1,5 @@
 #include "support_physics.h"
 
-#include <fstream>
-#include <sstream>
-
 #include "plan/infos.h"
 #include "plan/plan.h"
 #include "step/processor_state.h"
@@ -57,54 +54,6 @@ void Run::set_substeps(std::uint32_t substeps) {
   StepSettings settings = stepper.settings();
   settings.substeps = substeps;
   REQUIRE(stepper.configure(settings));
-}
-
-BodyDef free_body(double mass, Vec3 moments, Vec3 velocity) {
-  BodyDef def;
-  def.mass = mass;
-  def.moments = moments;
-  def.velocity = velocity;
-  return def;
-}
-
-// ---- tables --------------------------------------------------------------------------------------------
-
-double Csv::at(std::size_t row, const char* column) const {
-  for (std::size_t c = 0; c < columns.size(); c++)
-    if (columns[c] == column) return rows[row][c];
-  FAIL("The table has no column " << column);
-  return 0;
-}
-
-Csv read_csv(const char* file) {
-  const std::string path = std::string(PCPHYS_SOURCE_DIR "/cases/reference/") + file;
-  std::ifstream in(path);
-  if (!in) FAIL("Cannot read " << path);
-  Csv csv;
-  std::string line, field;
-  while (std::getline(in, line)) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream fields(line);
-    if (csv.columns.empty()) {
-      while (std::getline(fields, field, ',')) csv.columns.push_back(field);
-      continue;
-    }
-    std::vector<double>& row = csv.rows.emplace_back();
-    while (std::getline(fields, field, ',')) row.push_back(std::stod(field));
-  }
-  return csv;
-}
-
-// ---- rotations -----------------------------------------------------------------------------------------
-
-Quat exponential(Vec3 rotation) {
-  const double angle = length(rotation);
-  return angle > 0 ? axis_angle((1 / angle) * rotation, angle) : Quat{};
-}
-
-double angle_between(Quat a, Quat b) {
-  const Quat d = conjugate(a) * b;
-  return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::fabs(d.w));
 }
 
 double order(double coarse_error, double fine_error, double dt_ratio) {

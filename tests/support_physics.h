@@ -1,21 +1,20 @@
-// What the tests against closed forms share: worlds in every precision and on every backend, reference
-// tables, rotations as vectors, conserved quantities, and one contact handed straight to the solver.
+// What the tests against closed forms share: worlds in every precision and on every backend, conserved quantities,
+// and one contact handed straight to the solver. Tables and rotations are those of cases/measures.h.
 #pragma once
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "cases/measures.h"
 #include "pcphys/pcphys.h"
 
 namespace physics {
 using namespace pcphys;
 
-inline constexpr double gravity = 9.81;  // [m/s^2]
-inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-inline constexpr double infinite = std::numeric_limits<double>::infinity();
+using cases::angle_between, cases::Csv, cases::exponential, cases::free_body, cases::read_csv;
+using cases::gravity, cases::infinite, cases::not_a_number;
 
 /// Which arithmetic a run is made with, and where.
 struct Mode {
@@ -45,35 +44,6 @@ struct Run {
   Quat orientation(BodyId body) const { return world.pose(body)->orientation; }
 };
 
-/// A body that touches nothing.
-BodyDef free_body(double mass, Vec3 moments, Vec3 velocity = {});
-
-/// A table of cases/reference: named columns of numbers, '#' starts a comment line.
-struct Csv {
-  std::vector<std::string> columns;
-  std::vector<std::vector<double>> rows;
-
-  double at(std::size_t row, const char* column) const;
-};
-Csv read_csv(const char* file);
-
-/// Steps through the rows of a reference whose times (first column) are multiples of dt, and tells of each.
-template <class Tell> void walk(Run& run, double dt, const Csv& reference, double seconds, Tell&& tell) {
-  long done = 0;
-  for (std::size_t row = 1; row < reference.rows.size(); row++) {
-    const double t = reference.rows[row][0];
-    const long k = std::lround(t / dt);
-    if (t > seconds + 1e-9 || std::fabs(double(k) * dt - t) > 1e-9) continue;
-    run.step(dt, k - done);
-    done = k;
-    tell(row, t);
-  }
-}
-
-/// exp of a rotation vector [rad].
-Quat exponential(Vec3 rotation);
-/// The angle that turns a into b, in [0, pi] [rad].
-double angle_between(Quat a, Quat b);
 /// Slope of log(error) over log(dt) between two runs.
 double order(double coarse_error, double fine_error, double dt_ratio);
 
