@@ -88,7 +88,10 @@ void size_of_drop(Trial& trial, ShapeKind kind, double size, double restitution,
   const Path reference = follow(one, trial.dt(), steps);
   Simulated& other = drop(trial, kind, size, restitution, scaled);
   const Path path = follow(other, dt, steps, {}, size);
-  trial.report("path / size beside that of 1 m", difference(path, reference), trial.either(1e-6, 1e-4));
+  // a box that lands flat and bounces turns by its rounding, so in single precision paths part
+  const bool bounded = trial.is_double() || restitution == 0 || kind == ShapeKind::sphere;
+  trial.report("path / size beside that of 1 m", difference(path, reference),
+               bounded ? std::optional(trial.either(1e-6, 1e-4)) : std::nullopt);
   const double height = kind == ShapeKind::box || kind == ShapeKind::sphere ? 0.5 : 0.0;
   if (height > 0) trial.report("penetration at rest / size", std::max(0.0, height - path.back().z), 1e-3);
   trial.report("speed at rest / sqrt(size) [m/s]", length(other.velocity(1)) / time, restitution > 0 ? 1e-2 : 1e-3);
@@ -186,9 +189,9 @@ void weak_or_strong(Trial& trial, bool tower, double g) {
   const auto build = [=](double strength) {
     return [=](scenes::Builder& builder) {
       (void)builder.world().set_gravity({0, 0, -strength});
-      if (tower) return add_tower(builder, 10);
+      if (tower) return add_level_tower(builder, 10);
       builder.set_material(0, 0.9);
-      add_floor(builder);
+      add_level_floor(builder);
       add_ball(builder, 0.1, 1, {0, 0, 1.1});
     };
   };

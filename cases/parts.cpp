@@ -13,6 +13,8 @@ int add_floor(scenes::Builder& builder, Vec3 offset) {
   return builder.add(def);
 }
 
+int add_level_floor(scenes::Builder& builder) { return builder.add_fixed_box({0, 0, -1}, {50, 50, 1}); }
+
 int add_block(scenes::Builder& builder, Vec3 half, double mass, const Pose& pose, Vec3 velocity) {
   BodyDef def;
   def.shapes = {ShapeDef::box(half)};
@@ -88,12 +90,25 @@ Mode slowest_mode(int links, double ratio) {
 
 // ---- towers --------------------------------------------------------------------------------------------
 
-void add_tower(scenes::Builder& builder, int count, double top_mass, Vec3 offset) {
-  builder.set_material(0.8, 0);
-  add_floor(builder, offset);
+namespace {
+void add_cubes(scenes::Builder& builder, int count, double top_mass, Vec3 offset) {
   const double half = 0.5 * cube_edge;
   for (int i = 0; i < count; ++i)
     add_block(builder, {half, half, half}, i + 1 == count ? top_mass : 1, {offset + Vec3{0, 0, half + cube_edge * i}, {}});
+}
+
+}  // namespace
+
+void add_tower(scenes::Builder& builder, int count, double top_mass, Vec3 offset) {
+  builder.set_material(0.8, 0);
+  add_floor(builder, offset);
+  add_cubes(builder, count, top_mass, offset);
+}
+
+void add_level_tower(scenes::Builder& builder, int count) {
+  builder.set_material(0.8, 0);
+  add_level_floor(builder);
+  add_cubes(builder, count, 1, {});
 }
 
 // ---- judges --------------------------------------------------------------------------------------------

@@ -10,6 +10,8 @@ namespace pcphys::cases {
 
 /// The half space below z = 0, moved by `offset`.
 int add_floor(scenes::Builder& builder, Vec3 offset = {});
+/// A box of 100 m whose top is at z = 0: its normal is z to the last bit, which that of a turned half space is not.
+int add_level_floor(scenes::Builder& builder);
 /// A box that moves, by half extents.
 int add_block(scenes::Builder& builder, Vec3 half, double mass, const Pose& pose, Vec3 velocity = {});
 int add_ball(scenes::Builder& builder, double radius, double mass, Vec3 centre, Vec3 velocity = {});
@@ -31,6 +33,8 @@ Mode slowest_mode(int links, double ratio);
 /// Cubes are bodies 1 to `count`.
 inline constexpr double cube_edge = 0.5;
 void add_tower(scenes::Builder& builder, int count, double top_mass = 1, Vec3 offset = {});
+/// The cubes alone, on a level floor.
+void add_level_tower(scenes::Builder& builder, int count);
 
 /// How far boxes have moved from where they were built: across, and down [m].
 struct Moved {

@@ -100,7 +100,7 @@ StepPlan make_plan(const PlanSignature& s) {
   const std::uint32_t last = s.substeps - 1;
   if (s.contacts && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
   if (s.contacts) b.kernel(Kernel::contact_store, Phase::relax, last);
-  b.kernel(Kernel::synchronise, Phase::relax, last);
+  b.kernel(s.drag ? Kernel::synchronise_drag : Kernel::synchronise, Phase::relax, last);
   b.results(last);
   return plan;
 }
