@@ -97,7 +97,7 @@ void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Sc
   out[28] = std::sqrt(material_a[0] * material_b[0]);
   out[29] = std::sqrt(material_a[1] * material_b[1]);
   out[30] = (material_a[2] + material_b[2]) * Scalar(0.5);
-  out[31] = 0;
+  for (int k = 31; k < 36; k++) out[k] = 0;
 }
 
 /// Hands on the impulses of the last step's manifold: point by point to the same feature; what is left over to
@@ -110,6 +110,7 @@ void remember_impulses(const Scalar* before, const std::uint32_t* before_feature
   bool taken[4] = {}, given[4] = {};
   const auto hand_on = [&](int i, int j) {
     out[20 + i] = before[20 + j];
+    out[32 + i] = before[32 + j];
     given[i] = taken[j] = true;
   };
   for (int i = 0; i < count; i++)

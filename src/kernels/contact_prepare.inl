@@ -14,7 +14,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
   Quad head = PC_GATHER(contact, record, 0u);
   Quad p0 = PC_GATHER(contact, record, 1u); Quad p1 = PC_GATHER(contact, record, 2u); Quad p2 = PC_GATHER(contact, record, 3u); Quad p3 = PC_GATHER(contact, record, 4u);
-  Quad pushes = PC_GATHER(contact, record, 5u); Quad drag = PC_GATHER(contact, record, 6u); Quad material = PC_GATHER(contact, record, 7u);
+  Quad pushes = PC_GATHER(contact, record, 5u); Quad drag = PC_GATHER(contact, record, 6u); Quad mean = PC_GATHER(contact, record, 8u); Quad material = PC_GATHER(contact, record, 7u);
   Quad place_a = PC_GATHER(pose, ia, 0u); Quad place_b = PC_GATHER(pose, ib, 0u); Quad low_a = PC_GATHER(pose, ia, 2u); Quad low_b = PC_GATHER(pose, ib, 2u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Sym3 inertia_a = pc_responding_inertia(a); Sym3 inertia_b = pc_responding_inertia(b);
@@ -91,4 +91,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_impulses, m, IMPULSE_T, f1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, ft);
   PC_ST(contact_impulses, m, IMPULSE_LARGEST, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, zero);
   precise Real load = l0 + l1 + l2 + l3; PC_ST(contact_impulses, m, IMPULSE_BEFORE, load);
+  precise Vec3 means = mean.v * ratio; precise Real last_mean = mean.s * ratio;
+  PC_ST(contact_impulses, m, IMPULSE_MEAN, means.x); PC_ST(contact_impulses, m, IMPULSE_MEAN + 1u, means.y); PC_ST(contact_impulses, m, IMPULSE_MEAN + 2u, means.z); PC_ST(contact_impulses, m, IMPULSE_MEAN + 3u, last_mean);
 }

@@ -26,9 +26,10 @@ const uint ROW_SHARE = 57u;   // of body a in what the arms must shift by, see p
 const uint ROW_K = 58u;       // smallest response of the three directions at the centre
 const uint ROW_SCALE = 59u;   // of all effective masses in this sub-step, see pc_mass_scale
 // impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
-// the step 8..11
+// the step 8..11, slow means 12..15
 const uint IMPULSE_T = 4u;
 const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;
+const uint IMPULSE_MEAN = 12u;
 
 PC_FN Vec3 pc_ld3_rows(PC_IO Slot m, uint f) { return Vec3(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u)); }

@@ -3,15 +3,21 @@
 #include "contact_friction.inl"
 
 // New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
-// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint.
-PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse) {
+// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint, whose leak acts on what deviates
+// from a slow mean (PC_MEAN; else on the whole impulse): what rests is not pressed in (docs/joint-trees.md).
+#ifdef PC_MEAN
+#define pc_mean(i) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+#else
+#define pc_mean(i) PC_REAL(0.0)
+#endif
+PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real mean) {
   Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real soft_rate = s * PC_INFO(contact_rate);
   Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed)));
   Real mass_scale = pc_select(open, PC_REAL(1.0), PC_INFO(contact_mass_scale));
   Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
-  precise Real next = impulse - mass * mass_scale * (vn + bias) - impulse_scale * impulse;
+  precise Real next = impulse - mass * mass_scale * (vn + bias) - impulse_scale * (impulse - mean);
   return pc_snap(pc_max(next, PC_REAL(0.0)));
 }
 
@@ -41,22 +47,22 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0); precise Real e0 = k0 - l0;
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_mean(0u)); precise Real e0 = k0 - l0;
   PC_ST(contact_impulses, m, 0u, k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 0u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), k0));
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
   precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
-  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1); precise Real e1 = k1 - l1;
+  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_mean(1u)); precise Real e1 = k1 - l1;
   PC_ST(contact_impulses, m, 1u, k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), k1));
   Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
   precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
   precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift.n + b2 * shift.turn1 - a2 * shift.turn2);
-  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2); precise Real e2 = k2 - l2;
+  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_mean(2u)); precise Real e2 = k2 - l2;
   PC_ST(contact_impulses, m, 2u, k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), k2));
   Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
   precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
-  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3); precise Real e3 = k3 - l3;
+  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_mean(3u)); precise Real e3 = k3 - l3;
   PC_ST(contact_impulses, m, 3u, k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), k3));
 
   precise Real pressed = k0 + k1 + k2 + k3;

@@ -16,11 +16,18 @@ template <class T> void assign_with_room(std::vector<T>& values, std::size_t cou
 }
 }  // namespace
 
-void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities) {
-  assert(units.size() == 2 * priorities.size());
+void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,
+                      std::span<const char> leading) {
+  assert(units.size() == 2 * priorities.size() && (leading.empty() || leading.size() == priorities.size()));
   sort_by_priority(priorities);
   colour_of_.resize(order_.size());
-  choose(unit_count, units, true, choose(unit_count, units, false, 0));
+  std::uint32_t above = 0;
+  for (const bool leads : {true, false}) {
+    if (leads && leading.empty()) continue;
+    for (const bool with_fixed : {false, true}) above = choose(unit_count, units, leading, with_fixed, leads, above);
+    if (leads) leading_colours_ = above;
+  }
+  if (leading.empty()) leading_colours_ = 0;
   group();
 }
 
@@ -34,8 +41,8 @@ void Colouring::sort_by_priority(std::span<const std::uint32_t> priorities) {
 }
 
 // Row `unit_count` stands for all fixed units: its mask is cleared whenever it was set.
-std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, bool with_fixed,
-                                std::uint32_t first) {
+std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const char> leading,
+                                bool with_fixed, bool leads, std::uint32_t first) {
   taken_.assign(std::size_t{unit_count} + 1, 0);
   next_above_.clear();
   std::uint32_t above = first;
@@ -44,7 +51,7 @@ std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::u
     const auto i = static_cast<std::uint32_t>(item);
     const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count),
                         b = std::min(units[2 * std::size_t{i} + 1], unit_count);
-    if ((a == unit_count || b == unit_count) != with_fixed) continue;
+    if ((a == unit_count || b == unit_count) != with_fixed || (!leading.empty() && (leading[i] != 0) != leads)) continue;
     const std::uint64_t free = ~(taken[a] | taken[b]), lowest = free & (0 - free);
     taken[a] |= lowest;
     taken[b] |= lowest;

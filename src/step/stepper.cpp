@@ -12,9 +12,9 @@
 #include "plan/infos.h"
 #include "plan/plan.h"
 #include "step/processor_state.h"
-#include "world/range.h"
 #include "step/runner.h"
 #include "step/schedule.h"
+#include "world/range.h"
 #include "world/state.h"
 #include "world/validate.h"
 
@@ -203,10 +203,14 @@ struct Stepper::Inside {
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
-    remember(s);
     PlanSignature wanted = signature(schedule);
     wanted.shapes = detector.possible();
-    wanted.contacts = s.contact_rows() > 1;
+    wanted.free_contacts = schedule.contacts.any_without_trees();
+    wanted.tree_contacts = schedule.contacts.any_with_trees();
+    if (other) s.tables.resize(Table::node, 1);
+    remember(s);
+    if (const std::uint32_t rows = schedule.trees.nodes().rows(); wanted.tree_contacts && s.tables.rows(Table::node) != rows)
+      s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
     plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
@@ -227,6 +231,7 @@ struct Stepper::Inside {
   Status undo(WorldState& s, const Status& failed) {
     runner.undo(s);
     detector.put_back(s);
+    s.tables.resize(Table::node, 1);  // nothing is pending
     s.contacts_version++;
     return failed;
   }
@@ -276,7 +281,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   Detector detector;
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
   PlanSignature wanted = in.signature(schedule);
-  wanted.shapes = wanted.contacts = detector.possible();
+  wanted.shapes = wanted.free_contacts = detector.possible();
+  wanted.tree_contacts = wanted.shapes && wanted.trees;
   wanted.restitution = detector.may_bounce(world.state());
   return make_plan(wanted);
 }
