@@ -12,7 +12,8 @@ PC_FN Vec3 pc_half_change(PC_IO Vec3 now, Vec3 before, Vec3 a, Real drag) {
   precise Real kick = d.phi * h; precise Vec3 change = a * kick - s.gone;
   precise Vec3 constraints = ((now - s.kept) - change) * PC_REAL(0.5);
   precise Real gap = d.phi - d.phi2; precise Real time = pc_div(gap, d.phi) * h;
-  precise Vec3 half_change = (a - now * drag) * time + constraints; return half_change;
+  precise Vec3 exact = (a - now * drag) * time + constraints; precise Vec3 plain = (now - before) * PC_REAL(0.5);
+  return pc_select3(drag > PC_REAL(0.0), exact, plain);
 }
 #endif
 PC_FN Mask pc_exceeds(Vec3 x, Real limit) { return pc_max(pc_abs(x.x), pc_max(pc_abs(x.y), pc_abs(x.z))) > limit; }
