@@ -66,6 +66,11 @@ void Trial::report(std::string metric, double error, std::optional<double> must,
   findings_.push_back({std::move(metric), error, must, target});
 }
 
+void Trial::report_missing(const std::string& why) {
+  report("not available", std::numeric_limits<double>::quiet_NaN(), 0.0);
+  meter_.error = {ErrorCode::unavailable, "Not available: " + why + "."};
+}
+
 std::optional<double> Trial::at(const Bounds& bounds, std::size_t single) const {
   for (std::size_t i = 0; i < ladder.size(); ++i)
     if (std::fabs(dt_ / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
@@ -73,7 +78,7 @@ std::optional<double> Trial::at(const Bounds& bounds, std::size_t single) const 
 }
 
 void Trial::finish() {
-  if (meter_.error.code == ErrorCode::none && meter_.steps == 0)
+  if (meter_.error.code == ErrorCode::none && meter_.steps == 0 && !running_.empty())
     meter_.error = {ErrorCode::bad_file, "The case made no step; its reference has no time that is a multiple of dt."};
   if (!running_.empty() && meter_.steps < hashed_steps) meter_.hash = running_.back()->hash();
 }
@@ -82,7 +87,8 @@ const std::vector<Case>& list() {
   static const std::vector<Case> all = [] {
     std::vector<Case> cases;
     for (const auto add : {add_free_motion, add_rotation, add_pendulums, add_hinges, add_bounces, add_impacts, add_friction,
-                           add_rolling, add_simbenchmark})
+                           add_rolling, add_simbenchmark, add_chains, add_loops, add_stacks, add_ragdolls, add_scales,
+                           add_extreme_motion, add_overlaps, add_bad_input, add_crowds, add_repeats})
       add(cases);
     // a group's letter, then its number
     std::stable_sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) {

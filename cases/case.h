@@ -47,6 +47,8 @@ class Trial {
   void resolve(SphereContact& contact);
 
   void report(std::string metric, double error, std::optional<double> must = {}, std::optional<double> target = {});
+  /// A row that fails, since the library lacks what the case needs.
+  void report_missing(const std::string& why);
   /// A bound that depends on the precision.
   double either(double twice, double single) const { return is_double() ? twice : single; }
   /// The bound of this step length; none off the ladder, and none where it is infinite. In single precision only the first `single` of them hold:
@@ -103,5 +105,15 @@ void add_impacts(std::vector<Case>& cases);
 void add_friction(std::vector<Case>& cases);
 void add_rolling(std::vector<Case>& cases);
 void add_simbenchmark(std::vector<Case>& cases);
+void add_chains(std::vector<Case>& cases);
+void add_loops(std::vector<Case>& cases);
+void add_stacks(std::vector<Case>& cases);
+void add_ragdolls(std::vector<Case>& cases);
+void add_scales(std::vector<Case>& cases);
+void add_extreme_motion(std::vector<Case>& cases);
+void add_overlaps(std::vector<Case>& cases);
+void add_bad_input(std::vector<Case>& cases);
+void add_crowds(std::vector<Case>& cases);
+void add_repeats(std::vector<Case>& cases);
 
 }  // namespace pcphys::cases

@@ -34,7 +34,10 @@ class Own final : public Simulated {
  protected:
   Status advance(double dt) override {
     if (auto status = stepper_.configure(settings_); !status) return status;
-    return stepper_.step(problem_.world, dt).error;
+    const StepReport& report = stepper_.step(problem_.world, dt);
+    if (report.frozen.empty() || frozen_allowed_) return report.error;
+    return Error{ErrorCode::not_finite,
+                 std::to_string(report.frozen.size()) + " bodies left the range of numbers, and the step froze them."};
   }
 
  private:

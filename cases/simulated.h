@@ -57,12 +57,15 @@ class Simulated {
   const MassProperties& mass(int body) const { return masses_[std::size_t(body)]; }
   bool moves(int body) const { return problem_.scene.bodies[std::size_t(body)].kind == BodyKind::dynamic; }
   void attach(Meter& meter) { meter_ = &meter; }
+  /// A body that leaves the range of numbers is no error.
+  void allow_frozen() { frozen_allowed_ = true; }
 
  protected:
   virtual Status advance(double dt) = 0;
   void refuse(const std::string& what);
 
   Problem problem_;
+  bool frozen_allowed_ = false;
 
  private:
   std::vector<MassProperties> masses_;

@@ -1,84 +1,14 @@
 // Pins C11 and C12: degenerate shapes and masses, and numbers that no physics can use, are refused by a named
-// error that leaves the world as it was; extreme ones that are accepted stay with the body that has them.
-#include <cstring>
+// error that leaves the world as it was, and nobody else notices.
 #include <functional>
 
-#include "support_physics.h"
+#include "support_neighbours.h"
 
 using namespace physics;
 
 namespace {
 
-constexpr double dt = 1.0 / 60;
-
-/// A floor, a stack of two boxes, a rolling ball and two pinned bodies: neighbours that must not notice.
-struct Neighbours {
-  Run run;
-  std::vector<BodyId> bodies;
-  JointId joint;
-  std::size_t count = 0;
-
-  explicit Neighbours(const Mode& mode) : run(mode, {0, -gravity, 0}, 4) {
-    BodyDef floor;
-    floor.kind = BodyKind::fixed;
-    floor.shapes = {ShapeDef::plane()};
-    add(floor);
-    BodyDef def;
-    def.shapes = {ShapeDef::box({0.5, 0.25, 0.5})};
-    for (double y : {0.25, 0.75}) {
-      def.pose.position = {0, y, 0};
-      add(def);
-    }
-    def.shapes = {ShapeDef::sphere(0.3)};
-    def.pose.position = {3, 0.3, 0};
-    def.velocity = {1, 0, 0};
-    add(def);
-    def.velocity = {};
-    def.shapes = {ShapeDef::capsule(0.1, 0.3)};
-    def.pose.position = {-3, 3, 0};
-    add(def);
-    def.pose.position = {-3, 2, 0};
-    add(def);
-    JointDef pin;
-    pin.a = bodies[4];
-    pin.b = bodies[5];
-    pin.frame_a.position = {0, -0.5, 0};
-    pin.frame_b.position = {0, 0.5, 0};
-    joint = *run.world.create_joint(pin);
-    run.step(dt, 5);
-    count = bodies.size();
-  }
-  void add(const BodyDef& def) { bodies.push_back(run.add(def)); }
-  World& world() { return run.world; }
-
-  /// All stored state of the neighbours, bit for bit.
-  std::vector<double> state() const {
-    std::vector<double> out;
-    for (const char* name : {"displacement_rate", "angular_momentum", "phase", "position", "orientation", "position_low",
-                             "orientation_low", "velocity_half_change", "momentum_half_change", "velocity_low", "momentum_low"}) {
-      const PropertyView view = *run.world.view(name);
-      for (std::size_t i = 0; i < count; i++)
-        for (std::uint32_t c = 0; c < view.components; c++) out.push_back(view.at(*run.world.row_of(bodies[i]), c));
-    }
-    return out;
-  }
-};
-
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
-}
-
-/// What a world was told that never heard of the bad input.
-std::vector<double> untouched(const Mode& mode, long steps) {
-  Neighbours n(mode);
-  n.run.step(dt, steps);
-  return n.state();
-}
-
-template <class R> ErrorCode code(const R& result) { return result ? ErrorCode::none : result.error().code; }
-template <class R> bool has_sentence(const R& result) {
-  return !result && result.error().message.size() > 20 && result.error().message.back() == '.';
-}
+constexpr double dt = frame;
 
 struct BadBody {
   const char* what;
@@ -176,13 +106,6 @@ const BadBody bad_bodies[] = {
     {"negative drag", ErrorCode::bad_argument, [](BodyDef& d) { d.linear_drag = -1; }},
     {"drag NaN", ErrorCode::not_finite, [](BodyDef& d) { d.angular_drag = not_a_number; }},
 };
-
-BodyDef good_body() {
-  BodyDef def;
-  def.shapes = {ShapeDef::box({0.2, 0.2, 0.2})};
-  def.pose.position = {0, 5, 4};
-  return def;
-}
 
 }  // namespace
 
@@ -316,152 +239,4 @@ TEST_CASE("C12: a callback's NaN refuses the step, which leaves the state") {
     never.run.step(dt, 3);
     CHECK(same_bits(n.state(), never.state()));
   }
-}
-
-namespace {
-
-struct Extreme {
-  const char* what;
-  std::function<Status(World&, BodyId)> apply;
-};
-
-Status status(const Result<ForceId>& r) { return r ? Status() : Status(r.error()); }
-
-/// Inputs that are accepted, however strange, since they are finite.
-const Extreme extremes[] = {
-    {"denormal velocity",
-     [](World& w, BodyId b) {
-       return w.set_velocity(b, {1e-310, -1e-310, 1e-40});
-     }},
-    {"denormal spin",
-     [](World& w, BodyId b) {
-       return w.set_angular_velocity(b, {1e-310, 0, 1e-40});
-     }},
-    {"denormal position",
-     [](World& w, BodyId b) {
-       return w.set_pose(b, {{1e-310, 50, 1e-40}, {}});
-     }},
-    {"denormal in a quaternion",
-     [](World& w, BodyId b) {
-       return w.set_pose(b, {{0, 50, 0}, {1e-310, 1e-40, 0, 1}});
-     }},
-    {"denormal force",
-     [](World& w, BodyId b) {
-       return status(w.add_force(b, Wrench{{1e-310, 0, 1e-40}, {0, 1e-310, 0}}));
-     }},
-    {"velocity 1e15 upwards",
-     [](World& w, BodyId b) {
-       return w.set_velocity(b, {0, 1e15, 0});
-     }},
-    {"spin 1e15",
-     [](World& w, BodyId b) {
-       return w.set_angular_velocity(b, {0, 1e15, 1e15});
-     }},
-    {"position 1e15",
-     [](World& w, BodyId b) {
-       return w.set_pose(b, {{1e15, 1e15, -1e15}, {}});
-     }},
-    {"force 1e15",
-     [](World& w, BodyId b) {
-       return status(w.add_force(b, Wrench{{0, 1e15, 0}, {}}));
-     }},
-    {"torque 1e15",
-     [](World& w, BodyId b) {
-       return status(w.add_force(b, Wrench{{}, {0, 1e15, 1e15}}));
-     }},
-    {"drag 1e15", [](World& w, BodyId b) { return w.set_drag(b, 1e15, 1e15); }},
-    {"mass 1e-30",
-     [](World& w, BodyId b) {
-       return w.set_mass_properties(b, {1e-30, {1e-30, 1e-30, 1e-30}});
-     }},
-    {"mass 1e30",
-     [](World& w, BodyId b) {
-       return w.set_mass_properties(b, {1e30, {1e30, 1e30, 1e30}});
-     }},
-    {"mass 1e-300",
-     [](World& w, BodyId b) {
-       return w.set_mass_properties(b, {1e-300, {1e-300, 1e-300, 1e-300}});
-     }},
-    {"mass 1e300",
-     [](World& w, BodyId b) {
-       return w.set_mass_properties(b, {1e300, {1e300, 1e300, 1e300}});
-     }},
-};
-
-}  // namespace
-
-namespace {
-
-/// Steps on beside a world that never had the extreme body. A refused step is fine, if it leaves all as it was.
-bool step_beside(Neighbours& n, const Mode& mode, const char* what) {
-  Neighbours alone(mode);
-  for (int i = 0; i < 30; i++) {
-    if (!n.run.stepper.step(n.world(), dt)) {
-      MESSAGE(std::string(what) << ", " << mode.name() << ", step " << i << ": "
-                                << n.run.stepper.step(n.world(), dt).error.message);
-      CHECK(same_bits(n.state(), alone.state()));
-      return false;
-    }
-    alone.run.step(dt);
-    if (!same_bits(n.state(), alone.state())) {
-      CHECK_MESSAGE(false, "the neighbours changed in step " << i);
-      return false;
-    }
-  }
-  return true;
-}
-
-BodyId add_extreme(Neighbours& n, const Extreme& extreme) {
-  BodyDef def = good_body();
-  def.pose.position = {0, 50, 0};
-  const BodyId odd = n.run.add(def);
-  const std::vector<double> before = n.state();
-  const Status applied = extreme.apply(n.world(), odd);
-  if (!applied) CHECK(has_sentence(applied));
-  CHECK(same_bits(n.state(), before));
-  return odd;
-}
-
-}  // namespace
-
-TEST_CASE("C12: an extreme body that touches nobody changes no bit of the others") {
-  for (const Mode& mode : precisions())
-    for (const Extreme& extreme : extremes) {
-      CAPTURE(mode.name());
-      CAPTURE(std::string(extreme.what));
-      Neighbours n(mode);
-      add_extreme(n, extreme);
-      step_beside(n, mode, extreme.what);
-    }
-}
-
-// Angles beyond 3e4 rad a sub-step are cut off before their sine is taken.
-TEST_CASE("C12: an extreme body stays finite itself") {
-  for (const Mode& mode : precisions())
-    for (const Extreme& extreme : extremes) {
-      CAPTURE(mode.name());
-      CAPTURE(std::string(extreme.what));
-      Neighbours n(mode);
-      const BodyId odd = add_extreme(n, extreme);
-      for (int i = 0; i < 30; i++)
-        if (!n.run.stepper.step(n.world(), dt)) break;
-      const Pose pose = *n.world().pose(odd);
-      CHECK((finite(pose.position) && finite(pose.orientation) && finite(*n.world().velocity(odd)) &&
-             finite(*n.world().angular_velocity(odd))));
-    }
-}
-
-// A speculative contact is none where the bodies slide past each other's extent before the gap would close.
-TEST_CASE("C12: a fast body that flies past touches nobody") {
-  for (const Mode& mode : precisions())
-    for (double speed : {60.0, 200.0, 1000.0, 1e4, 1e9, 1e15}) {
-      CAPTURE(mode.name());
-      CAPTURE(speed);
-      Neighbours n(mode);
-      BodyDef def = good_body();
-      def.pose.position = {-2, 2.5, 0};
-      def.velocity = {speed, 0, 0};
-      n.run.add(def);
-      step_beside(n, mode, "flying past");
-    }
 }

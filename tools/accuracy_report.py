@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""Makes the tables of docs/accuracy.md and a work-precision diagram of every case from rows of `pcphys accuracy`.
+"""Makes the tables of docs/accuracy.md and a work-precision diagram of every case from rows of `pcphys accuracy`, and
+the tables of docs/stability.md from rows of `pcphys stability`.
 
     pcphys accuracy --json rows.json
     tools/accuracy_report.py rows.json [MORE.json...]     rewrites the generated part of docs/accuracy.md, docs/img/accuracy/*.svg
+    pcphys stability --json rows.json
+    tools/accuracy_report.py rows.json                    rewrites the generated part of docs/stability.md
     tools/accuracy_report.py --out FOLDER rows.json       writes both there instead
     tools/accuracy_report.py rows.json --hashes gl.json   with the hashes of a run with --backend gl
 
@@ -85,7 +88,10 @@ def misses(rows):
         named = "; ".join(variants[:3]) + (f" and {len(variants) - 3} more" if len(variants) > 3 else "")
         must = "finite" if worst["must"] is None else number(worst["must"])
         at = f"{worst['variant']}, {worst['precision']}, dt {step(worst['dt'])}, n = {worst['substeps']}"
-        lines.append(f"| {case} | {named} | {cell(metric)} | {len(of_metric)} | {number(worst['error'])} ({must}) | {at} |")
+        error = f"{number(worst['error'])} ({must})"
+        if worst["failure"]:
+            error = cell(worst["failure"].rstrip("."))
+        lines.append(f"| {case} | {named} | {cell(metric)} | {len(of_metric)} | {error} | {at} |")
     return lines
 
 
@@ -193,27 +199,28 @@ def add_hashes(rows, others):
 
 
 # ---- the page --------------------------------------------------------------------------------------
-def generated_part(rows, titles, pictures):
+def generated_part(rows, titles, pictures=None):
     own = [r for r in rows if not r["peer"]]
     lines = [BEGIN, "## Passes and failures", ""]
     lines += [f"{len(own)} rows; of those that have a bound, {passed(own)} pass.", ""]
     lines += summary(own, titles)
     lines += ["", "## Rows that miss", ""] + misses(own)
-    lines += ["", "## Work-precision diagrams", ""]
-    lines += [f"![{case}]({pictures}/{case}.svg)" for (case,) in group(rows, "case")]
+    if pictures:
+        lines += ["", "## Work-precision diagrams", ""]
+        lines += [f"![{case}]({pictures}/{case}.svg)" for (case,) in group(rows, "case")]
     return "\n".join(lines + [END])
 
 
 def write_page(path, part):
-    text = path.read_text() if path.exists() else f"# Accuracy\n{BEGIN}\n{END}\n"
+    text = path.read_text() if path.exists() else f"# {path.stem.capitalize()}\n{BEGIN}\n{END}\n"
     head, rest = text.split(BEGIN)
     path.write_text(head + part + rest.split(END)[1])
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("rows", nargs="+", type=Path, help="JSON of `pcphys accuracy`")
-    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of accuracy.md and img/accuracy")
+    parser.add_argument("rows", nargs="+", type=Path, help="JSON of `pcphys accuracy` or `pcphys stability`")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of accuracy.md, stability.md and img/accuracy")
     parser.add_argument("--hashes", type=Path, help="JSON of `pcphys accuracy --backend gl`: its hashes go into the table")
     parser.add_argument("--png", action="store_true", help="pictures as PNG only, to look at")
     arguments = parser.parse_args()
@@ -222,6 +229,12 @@ def main():
         rows = add_hashes(rows, json.loads(arguments.hashes.read_text()))
     titles = {row["case"]: row["title"] for row in rows}
     arguments.out.mkdir(parents=True, exist_ok=True)
+    stiff = [row for row in rows if row["case"][0] in "BC"]
+    if stiff:
+        write_page(arguments.out / "stability.md", generated_part(stiff, titles))
+    rows = [row for row in rows if row["case"][0] == "A"]
+    if not rows:
+        return
     draw_all(rows, titles, arguments.out / "img/accuracy", "png" if arguments.png else "svg")
     if not arguments.png:
         write_page(arguments.out / "accuracy.md", generated_part(rows, titles, "img/accuracy"))

@@ -13,6 +13,8 @@ inline constexpr double hull_flatness = 1e-4;
 inline constexpr double hull_planarity = 1e-5;
 /// Coordinates, velocities and other inputs beyond this are refused: their squares leave float32's range.
 inline constexpr double largest_input = 1e15;
+/// A body whose coordinates [m], speed [m/s] or spin [rad/s] would go beyond this within a step is frozen.
+inline constexpr double largest_state = 1e18;
 /// Masses [kg] and moments of inertia [kg m^2] outside this interval are refused: float32 must hold them, their
 /// inverses and the products of both.
 inline constexpr double smallest_mass = 1e-30, largest_mass = 1e30;

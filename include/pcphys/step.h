@@ -45,6 +45,7 @@ struct StepReport {
   /// 64 bodies. They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
   std::uint64_t transfer_bytes = 0;  // between host and device
+  std::vector<BodyId> frozen;        // in this step; see World::frozen
   double total_ms = 0;
   std::array<double, std::size_t(Timer::count)> ms{};
 

@@ -91,6 +91,11 @@ class World {
   Result<Quat> orientation_last(BodyId body) const;
   Status set_orientation_last(BodyId body, Quat orientation);
 
+  /// Whether a step found numbers of this body that it cannot go on with: NaN, or beyond constants::largest_state
+  /// within the step. It stands since then as a fixed body, at its last pose, and others go on. Setting its pose, a
+  /// velocity, mass or drag, or changing its forces lets it move again, at rest unless a velocity is set.
+  Result<bool> frozen(BodyId body) const;
+
   // ---- inputs ----------------------------------------------------------------------------------------
   Vec3 gravity() const;
   Status set_gravity(Vec3 gravity);

@@ -18,8 +18,7 @@ bool may_touch(const void* context, std::uint32_t a, std::uint32_t b) {
   const WorldState& s = *static_cast<const WorldState*>(context);
   const ShapeRecord &x = s.shapes[a], &y = s.shapes[b];
   if (x.body == y.body) return false;
-  if (s.bodies[s.body_ids.row(x.body)].kind != BodyKind::dynamic && s.bodies[s.body_ids.row(y.body)].kind != BodyKind::dynamic)
-    return false;
+  if (!s.responds(s.body_ids.row(x.body)) && !s.responds(s.body_ids.row(y.body))) return false;
   if (x.filter.group != 0 && x.filter.group == y.filter.group) {
     if (x.filter.group < 0) return false;
   } else if (!(x.filter.category & y.filter.mask) || !(y.filter.category & x.filter.mask)) {
@@ -74,6 +73,8 @@ double bounding_radius(const ShapeDef& d) {
   }
 }
 
+// Beyond it, turning closes no gap that is larger than the body: spins of everyday scenes keep their contacts' bits [rad].
+constexpr float wild_turn = 100.0f;
 constexpr float largest_turn = 2.0f;  // beyond it a turning surface comes no further outward [rad]
 
 }  // namespace
@@ -97,8 +98,8 @@ void Detector::rebuild(const WorldState& s) {
     const auto [across, any] = levers(shape.def);
     proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{},  row,
                    across,         any,  bounding_radius(shape.def), shape.def.convex.data()};
-    pairs_.add(i, s.bodies[row].kind != BodyKind::fixed);
-    some_dynamic |= s.bodies[row].kind == BodyKind::dynamic;
+    pairs_.add(i, !s.stands(row));
+    some_dynamic |= s.responds(row);
     solid++;
   }
   possible_ = some_dynamic && solid > 1;
@@ -149,7 +150,7 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
   const float fall = float(length(s.gravity) * dt * dt), step = float(dt);
   twists_.resize(s.bodies.size());
   for (std::uint32_t row = 0; row < s.bodies.size(); row++)
-    twists_[row] = s.bodies[row].kind == BodyKind::fixed ? Twist() : twist_of<Scalar>(s.tables, row);
+    twists_[row] = s.stands(row) ? Twist() : twist_of<Scalar>(s.tables, row);
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
@@ -159,9 +160,11 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
     const Twist& twist = twists_[proxy.body];
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;
-    reach_[i] = s.bodies[proxy.body].kind == BodyKind::fixed ? 0.0f : step * twist.speed + turned + fall;
+    reach_[i] = s.stands(proxy.body) ? 0.0f : step * twist.speed + turned + fall;
     tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
   }
+  for (Twist& twist : twists_)
+    if (twist.turn * step > wild_turn) twist.limit_turn(largest_turn / step);
 }
 
 template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }

@@ -10,6 +10,15 @@ namespace pcphys {
 struct Twist {
   float v[3] = {}, w[3] = {};             // velocity of the centre [m/s], angular velocity [rad/s], world axes
   float speed = 0, turn = 0, across = 0;  // |v|, |w|, and the part of w across the body's y axis
+
+  /// A surface that turns faster comes no nearer to anything.
+  void limit_turn(float largest) {
+    if (!(turn > largest)) return;
+    const float share = largest / turn;
+    for (float& x : w) x *= share;
+    turn *= share;
+    across *= share;
+  }
 };
 
 template <class Scalar> Twist twist_of(const Tables& t, std::uint32_t row) {

@@ -16,16 +16,13 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a
   Real before = PC_INFO(h_before);
   precise Real x = drag * h; precise Real y = drag * before;
   Decay now = pc_decay(x); Decay was = pc_decay(y);
-  // forces and drag in the last sub-step: from the velocity at its start
-  precise Vec3 start = velocity - half_change * PC_REAL(2.0);
-  precise Vec3 free_half = (a - start * drag) * (was.phi * before * PC_REAL(0.5));
   precise Real back_gap = was.phi - was.phi2; precise Real back_time = pc_div(back_gap, was.phi) * before;
   precise Vec3 back = (a - velocity * drag) * back_time;
   precise Vec3 phased = velocity + back;
   precise Real gap = now.phi2 - now.phi; precise Real time = pc_div(gap, now.e) * h;
   Vec3 v = pc_select3(in_phase, velocity, phased);
   precise Vec3 kick = (a - v * drag) * time;
-  precise Vec3 shift = back + kick + (half_change - free_half) * share;
+  precise Vec3 shift = back + kick + (half_change - back) * share;
   Mask changes = pc_abs(share) > PC_REAL(0.0);
   return pc_select3(in_phase, kick, pc_select3(changes, shift, pc_zero3()));
 }

@@ -5,6 +5,10 @@
 // last place, the same way each time. Without drag (PC_DRAG not defined) phi = 1: the same bits, less work.
 #include "world_inertia.inl"
 
+#ifdef PC_DRAG
+#include "drag_share.inl"
+#endif
+
 PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear = PC_GATHER(motion, i, 0u);
   Quad angular = PC_GATHER(motion, i, 1u);
@@ -24,8 +28,12 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Decay calm = pc_decay(y);
   precise Real kick = slow.phi * h;
   precise Real twist = calm.phi * h;
-  precise Vec3 u_change = (acceleration * kick - linear.v * slow.loss) + linear_low.v;
-  precise Vec3 l_change = (turn.v * twist - angular.v * calm.loss) + angular_low.v;
+  Share u_share = pc_share(x, linear.v, linear_low.v, slow);
+  Share l_share = pc_share(y, angular.v, angular_low.v, calm);
+  precise Vec3 u_change = (acceleration * kick - u_share.gone) + u_share.low;
+  precise Vec3 l_change = (turn.v * twist - l_share.gone) + l_share.low;
+  linear.v = pc_select3(dynamic_body, u_share.kept, linear.v);
+  angular.v = pc_select3(dynamic_body, l_share.kept, angular.v);
 #else
   precise Vec3 u_change = acceleration * h + linear_low.v;
   precise Vec3 l_change = turn.v * h + angular_low.v;

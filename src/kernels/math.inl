@@ -231,5 +231,11 @@ PC_FN Decay pc_decay(Real drag_times_h) {
   }
   precise Real loss = x * phi;
   precise Real gentle = PC_REAL(1.0) - loss;
-  Decay d; d.e = pc_select(x < PC_REAL(1.0), gentle, e); d.loss = loss; d.phi = phi; d.phi2 = phi2; return d;
+  // beyond 60, e is no more than it is there; phi and phi2 go on falling
+  Mask beyond = drag_times_h > x;
+  Real far_phi = pc_div(loss, pc_max(drag_times_h, x));
+  precise Real rest = PC_REAL(1.0) - far_phi;
+  Real far_phi2 = pc_div(rest, pc_max(drag_times_h, x));
+  Decay d; d.e = pc_select(x < PC_REAL(1.0), gentle, e); d.loss = loss;
+  d.phi = pc_select(beyond, far_phi, phi); d.phi2 = pc_select(beyond, far_phi2, phi2); return d;
 }

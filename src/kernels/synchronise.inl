@@ -1,6 +1,21 @@
 // After the last sub-step: half of what it changed in the velocities, so that u + half change is the
 // velocity in phase with the position, to second order. A body that a contact touched keeps u itself: an impact is
 // no acceleration. At rest that is zero to the rounding of the impulses that hold it; what is no larger reads zero.
+// With drag (PC_DRAG) forces and drag bring it into phase exactly, as in begin.inl, whatever F h is:
+//   h (phi - phi2) / phi (a - F u) + half of what constraints changed.
+#ifdef PC_DRAG
+#include "drag_share.inl"
+PC_FN Vec3 pc_half_change(PC_IO Vec3 now, Vec3 before, Vec3 a, Real drag) {
+  Real h = PC_INFO(h);
+  precise Real x = drag * h; Decay d = pc_decay(x);
+  Share s = pc_share(x, before, pc_zero3(), d);
+  precise Real kick = d.phi * h; precise Vec3 change = a * kick - s.gone;
+  precise Vec3 constraints = ((now - s.kept) - change) * PC_REAL(0.5);
+  precise Real gap = d.phi - d.phi2; precise Real time = pc_div(gap, d.phi) * h;
+  precise Vec3 exact = (a - now * drag) * time + constraints; precise Vec3 plain = (now - before) * PC_REAL(0.5);
+  return pc_select3(drag > PC_REAL(0.0), exact, plain);
+}
+#endif
 PC_FN Mask pc_exceeds(Vec3 x, Real limit) { return pc_max(pc_abs(x.x), pc_max(pc_abs(x.y), pc_abs(x.z))) > limit; }
 
 PC_FN void pc_kernel(PC_IO Index i) {
@@ -10,8 +25,17 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear_before = PC_GATHER(velocity_parts, i, 0u);
   Quad angular_before = PC_GATHER(velocity_parts, i, 1u);
   Mask touched = angular.s > PC_REAL(0.0);
+#ifdef PC_DRAG
+  Quad push = PC_GATHER(force, i, 0u); Quad turn = PC_GATHER(force, i, 1u);
+  Mask dynamic_body = linear.s > PC_REAL(0.0);
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Vec3 acceleration = pc_madd(gravity, push.v, linear.s);
+  Vec3 u = pc_select3(dynamic_body, pc_half_change(PC_PASS linear.v, linear_before.v, acceleration, push.s), pc_zero3());
+  Vec3 l = pc_select3(dynamic_body, pc_half_change(PC_PASS angular.v, angular_before.v, turn.v, turn.s), pc_zero3());
+#else
   precise Vec3 u = (linear.v - linear_before.v) * PC_REAL(0.5);
   precise Vec3 l = (angular.v - angular_before.v) * PC_REAL(0.5);
+#endif
   precise Real noise = angular.s * PC_INFO(rounding); precise Real speed = noise * linear.s;
   precise Real square = pc_max(moments.v.x, pc_max(moments.v.y, moments.v.z)) * linear.s; precise Real spin = noise * pc_sqrt(square);
   Vec3 zero = pc_zero3();

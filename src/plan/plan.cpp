@@ -35,14 +35,11 @@ class Builder {
   /// the next step begins with the host's.
   void results(std::uint32_t substep) {
     for (std::size_t b = 0; b < table_buffer_count; b++)
-      if (holds_state(Buffer(b)) || host_wrote_[b]) bring(Buffer(b), Place::cpu, substep);
+      if (holds(Buffer(b), Role::state) || host_wrote_[b]) bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
   static bool is_rows(Buffer b) { return b >= Buffer::table_buffers && schema(b).reals > 0; }
-  static bool holds_state(Buffer b) {
-    return std::ranges::any_of(properties(), [&](const PropertySchema& p) { return p.buffer == b && p.role == Role::state; });
-  }
 
   void bring(Buffer buffer, Place place, std::uint32_t substep) {
     bool& here = current_[std::size_t(buffer)][std::size_t(place)];
@@ -123,7 +120,7 @@ StepPlan make_plan(const PlanSignature& s) {
   const std::uint32_t last = s.substeps - 1;
   if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
   if (s.contacts()) b.kernel(Kernel::contact_store, Phase::relax, last);
-  b.kernel(Kernel::synchronise, Phase::relax, last);
+  b.kernel(s.drag ? Kernel::synchronise_drag : Kernel::synchronise, Phase::relax, last);
   b.results(last);
   return plan;
 }

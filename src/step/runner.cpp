@@ -108,7 +108,9 @@ void Runner::forget() {
 }
 
 void Runner::keep(const WorldState& state, Buffer buffer) {
-  if (gl_ && schema(buffer).table != Table::contact && schema(buffer).table != Table::node) rollback_.keep(state.tables, buffer);
+  const bool lasts = holds(buffer, Role::state) || holds(buffer, Role::input);
+  const Table table = schema(buffer).table;
+  if ((lasts || gl_) && table != Table::contact && table != Table::node) rollback_.keep(state.tables, buffer);
 }
 
 void Runner::undo(WorldState& state) {
@@ -215,7 +217,6 @@ Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldStat
   }
   if (gl_)
     if (Status done = at(Place::gl).backend->finish(); !done) return done;
-  rollback_.drop();
   return {};
 }
 

@@ -22,9 +22,11 @@ class Runner {
   Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
              StepReport& report);
 
-  /// Before a step changes a buffer of a table, so that `undo` can put it back. On the CPU alone nothing fails, so
-  /// nothing is copied; nor are contacts, whose last list the detector has.
+  /// Before a step changes a buffer of a table, so that `undo` can put it back. Contacts are not copied: the detector
+  /// has their last list; nor, on the CPU alone, is scratch.
   void keep(const WorldState& state, Buffer buffer);
+  /// The step was made.
+  void drop() { rollback_.drop(); }
   /// The step failed: the tables as they were before it, and a device that is asked for nothing more of it.
   void undo(WorldState& state);
   /// What the devices hold is not the data of the world that comes.

@@ -29,10 +29,10 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
   for (const std::uint32_t row : rows_) {
     std::uint32_t ids[2];
     for (int side = 0; side < 2; side++) {
-      const BodyRecord& body = state.bodies[ends[row][side]];
-      ids[side] = body.index;
-      const std::uint32_t unit = trees ? trees->unit(ends[row][side]) : ends[row][side];
-      units_.push_back(body.kind == BodyKind::dynamic ? unit : Colouring::fixed_unit);
+      const std::uint32_t row_of_side = ends[row][side];
+      ids[side] = state.bodies[row_of_side].index;
+      const std::uint32_t unit = trees ? trees->unit(row_of_side) : row_of_side;
+      units_.push_back(state.responds(row_of_side) ? unit : Colouring::fixed_unit);
       ends_.push_back(ends[row][side]);
     }
     if (trees) {
@@ -62,7 +62,7 @@ void TreeSlots::build(const WorldState& state) {
   std::vector<double> masses(state.bodies.size());
   std::vector<std::uint32_t> ids(state.bodies.size());
   for (std::uint32_t row = 0; row < state.bodies.size(); row++) {
-    masses[row] = state.bodies[row].kind == BodyKind::dynamic ? state.tables.get(Buffer::mass, row, 3) : 0;
+    masses[row] = state.responds(row) ? state.tables.get(Buffer::mass, row, 3) : 0;
     ids[row] = state.bodies[row].index;
   }
   forest_.build(links, masses, ids);
@@ -82,7 +82,7 @@ void Schedule::update_structure(const WorldState& state) {
   bodies.clear();
   drag = gyroscopic = false;
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
-    if (state.bodies[row].kind == BodyKind::fixed) continue;
+    if (state.stands(row)) continue;
     bodies.push_back(row);
     drag |= state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0;
     const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4);

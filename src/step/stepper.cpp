@@ -1,4 +1,5 @@
 // One step, readable on a screen: forces, contacts, schedule, plan, run.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -13,6 +14,7 @@
 #include "step/processor_state.h"
 #include "step/runner.h"
 #include "step/schedule.h"
+#include "world/range.h"
 #include "world/state.h"
 #include "world/validate.h"
 
@@ -71,10 +73,13 @@ struct Stepper::Inside {
   StepReport report;
   std::vector<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few
   const StepPlan* plan = nullptr;
-  std::uint64_t serial = 0, structure = 0, contacts_version = 0;  // of the world of the last step
+  std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
+  std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
+  bool other = false;                                 // than those of the last step
   InfoOf<float> infos_f[phase_count];
   InfoOf<double> infos_d[phase_count];
-  std::vector<Wrench> called;  // what the callbacks answered in this step
+  std::vector<std::uint32_t> outside, leaving;  // rows
+  std::vector<Wrench> called;                   // what the callbacks answered in this step
   StepPlan no_plan;
   Clock::time_point began;
 
@@ -156,8 +161,41 @@ struct Stepper::Inside {
 
     const FlushSubnormals flush;
     if (serial != s.serial) runner.forget();
-    const bool other = serial != s.serial || structure != s.structure_version;
-    if (other) schedule.update_structure(s);
+    update_structure(s);
+    while (ok = attempt(s, dt), !ok || !outside.empty()) {
+      if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
+      if (ok) (void)undo(s, {});
+      // others may have met it: those that leave the range by themselves are to blame, where there are any
+      find_leaving(s, schedule.bodies, dt, leaving);
+      if (leaving.empty()) leaving = outside;
+      if (leaving.empty()) return ok;
+      freeze_leaving(s);
+    }
+    runner.drop();
+    return ok;
+  }
+
+  void update_structure(const WorldState& s) {
+    if (scheduled_serial == s.serial && scheduled == s.structure_version) return;
+    scheduled_serial = s.serial;
+    scheduled = s.structure_version;
+    other = true;
+    schedule.update_structure(s);
+  }
+
+  void freeze_leaving(WorldState& s) {
+    for (const std::uint32_t row : leaving) {
+      report.frozen.push_back(s.body_ids.id<BodyId>(s.bodies[row].index));
+      s.freeze(row);
+    }
+    std::ranges::sort(report.frozen);
+    update_structure(s);
+  }
+
+  /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
+  Status attempt(WorldState& s, double dt) {
+    Status ok;
+    outside.clear();
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
     lap(Timer::broad);
     add_called(s);
@@ -165,12 +203,12 @@ struct Stepper::Inside {
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
-    remember(s);
     PlanSignature wanted = signature(schedule);
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
     if (other) s.tables.resize(Table::node, 1);
+    remember(s);
     if (const std::uint32_t rows = schedule.trees.nodes().rows(); wanted.tree_contacts && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
@@ -179,6 +217,8 @@ struct Stepper::Inside {
     lap(Timer::plan);
 
     if (ok = runner.run(settings, *plan, s, schedule, fill(s, dt), report); !ok) return undo(s, ok);
+    find_outside(s, schedule.bodies, outside);
+    if (!outside.empty()) return {};
     s.last_substep = substep_length(settings, dt);
     report.pairs = found.pairs;
     report.contacts = found.contacts;
@@ -200,8 +240,8 @@ struct Stepper::Inside {
 
   void remember(const WorldState& s) {
     serial = s.serial;
-    structure = s.structure_version;
     contacts_version = s.contacts_version;
+    other = false;
   }
 };
 

@@ -106,7 +106,7 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   WorldState& s = *state_;
   const std::uint32_t row = std::uint32_t(s.bodies.size());
   const std::uint32_t index = s.body_ids.allocate(row);
-  s.bodies.push_back({index, def.kind, {}, {}});
+  s.bodies.push_back({index, def.kind, false, {}, {}});
   s.tables.resize(Table::body, row + 1);
   s.set_position(row, def.pose.position);
   s.set_orientation(row, orientation);
@@ -141,6 +141,7 @@ Status World::destroy(BodyId body) {
   }
   std::erase_if(s.no_collide,
                 [&](const auto& pair) { return pair.first >> 32 == body.index || (pair.first & 0xffffffffu) == body.index; });
+  s.frozen.erase(body.index);
   s.drop_contacts(row, last);
   s.remove_row(Table::body, s.bodies, s.body_ids, row);
   return {};
@@ -156,6 +157,10 @@ std::vector<BodyId> World::bodies() const {
 Result<std::uint32_t> World::row_of(BodyId body) const {
   if (!valid(body)) return stale("body");
   return state_->body_ids.row(body.index);
+}
+Result<bool> World::frozen(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  return state_->bodies[state_->body_ids.row(body.index)].frozen;
 }
 Result<BodyKind> World::kind(BodyId body) const {
   if (!valid(body)) return stale("body");
@@ -178,6 +183,7 @@ Status World::set_pose(BodyId body, const Pose& pose) {
   if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
+  s.thaw(row);
   const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.orientation(row));
   const Vec3 w = s.angular_velocity(row);
   s.set_position(row, pose.position);
@@ -200,6 +206,7 @@ Status World::set_velocity(BodyId body, Vec3 velocity) {
   const std::uint32_t row = state_->body_ids.row(body.index);
   if (state_->bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
+  state_->thaw(row);
   state_->bring_in_phase(row);
   state_->tables.set3(Buffer::motion, row, 0, velocity);
   return {};
@@ -216,6 +223,7 @@ Status World::set_angular_velocity(BodyId body, Vec3 w) {
   const std::uint32_t row = state_->body_ids.row(body.index);
   if (state_->bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
+  state_->thaw(row);
   state_->bring_in_phase(row);
   state_->set_angular_velocity(row, w);
   return {};
@@ -250,6 +258,7 @@ Status World::set_position_last(BodyId body, Vec3 position) {
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
+  s.thaw(row);
   s.tables.set3(Buffer::motion, row, 0, (1 / s.last_substep) * (s.pose(row).position - position));
   for (std::uint32_t part : {0, 8}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
@@ -277,6 +286,7 @@ Status World::set_orientation_last(BodyId body, Quat last) {
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
+  s.thaw(row);
   // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
   Quat d = s.orientation(row) * conjugate(last);
   if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
@@ -293,6 +303,7 @@ Status World::set_orientation_last(BodyId body, Quat last) {
 Result<MassProperties> World::mass_properties(BodyId body) const {
   if (!valid(body)) return stale("body");
   const std::uint32_t row = state_->body_ids.row(body.index);
+  if (state_->bodies[row].frozen) return state_->frozen.at(body.index);
   return MassProperties{state_->tables.get(Buffer::mass, row, 3), state_->tables.get3(Buffer::mass, row, 0)};
 }
 
@@ -302,6 +313,7 @@ Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
+  s.thaw(row);
   const Vec3 w = s.angular_velocity(row);
   s.set_mass(row, mass);
   s.structure_version++;
@@ -330,6 +342,7 @@ Status World::set_drag(BodyId body, double linear, double angular) {
   if (Status ok = check_finite(angular, "angular drag of a body"); !ok) return ok;
   if (linear < 0 || angular < 0) return Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
   const std::uint32_t row = state_->body_ids.row(body.index);
+  state_->thaw(row);
   state_->bring_in_phase(row);
   state_->tables.set(Buffer::force, row, 3, linear);
   state_->tables.set(Buffer::force, row, 7, angular);

@@ -5,7 +5,7 @@ namespace pcphys {
 
 std::array<std::uint32_t, 2> WorldState::ends_of(const ContactKey& key) const {
   const std::uint32_t a = body_ids.row(shapes[key.shape_a].body), b = body_ids.row(shapes[key.shape_b].body);
-  if (bodies[a].kind == BodyKind::dynamic) return {a, b};
+  if (responds(a)) return {a, b};
   return {b, a};
 }
 

@@ -161,6 +161,7 @@ ForceId new_force(WorldState& s, ForceRecord record) {
   const std::uint32_t index = s.force_ids.allocate(0);
   if (index == s.forces.size()) s.forces.emplace_back();
   const std::uint32_t row = s.body_ids.row(record.body);
+  s.thaw(row);
   if (record.callback) s.callbacks++;
   if (record.callback) s.bring_in_phase(row);  // what it will answer is not known yet
   s.forces[index] = std::move(record);
@@ -188,6 +189,7 @@ Status World::remove(ForceId force) {
   WorldState& s = *state_;
   if (!s.force_ids.valid(force)) return stale("force");
   const std::uint32_t row = s.body_ids.row(s.forces[force.index].body);
+  s.thaw(row);
   std::erase(s.bodies[row].forces, force.index);
   s.drop_force(force.index);
   s.change_forces(row);

@@ -267,6 +267,7 @@ Status World::restore(std::span<const std::byte> snapshot) {
     (void)r.get(s.contacts.features[row]);
     (void)read_table(r, s.tables, Table::contact, row);
   }
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++) s.follow_mark(row);
   for (std::size_t b = 0; b < table_buffer_count; b++) s.tables.touch(Buffer(b));
   s.contacts_version++;
   return {};

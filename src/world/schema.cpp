@@ -66,6 +66,15 @@ const BufferSchema& schema(Buffer buffer) { return buffer_schemas[std::size_t(bu
 const KernelSchema& schema(Kernel kernel) { return kernel_schemas[std::size_t(kernel)]; }
 std::span<const PropertySchema> properties() { return property_schemas; }
 
+bool holds(Buffer buffer, Role role) {
+  static const auto roles = [] {
+    std::array<unsigned, buffer_count> bits{};
+    for (const PropertySchema& p : properties()) bits[std::size_t(p.buffer)] |= 1u << unsigned(p.role);
+    return bits;
+  }();
+  return roles[std::size_t(buffer)] >> unsigned(role) & 1u;
+}
+
 std::string_view name(Table table) {
   constexpr std::string_view names[] = {"body", "joint", "node", "contact", "shape"};
   return names[std::size_t(table)];

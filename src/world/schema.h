@@ -110,6 +110,8 @@ constexpr std::size_t reals_of(Buffer buffer) {
 const BufferSchema& schema(Buffer buffer);
 const KernelSchema& schema(Kernel kernel);
 std::span<const PropertySchema> properties();
+/// Whether some property of this role stands in it.
+bool holds(Buffer buffer, Role role);
 std::string_view name(Table table);
 std::string_view name(Stage stage);
 std::string_view name(Role role);

@@ -12,7 +12,7 @@ std::atomic<std::uint64_t> worlds_made{0};
 /// What an acceleration of 1 shifts the stored velocity by, with linear drag: h (phi2 - phi) / e of
 /// kernels/begin.inl, -h / 2 without.
 double half_kick(double drag, double h) {
-  const double x = drag * h, e = std::exp(-x);
+  const double x = drag * h, e = std::exp(-std::min(x, 60.0));  // as the kernels have it
   if (x > 0.1) {
     const double phi = (1 - e) / x, phi2 = (1 - phi) / x;
     return h * (phi2 - phi) / e;
@@ -29,7 +29,7 @@ double half_kick(double drag, double h) {
 WorldState::WorldState(const WorldDef& def) : serial(++worlds_made), tables(def.precision), gravity(def.gravity) {
   // the ground: id index 0, row 0
   body_ids.allocate(0);
-  bodies.push_back({0, BodyKind::fixed, {}, {}});
+  bodies.push_back({0, BodyKind::fixed, false, {}, {}});
   joints.emplace_back();
   contacts.keys.resize(1);
   contacts.ends.resize(1);
@@ -104,6 +104,42 @@ void WorldState::set_mass(std::uint32_t row, const MassProperties& m) {
   for (int k = 0; k < 3; k++)
     if (values[k] == high && k != smallest) largest = k;
   tables.set(Buffer::mass, row, 7, 3 - smallest - largest);
+}
+
+namespace {
+constexpr double frozen_phase = -2;  // of a frozen body: what snapshots and hashes know it by
+}
+
+void WorldState::freeze(std::uint32_t row) {
+  BodyRecord& body = bodies[row];
+  if (body.frozen) return;
+  body.frozen = true;
+  frozen[body.index] = {tables.get(Buffer::mass, row, 3), tables.get3(Buffer::mass, row, 0)};
+  for (const Buffer buffer : {Buffer::motion, Buffer::velocity_parts, Buffer::mass, Buffer::inertia, Buffer::delta})
+    for (std::uint32_t i = 0; i < reals_of(buffer); i++) tables.set(buffer, row, i, 0);
+  tables.set(Buffer::motion, row, 7, frozen_phase);
+  structure_version++;
+}
+
+void WorldState::thaw(std::uint32_t row) {
+  BodyRecord& body = bodies[row];
+  if (!body.frozen) return;
+  const MassProperties mass = frozen.extract(body.index).mapped();
+  body.frozen = false;
+  const bool dynamic = body.kind == BodyKind::dynamic;
+  if (dynamic)
+    set_mass(row, mass);
+  else
+    tables.set3(Buffer::mass, row, 4, {1, 1, 1});
+  tables.set(Buffer::motion, row, 7, dynamic ? -1 : 0);
+  structure_version++;
+}
+
+void WorldState::follow_mark(std::uint32_t row) {
+  const double phase = tables.get(Buffer::motion, row, 7);
+  if (phase == frozen_phase) return freeze(row);
+  thaw(row);
+  tables.set(Buffer::motion, row, 7, phase);
 }
 
 void WorldState::drop_force(std::uint32_t force) {

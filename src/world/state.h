@@ -15,6 +15,7 @@ namespace pcphys {
 struct BodyRecord {
   std::uint32_t index = 0;  // of its id
   BodyKind kind = BodyKind::fixed;
+  bool frozen = false;                // see World::frozen; its mass waits in WorldState::frozen
   std::vector<std::uint32_t> shapes;  // shape indices
   std::vector<std::uint32_t> forces;  // force indices, ascending: sums are taken in this order
 };
@@ -71,7 +72,8 @@ struct WorldState {
   std::vector<ForceRecord> forces;  // by force index
   std::uint32_t callbacks = 0;      // how many of them are callbacks
   ContactColumns contacts;
-  std::unordered_map<std::uint64_t, NoCollide> no_collide;  // by pair_key; only pairs with a reason
+  std::unordered_map<std::uint32_t, MassProperties> frozen;  // by body index
+  std::unordered_map<std::uint64_t, NoCollide> no_collide;   // by pair_key; only pairs with a reason
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;  // objects, kinds, filters
@@ -97,6 +99,16 @@ struct WorldState {
 
   std::uint32_t contact_rows() const { return tables.rows(Table::contact); }
   static std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a); }
+
+  /// Whether forces and impulses act on it.
+  bool responds(std::uint32_t row) const { return bodies[row].kind == BodyKind::dynamic && !bodies[row].frozen; }
+  bool stands(std::uint32_t row) const { return bodies[row].kind == BodyKind::fixed || bodies[row].frozen; }
+  /// From now on as a fixed body, at rest where it is.
+  void freeze(std::uint32_t row);
+  /// As it was made; its velocity is for the caller to set.
+  void thaw(std::uint32_t row);
+  /// Freezes or thaws a body as its state says, which a snapshot has just brought.
+  void follow_mark(std::uint32_t row);
 
   // borders of a row, in double
   Pose pose(std::uint32_t row) const;

@@ -1,0 +1,140 @@
+// B10: a ragdoll that is pulled, dragged and spun harder than any game would.
+#include <algorithm>
+#include <numbers>
+
+#include "parts.h"
+#include "scenes/metrics.h"
+
+namespace pcphys::cases {
+namespace {
+
+constexpr double weight = 70;  // [kg]
+
+/// The human of the library, scaled to 70 kg; it stands along y.
+RagdollDef human() {
+  RagdollDef def = RagdollDef::human();
+  double mass = 0;
+  for (const BoneDef& bone : def.bones) mass += mass_properties(bone.shape, def.density)->mass;
+  def.density *= weight / mass;
+  return def;
+}
+
+/// The bone that reaches furthest along x: a hand.
+int hand(const Simulated& run) {
+  int furthest = 0;
+  for (int i = 0; i < run.bodies(); ++i)
+    if (run.moves(i) && run.pose(i).position.x > run.pose(furthest).position.x) furthest = i;
+  return furthest;
+}
+
+/// Lengths of the shortest bone: what gaps are judged by.
+double shortest_bone(const Simulated& run) {
+  double shortest = 1e9;
+  for (const scenes::SceneBody& body : run.problem().scene.bodies)
+    if (body.kind == BodyKind::dynamic) shortest = std::min(shortest, 2 * (body.shape.size.x + body.shape.size.y));
+  return shortest;
+}
+
+double beyond_limits(const Simulated& run) {
+  return scenes::limit_excess(run.problem().scene, run.problem().world) * 180 / std::numbers::pi;
+}
+
+struct Watch {
+  Worst gap, limit;
+  void look(const Simulated& run) {
+    gap.add(joint_gap(run));
+    limit.add(beyond_limits(run));
+  }
+};
+
+void pull(Trial& trial, double force, std::optional<double> gap_must, std::optional<double> limit_must) {
+  Simulated& run = trial.start([](scenes::Builder& builder) { builder.add_ragdoll(human(), {}, {}, 1); });
+  const double bone = shortest_bone(run);
+  const int pulled = hand(run);
+  Watch during, after;
+  run.set_wrench(pulled, {{force, 0, 0}, {}});
+  for (long k = 0; k < trial.steps(1); ++k) {
+    run.step(trial.dt());
+    during.look(run);
+  }
+  run.set_wrench(pulled, {});
+  const double released = energy(run);
+  Worst gain;
+  for (long k = 0; k < trial.steps(1); ++k) {
+    run.step(trial.dt());
+    gain.add(energy(run) / released - 1);
+    after.look(run);
+  }
+  trial.report("joint gap / shortest bone", during.gap / bone, gap_must);
+  trial.report("beyond limits [deg]", during.limit, limit_must);
+  trial.report("joint gap / shortest bone, 1 s after", joint_gap(run) / bone, gap_must ? std::optional(1e-3) : std::nullopt);
+  trial.report("energy gained after the release, relative", gain, gap_must ? std::optional(1e-3) : std::nullopt);
+  trial.report("not finite", nonfinite(run), 0.0);
+}
+
+/// A kinematic hand goes between two walls that stand 0.1 m apart.
+void drag(Trial& trial, double speed) {
+  Simulated& run = trial.start([=](scenes::Builder& builder) {
+    builder.add_ragdoll(human(), {}, {}, 1);
+    double x = -1e9;
+    int pulled = 0;
+    for (int i = 0; i < int(builder.scene().bodies.size()); ++i) {
+      const Vec3 p = builder.scene().bodies[std::size_t(i)].start.position;
+      if (p.x > x) x = p.x, pulled = i;
+    }
+    const Vec3 at = builder.scene().bodies[std::size_t(pulled)].start.position;
+    BodyDef mover;
+    mover.kind = BodyKind::kinematic;
+    mover.shapes = {ShapeDef::sphere(0.02)};
+    mover.pose.position = at;
+    mover.velocity = {speed, 0, 0};
+    const BodyId id = builder.id(builder.add(without_contacts(mover)));
+    add_pin(builder, id, {}, builder.id(pulled), {});
+    for (double side : {-1.0, 1.0}) builder.add_fixed_box({at.x + 2, at.y, at.z + side * (0.05 + 1)}, {0.2, 3, 1});
+  });
+  const double bone = shortest_bone(run);
+  Watch watch;
+  for (long k = 0; k < trial.steps(5 / speed + 0.5); ++k) {
+    run.step(trial.dt());
+    watch.look(run);
+  }
+  trial.report("not finite", nonfinite(run), 0.0);
+  trial.report("joint gap / shortest bone", watch.gap / bone);
+  trial.report("beyond limits [deg]", watch.limit);
+}
+
+void spin(Trial& trial) {
+  Simulated& run = trial.start([](scenes::Builder& builder) { builder.add_ragdoll(human(), {}, {}, 1); });
+  run.set_velocity(0, {}, {0, 100, 0});
+  const double bone = shortest_bone(run), start = energy(run);
+  const Vec3 before = angular_momentum(run);
+  Watch watch;
+  Worst gain, turn;
+  for (long k = 0; k < trial.steps(2); ++k) {
+    run.step(trial.dt());
+    watch.look(run);
+    gain.add(energy(run) / start - 1);
+    turn.add(length(angular_momentum(run) - before) / length(before));
+  }
+  trial.report("not finite", nonfinite(run), 0.0);
+  trial.report("energy gained, relative", gain, 1e-2);
+  trial.report("joint gap / shortest bone", watch.gap / bone);
+  trial.report("beyond limits [deg]", watch.limit);
+  trial.report("angular momentum, relative", turn);
+}
+
+}  // namespace
+
+void add_ragdolls(std::vector<Case>& cases) {
+  const std::vector<double> steps{1.0 / 60, 1.0 / 240};
+  cases.push_back({"B10",
+                   "a ragdoll of 12 bones and 70 kg is pulled by a hand, dragged and spun",
+                   {{.name = "1e3 N", .run = [](Trial& t) { pull(t, 1e3, 0.02, 5); }, .steps = steps, .substeps = {4}},
+                    {.name = "1e4 N", .run = [](Trial& t) { pull(t, 1e4, 0.1, 5); }, .steps = steps, .substeps = {4}},
+                    {.name = "1e5 N", .run = [](Trial& t) { pull(t, 1e5, {}, {}); }, .steps = steps, .substeps = {4}},
+                    {.name = "dragged at 10 m/s", .run = [](Trial& t) { drag(t, 10); }, .steps = steps, .substeps = {4}},
+                    {.name = "dragged at 50 m/s", .run = [](Trial& t) { drag(t, 50); }, .steps = steps, .substeps = {4}},
+                    {.name = "root at 100 rad/s", .run = spin, .steps = steps, .substeps = {4}}}});
+}
+
+}  // namespace pcphys::cases
