@@ -190,7 +190,7 @@ void resolve(SphereContact& c, const Mode& mode) {
   signature.substeps = 1;
   signature.places.fill(mode.place);
   signature.bodies = signature.shapes = signature.contacts = true;
-  signature.restitution = c.restitution > 0;
+  signature.restitution = signature.impacts = c.restitution > 0;
   const StepPlan plan = make_plan(signature);
 
   Schedule schedule;

@@ -78,6 +78,7 @@ PC_PROPERTY(contact, contact, 27, real, twist_impulse, state, 0, "N m s", "on b 
 PC_PROPERTY(contact, contact, 28, real, contact_static_friction, derived, 0, "1", "geometric mean of the two materials")
 PC_PROPERTY(contact, contact, 29, real, contact_kinetic_friction, derived, 0, "1", "geometric mean")
 PC_PROPERTY(contact, contact, 30, real, contact_restitution, derived, 0, "1", "arithmetic mean, as the original has it")
+PC_PROPERTY(contact, contact, 31, real, impact_time, derived, 0, "s", "after the step's start, of shapes that meet in flight; 0: they are close; -1: a body hangs on joints")
 
 PC_TABLE(shape, "what bodies collide with; read by the broad and narrow phase")
 PC_BUFFER(shape, shape, 3, "")

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pcphys/constants.h"
+
 namespace pcphys {
 namespace {
 
@@ -71,6 +73,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.contacts && !s.restitution) out("restitution", "no contact has a restitution above zero");
+  if (s.contacts && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
 }
 
 }  // namespace
@@ -91,6 +94,8 @@ StepPlan make_plan(const PlanSignature& s) {
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+    if (s.contacts && s.impacts)
+      for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::biased, k);

@@ -20,6 +20,7 @@ struct PlanSignature {
   bool shapes = false;                      // some pair could ever touch
   bool contacts = false;                    // some do in this step
   bool restitution = false;                 // some contact bounces
+  bool impacts = false;                     // or is between shapes that meet in flight
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 

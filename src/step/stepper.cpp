@@ -170,6 +170,7 @@ struct Stepper::Inside {
     wanted.shapes = detector.possible();
     wanted.contacts = s.contact_rows() > 1;
     wanted.restitution = found.restitution;
+    wanted.impacts = found.impacts;
     plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
@@ -237,7 +238,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
   PlanSignature wanted = in.signature(schedule);
   wanted.shapes = wanted.contacts = detector.possible();
-  wanted.restitution = detector.may_bounce(world.state());
+  wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   return make_plan(wanted);
 }
 
