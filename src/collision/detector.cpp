@@ -222,8 +222,8 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     const Sight<Scalar> view = sight(s, scratch, std::uint32_t(i), options);
     const std::uint32_t row_a = view.rows[0], row_b = view.rows[1];
     if (flight < scratch.flights.size() && scratch.flights[flight].pair == i) {
-      const Flight<Scalar>& f = scratch.flights[flight++];
-      if (!f.counts && !(f.stray && (struck_[row_a] || struck_[row_b]))) continue;
+      Flight<Scalar>& f = scratch.flights[flight++];
+      if (!settle(s, dt, options, scratch, view, f)) continue;
       manifold = f.manifold;
       impact = f.impact;
     } else {

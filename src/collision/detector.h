@@ -73,6 +73,10 @@ class Detector {
   float thickness(std::uint32_t a, std::uint32_t b) const;
   /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
   template <class Scalar> void look_ahead(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
+  /// Whether a contact comes of it, once all flights are known.
+  template <class Scalar>
+  bool settle(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch,
+              const Sight<Scalar>& view, Flight<Scalar>& flight);
   template <class Scalar>
   void fly(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch, const Sight<Scalar>& view,
            Flight<Scalar>& flight);
@@ -84,7 +88,7 @@ class Detector {
   std::vector<Aabb> tight_;
   std::vector<float> reach_;   // how far a shape may come this step [m]
   std::vector<Twist> twists_;  // of bodies, by row
-  std::vector<bool> struck_;   // of bodies: meet something in flight
+  std::vector<float> struck_;  // of bodies: when they first meet something in flight; dt: not in this step [s]
   PairCache pairs_;
   std::vector<std::uint32_t> hints_, next_hints_;
   ContactColumns next_;  // of the next step, or of the last one

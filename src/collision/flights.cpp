@@ -37,6 +37,13 @@ void back_to_start(const Twist& a, const Twist& b, const Scalar* apart, double s
   }
 }
 
+/// As seen from the start, for whatever way it comes.
+template <class Scalar> void from_start(double dt, double share, bool whirls, Flight<Scalar>& f) {
+  to_light_side(f.manifold, share);
+  f.impact = dt;
+  if (whirls) behind_centre(f.manifold);
+}
+
 }  // namespace
 
 template <class Scalar>
@@ -78,12 +85,13 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     const bool bounces = materials[std::size_t(x.body) * 4 + 2] + materials[std::size_t(y.body) * 4 + 2] > 0;
     if (reach_[a] + reach_[b] <= (bounces ? 0.0f : 0.5f) * thickness(a, b)) continue;
     if (x.jointed || y.jointed || !overlap(tight_[a], tight_[b])) continue;
-    if (scratch.flights.empty()) struck_.assign(s.bodies.size(), false);
+    if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
     const Sight<Scalar> view = sight(s, scratch, i, options);
     fly(s, dt, options, scratch, view, f);
-    if (f.counts && f.impact > 0) struck_[view.rows[0]] = struck_[view.rows[1]] = true;
+    if (f.counts && f.impact > 0)
+      for (std::uint32_t row : view.rows) struck_[row] = std::min(struck_[row], float(f.impact));
   }
 }
 
@@ -96,7 +104,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
     return Mover<Scalar>{&scratch.shapes[view.shapes[side]], &t, t.across * p.lever_across + t.turn * p.lever_any, p.centred};
   };
   const Mover<Scalar> a = mover(0), b = mover(1);
-  f.counts = f.stray = false;
+  f.counts = f.stray = f.turned = false;
   f.impact = 0;
   find(options, view, *a.view, view.there, f.pair, f.manifold);
   if (f.manifold.count == 0) return;
@@ -116,24 +124,37 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   if (t >= 0) {
     f.counts = true;
     f.impact = t;
+    const Scalar *n = f.manifold.normal, *m = met.normal;
+    f.turned = !(share > 0 && share < 1) && n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < Scalar(0.5);
     f.manifold = met;
     if (whirls) behind_centre(f.manifold);
     back_to_start(*a.twist, *b.twist, view.apart, share, t, f.manifold);
     return;
   }
-  to_light_side(f.manifold, share);
-  if (f.counts) return;
+  if (f.counts) return to_light_side(f.manifold, share);
   // what stands may be met all the same, once something sends the other there
   if (share > 0 && share < 1) return;
   (t == past ? f.stray : f.counts) = true;
-  f.impact = dt;
-  if (whirls) behind_centre(f.manifold);
+  from_start(dt, share, whirls, f);
+}
+
+template <class Scalar>
+bool Detector::settle(const WorldState& s, double dt, const Options& options, const Scratch<Scalar>& scratch,
+                      const Sight<Scalar>& view, Flight<Scalar>& f) {
+  const float first = std::min(struck_[view.rows[0]], struck_[view.rows[1]]);
+  if (f.turned && double(first) < f.impact) {  // it will be sent elsewhere before
+    find(options, view, scratch.shapes[view.shapes[0]], view.there, f.pair, f.manifold);
+    from_start(dt, share_of(s.tables, view.rows[0], view.rows[1]), false, f);
+  }
+  return f.counts || (f.stray && first < float(dt));
 }
 
 #define PC_INSTANTIATE(Scalar)                                                                                            \
   template Sight<Scalar> Detector::sight(const WorldState&, const Scratch<Scalar>&, std::uint32_t, const Options&) const; \
   template void Detector::find(const Options&, const Sight<Scalar>&, const ShapeView<Scalar>&, const ShapeView<Scalar>&,  \
                                std::uint32_t, Manifold<Scalar>&);                                                         \
+  template bool Detector::settle(const WorldState&, double, const Options&, const Scratch<Scalar>&, const Sight<Scalar>&, \
+                                 Flight<Scalar>&);                                                                        \
   template void Detector::look_ahead(const WorldState&, double, const Options&, Scratch<Scalar>&);
 PC_INSTANTIATE(float)
 PC_INSTANTIATE(double)

@@ -19,7 +19,8 @@ template <class Scalar> struct Sight {
 template <class Scalar> struct Flight {
   std::uint32_t pair;
   bool counts;    // they meet, or may
-  bool stray;     // they do only if something sends the body that moves elsewhere
+  bool stray;     // against what stands: only if something sends the other elsewhere before
+  bool turned;    // against what stands: from another side than it is seen from the start
   double impact;  // impact_time of the contact [s]
   Manifold<Scalar> manifold;
 };
