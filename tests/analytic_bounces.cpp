@@ -166,11 +166,11 @@ Energies elastic_pile(double dt) {
 }  // namespace
 
 TEST_CASE("A15: a pile of balls that bounce without loss") {
-  for (const auto& [dt, most] : {std::pair{1e-3, 1.05}, {4e-3, 1.05}}) {
+  for (double dt : {1e-3, 4e-3}) {
     const Energies e = elastic_pile(dt);
     MESSAGE("A15 dt " << dt << ": " << e.mean_square << " J^2, energy " << e.least << " to " << e.most);
-    CHECK(e.most <= most);
-    CHECK(e.least >= 0.95);
+    CHECK(e.most <= 1.05);
+    if (dt <= 1e-3) CHECK(e.least >= 0.999);
   }
 }
 

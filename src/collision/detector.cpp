@@ -63,6 +63,17 @@ bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const flo
   return false;
 }
 
+/// The largest speed at which a gap closes [m/s].
+template <class Scalar> double fastest(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const Scalar* apart) {
+  float n[3], d[3], most = 0;
+  for (int k = 0; k < 3; k++) n[k] = float(m.normal[k]), d[k] = float(apart[k]);
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
+    most = std::max(most, passing(a, b, n, r, d).closing);
+  }
+  return double(most);
+}
+
 /// Of the sphere about the shape's centre that holds it [m].
 double bounding_radius(const ShapeDef& d) {
   switch (d.kind) {
@@ -115,9 +126,10 @@ void Detector::rebuild(const WorldState& s) {
   possible_ = some_dynamic && solid > 1;
 }
 
-bool Detector::may_bounce(const WorldState& s) {
+bool Detector::some_material(const WorldState& s, std::initializer_list<std::uint32_t> offsets) {
   for (std::uint32_t row = 0; row < s.bodies.size(); row++)
-    if (s.tables.get(Buffer::material, row, 2) > 0) return true;
+    for (std::uint32_t k : offsets)
+      if (s.tables.get(Buffer::material, row, k) > 0) return true;
   return false;
 }
 
@@ -243,8 +255,8 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     next_.features.push_back({});
     if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
     Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
-    write_contact(manifold, materials + std::size_t(row_a) * 4, materials + std::size_t(row_b) * 4, out,
-                  next_.features[row].data());
+    const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
+    write_contact(manifold, of_a, of_b, out, next_.features[row].data());
     out[31] = Scalar(impact);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
     if (old < before_rows && s.contacts.keys[old] == key)
@@ -252,7 +264,10 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
                         next_.features[row].data());
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
-    found.impacts |= impact > 0 || (impact == 0 && out[30] > 0);
+    found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
+    found.impacts |=
+        impact > 0 || (impact == 0 && out[30] > 0 &&
+                       fastest(manifold, twists_[row_a], twists_[row_b], view.apart) + fall / dt >= options.least_bounce);
   }
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;

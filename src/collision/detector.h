@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -21,12 +22,14 @@ class Detector {
   struct Options {
     NarrowPhase narrow = NarrowPhase::native;
     double contact_margin = 0.02;
+    double least_bounce = 0;  // slower approaches do not bounce [m/s]
     std::size_t max_pairs = 0;
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
     bool restitution = false;  // some contact bounces
     bool impacts = false;      // or is between shapes that meet in flight
+    bool rolling = false;      // some contact resists rolling or turning
     bool changed = false;      // other pairs touch than in the last step
   };
 
@@ -38,8 +41,9 @@ class Detector {
   void put_back(WorldState& state);
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
-  /// Whether some body's restitution is above zero.
-  static bool may_bounce(const WorldState& state);
+  /// Whether some body has restitution, rolling or torsional friction.
+  static bool may_bounce(const WorldState& state) { return some_material(state, {2}); }
+  static bool may_resist_rolling(const WorldState& state) { return some_material(state, {4, 5}); }
 
  private:
   /// What does not change while the structure stays, compact and by shape index.
@@ -60,6 +64,7 @@ class Detector {
     std::vector<Flight<Scalar>> flights;    // in the order of the pairs
   };
 
+  static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
   void rebuild(const WorldState& state);
   template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
   template <class Scalar>

@@ -82,8 +82,9 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
   for (std::uint32_t i = 0; i < pairs.size(); i++) {
     const auto [a, b] = pairs[i];
     const Proxy &x = proxies_[a], &y = proxies_[b];
-    const bool bounces = materials[std::size_t(x.body) * 4 + 2] + materials[std::size_t(y.body) * 4 + 2] > 0;
-    if (reach_[a] + reach_[b] <= (bounces ? 0.0f : 0.5f) * thickness(a, b)) continue;
+    constexpr std::size_t stride = reals_of(Buffer::material);
+    const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
+    if (reach_[a] + reach_[b] <= (bounces ? 0.01f : 0.5f) * thickness(a, b)) continue;
     if (x.jointed || y.jointed || !overlap(tight_[a], tight_[b])) continue;
     if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
     Flight<Scalar>& f = scratch.flights.emplace_back();

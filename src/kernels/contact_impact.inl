@@ -22,7 +22,8 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   meets = pc_and(meets, nearer > zero);
   precise Real twice = s * PC_REAL(2.0); Real t = pc_select(meets, pc_div(twice, pc_select(meets, nearer, PC_REAL(1.0))), zero);
   Real impact = pc_select(open, -root, v);
-  Mask fast = impact < -PC_INFO(restitution_threshold);
+  // what rests approaches with what the forces give it in a sub-step
+  precise Real slow = PC_INFO(restitution_threshold) + pc_abs(acceleration) * h; Mask fast = impact < -slow;
   precise Real most = h * PC_REAL(1.00001);  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
   Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < zero, zero, most));
   Mask now = ahead < most;

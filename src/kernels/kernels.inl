@@ -15,6 +15,7 @@
 #ifdef PC_ROWS
 PC_ROWS(contact, contact_rows, 64)
 PC_ROWS(contact, contact_impulses, 12)
+PC_ROWS(contact, rolling_impulses, 4)
 PC_ROWS(joint, joint_rows, 36)
 PC_ROWS(joint, tree_rows, 160)
 #endif
@@ -37,6 +38,7 @@ PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) P
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
 PC_KERNEL(contact_warm, contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_impact, contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(force) PC_WRITE(contact_rows) PC_WRITE(delta) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(motion))
+PC_KERNEL(contact_rolling, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(material) PC_WRITE(rolling_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_restitution, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(delta) PC_WRITE(motion))
 PC_KERNEL(contact_store, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(contact))

@@ -73,6 +73,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.contacts && !s.restitution) out("restitution", "no contact has a restitution above zero");
+  if (s.contacts && !s.rolling) out("rolling friction", "no material that touches has any");
   if (s.contacts && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
 }
 
@@ -93,9 +94,11 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
-    if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+    // before what lasts of the contacts acts again: an impact is between velocities that bodies have
     if (s.contacts && s.impacts)
       for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
+    if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+    if (s.contacts && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::biased, k);
@@ -103,6 +106,7 @@ StepPlan make_plan(const PlanSignature& s) {
     b.kernel(s.gyroscopic ? Kernel::advance : Kernel::advance_round, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
+    if (s.contacts && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
     if (s.contacts) b.kernel(Kernel::contact_solve, Phase::relax, k);
   }
   const std::uint32_t last = s.substeps - 1;

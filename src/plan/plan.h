@@ -21,6 +21,7 @@ struct PlanSignature {
   bool contacts = false;                    // some do in this step
   bool restitution = false;                 // some contact bounces
   bool impacts = false;                     // or is between shapes that meet in flight
+  bool rolling = false;                     // some contact resists rolling, or turning about its normal
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 

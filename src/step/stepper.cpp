@@ -84,7 +84,9 @@ struct Stepper::Inside {
     began = now;
   }
 
-  Detector::Options detection() const { return {settings.narrow, settings.contact_margin, settings.max_pairs}; }
+  Detector::Options detection() const {
+    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs};
+  }
 
   /// What the objects of `schedule` need; contacts are for the caller to say.
   PlanSignature signature(const Schedule& from) const {
@@ -171,6 +173,7 @@ struct Stepper::Inside {
     wanted.contacts = s.contact_rows() > 1;
     wanted.restitution = found.restitution;
     wanted.impacts = found.impacts;
+    wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
@@ -239,6 +242,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   PlanSignature wanted = in.signature(schedule);
   wanted.shapes = wanted.contacts = detector.possible();
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
+  wanted.rolling = detector.may_resist_rolling(world.state());
   return make_plan(wanted);
 }
 
