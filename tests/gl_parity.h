@@ -31,15 +31,25 @@ inline std::size_t place(std::size_t slot, std::size_t f, std::size_t reals, std
   return width == 32 ? ((block * (reals / 4) + f / 4) * width + lane) * 4 + f % 4 : (block * reals + f) * width + lane;
 }
 
-inline std::vector<std::uint32_t> pack_indices(Buffer buffer, const std::vector<std::uint32_t>& logical, std::size_t width,
-                                               const TreeLayout& trees) {
-  if (buffer == Buffer::tree_blocks) return trees.lists.blocks;
-  if (buffer == Buffer::tree_parents) return trees.lists.parents;
-  if (buffer == Buffer::tree_ends) return trees.lists.ends;
-  if (!is_ends(buffer)) return logical;
+inline std::vector<std::uint32_t> pack_ends(const std::vector<std::uint32_t>& logical, std::size_t width) {
   std::vector<std::uint32_t> packed(logical.size());
   for (std::size_t i = 0; i < logical.size(); i++) packed[(i / 2 / width * 2 + i % 2) * width + i / 2 % width] = logical[i];
   return packed;
+}
+template <class Scalar>
+std::vector<std::uint32_t> pack_indices(Buffer buffer, const State<Scalar>& state, std::size_t width, const TreeLayout& trees) {
+  const std::vector<std::uint32_t>& logical = state.indices[std::size_t(buffer)];
+  if (buffer == Buffer::tree_blocks) return trees.lists.blocks;
+  if (buffer == Buffer::tree_parents) return trees.lists.parents;
+  if (buffer == Buffer::tree_ends) return trees.lists.ends;
+  if (buffer == Buffer::tree_order) return trees.lists.order;
+  if (buffer == Buffer::contact_paths) {
+    std::vector<std::uint32_t> paths;
+    pack_paths(state.nodes, std::uint32_t(width), state.contact_colours[state.tree_colours - 1].end / std::uint32_t(width),
+               pack_ends(state.indices[std::size_t(Buffer::contact_ends)], width), paths);
+    return paths;
+  }
+  return is_ends(buffer) ? pack_ends(logical, width) : logical;
 }
 
 /// Copies between logical order and a backend's, for rows of the solver; tables are the same in both.
@@ -59,17 +69,15 @@ template <class Scalar> std::size_t packed_size(Buffer buffer, const State<Scala
   return buffer == Buffer::tree_rows ? trees.size * schema(buffer).reals : state.reals[std::size_t(buffer)].size();
 }
 
-inline std::vector<Range> ranges_of(Kernel kernel, std::uint32_t bodies, const std::vector<Range>& contacts,
-                                    const std::vector<Range>& joints, std::uint32_t width) {
-  if (schema(kernel).domain == Domain::body) return {{0, bodies}};
-  std::vector<Range> ranges = schema(kernel).domain == Domain::contact ? contacts : joints;
+template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<Scalar>& state, std::uint32_t width) {
+  const Domain domain = schema(kernel).domain;
+  if (domain == Domain::tree) return {{0, lay_out(state.trees, width).lists.count()}};
+  if (domain == Domain::body) return {{0, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size())}};
+  std::vector<Range> ranges = domain == Domain::joint ? state.joint_colours : state.contact_colours;
+  if (domain == Domain::free_contact) ranges.erase(ranges.begin(), ranges.begin() + state.tree_colours);
+  if (domain == Domain::tree_contact) ranges.resize(state.tree_colours);
   for (Range& range : ranges) range = {range.begin / width, range.end / width};
   return ranges;
-}
-template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<Scalar>& state, std::uint32_t width) {
-  if (schema(kernel).domain == Domain::tree) return {{0, lay_out(state.trees, width).lists.count()}};
-  return ranges_of(kernel, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size()), state.contact_colours,
-                   state.joint_colours, width);
 }
 
 // ---- running one kernel -----------------------------------------------------------------------------
@@ -82,7 +90,7 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
   const TreeLayout trees = lay_out(state.trees, kernels.lanes);
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
-    const auto indices = pack_indices(access.buffer, state.indices[i], kernels.lanes, trees);
+    const auto indices = pack_indices(access.buffer, state, kernels.lanes, trees);
     memory[i].resize((packed_size(access.buffer, state, trees) * sizeof(Scalar) + indices.size() * 4) / 64 + 1);
     buffers[i] = memory[i].data();
     if (is_index(access.buffer))
@@ -114,7 +122,7 @@ template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info
   const TreeLayout trees = lay_out(state.trees, gl.width());
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
-    indices[i] = pack_indices(access.buffer, state.indices[i], gl.width(), trees);
+    indices[i] = pack_indices(access.buffer, state, gl.width(), trees);
     reals[i].resize(packed_size(access.buffer, state, trees));
     copy_reals(access.buffer, state.reals[i].data(), reals[i].data(), state.reals[i].size(), gl.width(), trees, true);
     void* host = is_index(access.buffer) ? static_cast<void*>(indices[i].data()) : reals[i].data();

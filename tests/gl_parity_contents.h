@@ -16,6 +16,7 @@
 #include "gl_parity_trees.h"
 #include "pcphys/constants.h"
 #include "pcphys/math.h"
+#include "plan/tree_paths.h"
 #include "step/backend.h"
 #include "world/schema.h"
 
@@ -48,7 +49,9 @@ template <class Scalar> struct State {
   std::array<std::vector<std::uint32_t>, buffer_count> indices;  // ends: a and b of slot 0, of slot 1, ...
   std::array<InfoOf<Scalar>, 2> infos;                           // biased, relax
   std::vector<Range> contact_colours, joint_colours;             // in slots
+  std::uint32_t tree_colours = 0;                                // of contacts with trees, which come first
   Forest trees;                                                  // of joints of their own
+  TreeNodes nodes;
 };
 
 template <class Scalar> class Maker {
@@ -82,10 +85,12 @@ template <class Scalar> class Maker {
   void joint(std::uint32_t row);
   void slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count, std::uint32_t blocks);
   void trees();
+  void tree_contacts();
   void assemble(std::span<const TreeNode> tree);
   void infos();
 
   static constexpr std::uint32_t colour_count = 3, contact_blocks = 8, joint_blocks = 4;
+  static constexpr std::uint32_t tree_colour_count = 2, tree_blocks = 2;
   static constexpr std::uint32_t coloured_joints = colour_count * joint_blocks * 32;
 
   std::mt19937_64 random_;
@@ -136,11 +141,11 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   const auto n = rarely() ? std::array<double, 4>{0, 1, 0, 0} : turn(3);
   put(Buffer::contact, row, {n[0], n[1], n[2], double(below(5))});
   for (std::uint32_t point = 0; point < 4; point++) {
-    Scalar* at = state_.reals[std::size_t(Buffer::contact)].data() + row * 32 + 4 + point * 4;
+    Scalar* at = state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals + 4 + point * 4;
     for (int i = 0; i < 3; i++) at[i] = Scalar(either(0.5));
     at[3] = Scalar(rarely() ? 0 : either(0.01));
   }
-  Scalar* at = state_.reals[std::size_t(Buffer::contact)].data() + row * 32 + 20;
+  Scalar* at = state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals + 20;
   const bool fresh = rarely();
   for (int i = 0; i < 4; i++) at[i] = Scalar(fresh ? 0 : real(0, mood_.impulse));
   for (int i = 4; i < 8; i++) at[i] = Scalar(fresh ? 0 : either(mood_.impulse / 4));
@@ -177,7 +182,8 @@ template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
 template <class Scalar>
 void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count,
                           std::uint32_t blocks) {
-  std::uint32_t record = 1;
+  std::uint32_t record = 1;  // the next that no slot has yet
+  for (const std::uint32_t used : state_.indices[std::size_t(order)]) record = std::max(record, used + 1);
   for (std::uint32_t c = 0; c < colour_count; c++) {
     std::vector<std::uint32_t> bodies(loose_bodies);
     for (std::uint32_t i = 0; i < loose_bodies; i++) bodies[i] = i + 1;
@@ -193,6 +199,45 @@ void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours
     }
     colours.push_back({begin, begin + count});
   }
+}
+
+/// Contacts with bodies of trees, in colours of their own before all others: within one, no tree and no free body stands in
+/// two slots. Between two bodies of a tree, with something fixed, with a free body, between two trees.
+template <class Scalar> void Maker<Scalar>::tree_contacts() {
+  std::uint32_t record = 1;
+  std::vector<std::uint32_t>&ends = state_.indices[std::size_t(Buffer::contact_ends)],
+  &order = state_.indices[std::size_t(Buffer::contact_order)];
+  for (std::uint32_t c = 0; c < tree_colour_count; c++) {
+    std::vector<std::size_t> trees(state_.trees.trees());
+    for (std::size_t i = 0; i < trees.size(); i++) trees[i] = i;
+    std::shuffle(trees.begin(), trees.end(), random_);
+    std::uint32_t loose = 1 + c * 64;
+    const auto some_body = [&](std::size_t tree) {
+      const auto nodes = state_.trees.tree(tree);
+      const std::uint32_t body = nodes[below(std::uint32_t(nodes.size()))].body;
+      return state_.nodes.node(body) ? body : nodes[1].body;
+    };
+    const std::uint32_t begin = std::uint32_t(order.size()), count = tree_blocks * 32;
+    for (std::uint32_t slot = 0; slot < count; slot++) {
+      const bool padding = trees.size() < 2 || slot + 5 >= count;
+      std::uint32_t a = 0, b = 0;
+      if (!padding) {
+        const std::size_t tree = trees.back();
+        trees.pop_back();
+        a = some_body(tree);
+        const std::uint32_t kind = below(4);
+        if (kind == 0) b = some_body(tree);
+        if (kind == 1 || b == a) b = free_bodies + 1 + below(fixed_bodies + kinematic_bodies);
+        if (kind == 2) b = loose++;
+        if (kind == 3) b = some_body(trees.back()), trees.pop_back();
+      }
+      ends.push_back(a);
+      ends.push_back(b);
+      order.push_back(padding ? 0 : record++);
+    }
+    state_.contact_colours.push_back({begin, begin + count});
+  }
+  state_.tree_colours = tree_colour_count;
 }
 
 /// Moves bodies to where their pins meet, nearly.
@@ -223,6 +268,9 @@ template <class Scalar> void Maker<Scalar>::trees() {
     masses[row] = double(state_.reals[std::size_t(Buffer::mass)][row * schema(Buffer::mass).reals + 3]);
   }
   state_.trees.build(tree_links(1 + coloured_joints, 1 + loose_bodies, anchors, random_), masses, ids);
+  state_.nodes.build(state_.trees, masses);
+  for (const Buffer buffer : {Buffer::node_operator, Buffer::node_pending})
+    state_.reals[std::size_t(buffer)].resize(state_.nodes.rows() * schema(buffer).reals);
   for (std::size_t tree = 0; tree < state_.trees.trees(); tree++) assemble(state_.trees.tree(tree));
   state_.reals[std::size_t(Buffer::tree_rows)].resize(lay_out(state_.trees, 1).size * schema(Buffer::tree_rows).reals);
 }
@@ -243,6 +291,7 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.contact_rate = Scalar(relax ? 0 : 48);
     info.contact_mass_scale = Scalar(relax ? 1 : 0.9);
     info.contact_impulse_scale = Scalar(relax ? 0 : 0.1);
+    info.mean_share = Scalar(0.025);
     info.load_ahead = Scalar(relax ? 1 : 0);
     info.push_speed = Scalar(4);
     info.joint_rate = Scalar(relax ? 0 : 60);
@@ -263,10 +312,10 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   std::uint32_t rows[table_count] = {};
   rows[std::size_t(Table::body)] = body_count;
   rows[std::size_t(Table::joint)] = 1 + coloured_joints + tree_joints();
-  rows[std::size_t(Table::contact)] = 1 + colour_count * contact_blocks * 32;
+  rows[std::size_t(Table::contact)] = 1 + (colour_count * contact_blocks + tree_colour_count * tree_blocks) * 32;
   for (std::size_t i = 0; i < buffer_count; i++) {
     const Buffer buffer = Buffer(i);
-    if (buffer == Buffer::tree_rows) continue;  // as many as nodes, below
+    if (buffer == Buffer::tree_rows || table_of(buffer) == Table::node) continue;  // as many as nodes, below
     const std::uint32_t slots = buffer == Buffer::joint_rows ? coloured_joints : rows[std::size_t(table_of(buffer))] - 1;
     if (!is_index(buffer))
       state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);
@@ -276,9 +325,10 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   for (std::uint32_t row = 0; row < rows[std::size_t(Table::joint)]; row++) joint(row);
   for (std::uint32_t row = 1; row < body_count; row++) state_.indices[std::size_t(Buffer::bodies)].push_back(row);
   while (state_.indices[std::size_t(Buffer::bodies)].size() % 32 != 0) state_.indices[std::size_t(Buffer::bodies)].push_back(0);
+  trees();
+  tree_contacts();
   slots(Buffer::contact_ends, Buffer::contact_order, state_.contact_colours, colour_count, contact_blocks);
   slots(Buffer::joint_ends, Buffer::joint_order, state_.joint_colours, colour_count, joint_blocks);
-  trees();
   infos();
   return state_;
 }

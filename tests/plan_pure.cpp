@@ -10,7 +10,7 @@ namespace {
 /// Every signature there is, for two numbers of sub-steps.
 template <class Visit> void for_all_signatures(Visit&& visit) {
   for (const Mix& mix : mixes())
-    for (unsigned bits = 0; bits < 256; bits++)
+    for (unsigned bits = 0; bits < 512; bits++)
       for (std::uint32_t substeps : {1u, 4u}) {
         PlanSignature s;
         s.substeps = substeps;
@@ -18,11 +18,12 @@ template <class Visit> void for_all_signatures(Visit&& visit) {
         s.bodies = bits & 1;
         s.joints = bits & 2;
         s.shapes = bits & 4;
-        s.contacts = bits & 8;
+        s.free_contacts = bits & 8;
         s.restitution = bits & 16;
         s.drag = bits & 32;
         s.gyroscopic = bits & 64;
         s.trees = bits & 128;
+        s.tree_contacts = s.trees && bits & 256;
         visit(s);
       }
 }
@@ -193,8 +194,8 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
     CHECK((reason(plan, "joints") != "") == (!s.joints && !s.trees));
     CHECK((reason(plan, "joint rows") != "") == (!s.joints && s.trees));
     CHECK((reason(plan, "collision") != "") == !s.shapes);
-    CHECK((reason(plan, "impulses") != "") == !s.contacts);
-    CHECK((reason(plan, "restitution") != "") == (s.contacts && !s.restitution));
+    CHECK((reason(plan, "impulses") != "") == !s.contacts());
+    CHECK((reason(plan, "restitution") != "") == (s.contacts() && !s.restitution));
     CHECK((reason(plan, "drag") != "") == (s.bodies && !s.drag));
     CHECK((reason(plan, "gyroscopic terms") != "") == (s.bodies && !s.gyroscopic));
     if (s.bodies) CHECK(runs(plan, s.drag ? "integrate_drag" : "integrate") == int(s.substeps));
@@ -203,7 +204,12 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
     if (s.bodies && s.joints) CHECK(runs(plan, "joint_prepare") == int(s.substeps));
     for (const char* kernel : {"tree_prepare", "tree_solve", "tree_again", "tree_relax"})
       CHECK(runs(plan, kernel) == (s.bodies && s.trees ? int(s.substeps) : 0));
-    if (!s.contacts) CHECK(runs(plan, "contact_prepare") + runs(plan, "contact_solve") + runs(plan, "contact_store") == 0);
+    if (!s.contacts()) CHECK(runs(plan, "contact_prepare") + runs(plan, "contact_store") == 0);
+    for (const char* kernel : {"contact_warm", "contact_solve"}) CHECK((runs(plan, kernel) > 0) == (s.bodies && s.free_contacts));
+    for (const char* kernel : {"tree_contact_warm", "tree_collect", "tree_respond", "tree_contact_prepare"})
+      CHECK(runs(plan, kernel) == (s.bodies && s.tree_contacts ? int(s.substeps) : 0));
+    for (const char* kernel : {"tree_contact_solve", "tree_flush"})
+      CHECK(runs(plan, kernel) == (s.bodies && s.tree_contacts ? 2 * int(s.substeps) : 0));
     if (!s.bodies) CHECK(plan.entries.empty());
   });
 }

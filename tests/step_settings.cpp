@@ -47,7 +47,7 @@ TEST_CASE("report: counts of bodies, joints, pairs, contacts, points, colours, s
   CHECK(report->pairs == 2);
   CHECK(report->contacts == 2);
   CHECK(report->points == 5);   // four corners of the box, one of the ball
-  CHECK(report->colours == 1);  // the two share only what is fixed
+  CHECK(report->colours == 2);  // one of trees, one of what is free
   CHECK(world.contact_count() == 2);
   CHECK(report->transfer_bytes == 0);
   CHECK(report->total_ms > 0);

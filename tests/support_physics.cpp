@@ -189,7 +189,7 @@ void resolve(SphereContact& c, const Mode& mode) {
   PlanSignature signature;
   signature.substeps = 1;
   signature.places.fill(mode.place);
-  signature.bodies = signature.shapes = signature.contacts = true;
+  signature.bodies = signature.shapes = signature.free_contacts = true;
   signature.restitution = signature.impacts = c.restitution > 0;
   const StepPlan plan = make_plan(signature);
 

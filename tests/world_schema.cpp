@@ -10,6 +10,14 @@
 
 using namespace worldtest;
 
+namespace {
+/// The table whose rows a domain visits.
+Table own_table(Domain domain) {
+  if (domain == Domain::body) return Table::body;
+  return domain == Domain::joint || domain == Domain::tree ? Table::joint : Table::contact;
+}
+}  // namespace
+
 TEST_CASE("properties lie inside their buffer's row, aligned, and overlap nowhere") {
   std::map<Buffer, std::vector<std::string_view>> rows;
   std::set<std::string_view> names;
@@ -57,16 +65,21 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
       INFO(std::string(schema(a.buffer).name));
       CHECK(bound.insert(a.buffer).second);
       writes |= a.write;
-      const Table own = s.domain == Domain::body ? Table::body : s.domain == Domain::contact ? Table::contact : Table::joint;
-      CHECK((schema(a.buffer).table == own || schema(a.buffer).table == Table::body));
+      const Table table = schema(a.buffer).table, own = own_table(s.domain);
+      const bool of_node = table == Table::node && (s.domain == Domain::tree || s.domain == Domain::tree_contact);
+      CHECK((table == own || table == Table::body || of_node));
       if (schema(a.buffer).reals == 0) CHECK_FALSE(a.write);  // the host makes the lists
     }
     CHECK(writes);
     if (s.domain == Domain::body) CHECK(bound.contains(Buffer::bodies));
     if (s.domain == Domain::joint) CHECK((bound.contains(Buffer::joint_ends) || bound.contains(Buffer::joint_order)));
-    if (s.domain == Domain::tree)
-      for (const Buffer list : {Buffer::tree_blocks, Buffer::tree_parents, Buffer::tree_ends}) CHECK(bound.contains(list));
-    if (s.domain == Domain::contact) CHECK((bound.contains(Buffer::contact_ends) || bound.contains(Buffer::contact_order)));
+    if (s.domain == Domain::tree) {
+      for (const Buffer list : {Buffer::tree_blocks, Buffer::tree_parents}) CHECK(bound.contains(list));
+      CHECK((bound.contains(Buffer::tree_ends) || bound.contains(Buffer::tree_order)));
+    }
+    if (s.domain == Domain::tree_contact) CHECK(bound.contains(Buffer::contact_paths));
+    if (s.domain == Domain::contact || s.domain == Domain::free_contact)
+      CHECK((bound.contains(Buffer::contact_ends) || bound.contains(Buffer::contact_order)));
   }
 }
 

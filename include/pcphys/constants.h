@@ -28,6 +28,9 @@ inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi /
 inline constexpr double joint_damping_ratio = 2;
 /// Of what a sub-step is too long to resolve in the turning of a tree's bodies, this share is taken out (docs/joints.md).
 inline constexpr double tree_damping = 0.4;
+/// Of contacts with joint trees, the share of a sub-step's impulse that goes into its slow mean, on which the soft
+/// constraint does not leak (docs/joint-trees.md).
+inline constexpr double mean_impulse_share = 0.025;
 /// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
 inline constexpr double tree_spin_floor = 6e-5;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.

@@ -109,7 +109,7 @@ void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Sc
   for (int k = 20; k < 28; k++) out[k] = 0;
   for (int k = 0; k < 2; k++) out[28 + k] = combine(material_a[3], material_b[3], material_a[k], material_b[k]);
   out[30] = combine(material_a[6], material_b[6], material_a[2], material_b[2]);
-  out[31] = 0;
+  for (int k = 31; k < 36; k++) out[k] = 0;
 }
 
 /// Hands on the impulses of the last step's manifold: point by point to the same feature; what is left over to
@@ -122,6 +122,7 @@ void remember_impulses(const Scalar* before, const std::uint32_t* before_feature
   bool taken[4] = {}, given[4] = {};
   const auto hand_on = [&](int i, int j) {
     out[20 + i] = before[20 + j];
+    out[32 + i] = before[32 + j];
     given[i] = taken[j] = true;
   };
   for (int i = 0; i < count; i++)

@@ -16,6 +16,8 @@ using element_joint_order = uint;
 using element_tree_blocks = uint;
 using element_tree_parents = uint;
 using element_tree_ends = uint;
+using element_tree_order = uint;
+using element_contact_paths = uint;
 #define PC_TABLE(table, doc)
 #define PC_BUFFER(table, buffer, quads, doc) using element_##buffer = Scalar; constexpr uint quads_##buffer = quads;
 #define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
@@ -42,6 +44,8 @@ using element_tree_ends = uint;
 // loops, by domain
 #define PC_LOOP_body for (uint k = call.begin; k < call.end; k += PC_LANES) pc_kernel(io, pc_index(io.bodies + k));
 #define PC_LOOP_contact for (uint block = call.begin; block < call.end; block++) pc_kernel(io, Slot{block});
+#define PC_LOOP_free_contact PC_LOOP_contact
+#define PC_LOOP_tree_contact PC_LOOP_contact
 #define PC_LOOP_joint PC_LOOP_contact
 #define PC_LOOP_tree PC_LOOP_contact
 #define PC_READ(buffer) io.buffer = static_cast<const element_##buffer*>(call.buffers[unsigned(Buffer::buffer)]);

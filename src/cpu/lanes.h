@@ -28,6 +28,11 @@ PC_INLINE Real pc_load(const Scalar* p) { return *reinterpret_cast<const Real::V
 PC_INLINE void pc_store(Scalar* p, Real x) { *reinterpret_cast<Real::Vector*>(p) = x.v; }
 PC_INLINE Index pc_index(const uint* p) { return {p}; }
 PC_INLINE Mask pc_mask(uint flag) { return Real(Scalar(flag)) > Real(Scalar(0)); }
+PC_INLINE Mask pc_some(Index index) {
+  Mask m;
+  for (uint l = 0; l < PC_LANES; l++) m[l] = index.i[l] != 0 ? -1 : 0;
+  return m;
+}
 
 // pc_transpose_in: four consecutive reals of each lane's row become four Reals; pc_transpose_out reverses it.
 #if !defined(PC_DOUBLE) && PC_LANES == 4

@@ -47,6 +47,7 @@ PC_INLINE void pc_store(Scalar* p, Real x) { *p = x; }
 PC_INLINE Index pc_index(const uint* p) { return {*p}; }
 PC_INLINE Mask pc_mask(uint flag) { return flag != 0; }
 PC_INLINE bool pc_any(Mask m) { return m; }
+PC_INLINE Mask pc_some(Index i) { return i.i != 0; }
 #else
 #include "cpu/lanes.h"
 #endif
@@ -65,6 +66,8 @@ struct Vec3 {
 #if PC_LANES > 1
 PC_INLINE bool pc_any(Mask m) { return pc_mask_bits(m) != 0; }
 #endif
+
+PC_INLINE Index pc_each(const uint* list, Slot, uint i) { return pc_index(list + i); }
 
 // Four consecutive reals of row i: quad k of a buffer with `quads` of them a row.
 PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) {
@@ -126,9 +129,11 @@ PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uin
 #define PC_ST(buffer, slot, f, x) pc_store(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES, x)
 #define PC_ENDS(buffer, slot, side) pc_index(io.buffer + (std::size_t((slot).block) * 2u + (side)) * PC_LANES)
 #define PC_ORDER(buffer, slot) pc_index(io.buffer + std::size_t((slot).block) * PC_LANES)
-// what is the same for all lanes of a block: lists, and slots of the same lanes elsewhere
+// lists: what is the same for all lanes of a block, one of each lane from `i` on, slots of the same lanes elsewhere
 #define PC_UINT(buffer, i) io.buffer[i]
 #define PC_BLOCK(slot) (slot).block
+#define PC_W uint(PC_LANES)
+#define PC_EACH(buffer, slot, i) pc_each(io.buffer, slot, i)
 #define PC_NODE(slot, node) pc_node(slot, node)
 #define PC_IS(flag) pc_mask(flag)
 #define PC_ANY(mask) pc_any(mask)

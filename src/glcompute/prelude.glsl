@@ -29,6 +29,7 @@ Real pc_select(bool m, Real a, Real b) { return m ? a : b; }
 bool pc_and(bool a, bool b) { return a && b; }
 bool pc_or(bool a, bool b) { return a || b; }
 Real pc_abs(Real a) { return abs(a); }
+bool pc_some(uint row) { return row != 0u; }
 
 #include "math.inl"
 
@@ -50,9 +51,10 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 #define PC_ST(buffer, slot, f, x) PC_AT(buffer, slot, f) = x
 #define PC_ENDS(buffer, slot, side) io_##buffer[((slot).block * 2u + (side)) * PC_W + (slot).lane]
 #define PC_ORDER(buffer, slot) io_##buffer[(slot).block * PC_W + (slot).lane]
-// what is the same for all lanes of a block: lists, and slots of the same lanes elsewhere
+// lists: what is the same for all lanes of a block, one of each lane from `i` on, slots of the same lanes elsewhere
 #define PC_UINT(buffer, i) io_##buffer[i]
 #define PC_BLOCK(slot) (slot).block
+#define PC_EACH(buffer, slot, i) io_##buffer[(i) + (slot).lane]
 #define PC_NODE(slot, node) Slot(node, (slot).lane)
 #define PC_IS(flag) ((flag) != 0u)
 #define PC_ANY(mask) (mask)

@@ -2,10 +2,8 @@
 // the start of the step (so the solver touches each body once per visit; docs/impulses.md).
 #include "body_state.inl"
 #include "contact_rows.inl"
+#include "contact_masses.inl"
 
-PC_FN void pc_st3_rows(PC_IO Slot m, uint f, Vec3 v) {
-  PC_ST(contact_rows, m, f, v.x); PC_ST(contact_rows, m, f + 1u, v.y); PC_ST(contact_rows, m, f + 2u, v.z);
-}
 PC_FN Sym3 pc_responding_inertia(BodyState b) {
   precise Real xx = b.inertia.xx * b.response; precise Real xy = b.inertia.xy * b.response; precise Real xz = b.inertia.xz * b.response;
   precise Real yy = b.inertia.yy * b.response; precise Real yz = b.inertia.yz * b.response; precise Real zz = b.inertia.zz * b.response;
@@ -16,7 +14,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
   Quad head = PC_GATHER(contact, record, 0u);
   Quad p0 = PC_GATHER(contact, record, 1u); Quad p1 = PC_GATHER(contact, record, 2u); Quad p2 = PC_GATHER(contact, record, 3u); Quad p3 = PC_GATHER(contact, record, 4u);
-  Quad pushes = PC_GATHER(contact, record, 5u); Quad drag = PC_GATHER(contact, record, 6u); Quad material = PC_GATHER(contact, record, 7u);
+  Quad pushes = PC_GATHER(contact, record, 5u); Quad drag = PC_GATHER(contact, record, 6u); Quad mean = PC_GATHER(contact, record, 8u); Quad material = PC_GATHER(contact, record, 7u);
   Quad place_a = PC_GATHER(pose, ia, 0u); Quad place_b = PC_GATHER(pose, ib, 0u); Quad low_a = PC_GATHER(pose, ia, 2u); Quad low_b = PC_GATHER(pose, ib, 2u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Sym3 inertia_a = pc_responding_inertia(a); Sym3 inertia_b = pc_responding_inertia(b);
@@ -55,30 +53,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 i1 = pc_sym_mul(both, t1); Vec3 i2 = pc_sym_mul(both, t2); Vec3 in_ = pc_sym_mul(both, n);
   Vec3 h1 = pc_add(ha1, hb1); Vec3 h2 = pc_add(ha2, hb2); Vec3 hn = pc_add(han, hbn);
 
-  // friction block and twist
+  // responses in the contact frame: of the centre's velocity to impulses, of the turning to impulses, of the turning to couples
   precise Real k11 = k + pc_dot(ga1, ha1) + pc_dot(gb1, hb1); precise Real k12 = pc_dot(ga1, ha2) + pc_dot(gb1, hb2); precise Real k22 = k + pc_dot(ga2, ha2) + pc_dot(gb2, hb2);
-  precise Real det = k11 * k22 - k12 * k12; Real inverse_det = pc_inverse_or_zero(det);
-  precise Real t11 = k22 * inverse_det; precise Real t12 = -(k12 * inverse_det); precise Real t22 = k11 * inverse_det;
-  Real twist = pc_inverse_or_zero(pc_dot(n, in_));
   precise Real cn1 = pc_dot(gan, ha1) + pc_dot(gbn, hb1); precise Real cn2 = pc_dot(gan, ha2) + pc_dot(gbn, hb2);
+  precise Real nn = k + pc_dot(gan, han) + pc_dot(gbn, hbn);
+  Responses r;
+  r.l.xx = k11; r.l.xy = k12; r.l.xz = cn1; r.l.yy = k22; r.l.yz = cn2; r.l.zz = nn;
+  r.w1 = Vec3(pc_dot(t1, h1), pc_dot(t1, h2), pc_dot(t1, hn)); r.w2 = Vec3(pc_dot(t2, h1), pc_dot(t2, h2), pc_dot(t2, hn)); r.wn = Vec3(pc_dot(n, h1), pc_dot(n, h2), pc_dot(n, hn));
+  r.a.xx = pc_dot(t1, i1); r.a.xy = pc_dot(t1, i2); r.a.xz = pc_dot(t1, in_); r.a.yy = pc_dot(t2, i2); r.a.yz = pc_dot(t2, in_); r.a.zz = pc_dot(n, in_);
 
-  // normal rows: u_i = K [1, b_i, -a_i] and their products
-  precise Real nn = k + pc_dot(gan, han) + pc_dot(gbn, hbn); Real n1 = pc_dot(t1, hn); Real n2 = pc_dot(t2, hn);
-  Real m11 = pc_dot(t1, i1); Real m12 = pc_dot(t1, i2); Real m22 = pc_dot(t2, i2);
-  precise Real u0 = nn + n1 * b0 - n2 * a0; precise Real v0 = n1 + m11 * b0 - m12 * a0; precise Real x0 = n2 + m12 * b0 - m22 * a0;
-  precise Real u1 = nn + n1 * b1 - n2 * a1; precise Real v1 = n1 + m11 * b1 - m12 * a1; precise Real x1 = n2 + m12 * b1 - m22 * a1;
-  precise Real u2 = nn + n1 * b2 - n2 * a2; precise Real v2 = n1 + m11 * b2 - m12 * a2; precise Real x2 = n2 + m12 * b2 - m22 * a2;
-  precise Real u3 = nn + n1 * b3 - n2 * a3; precise Real v3 = n1 + m11 * b3 - m12 * a3; precise Real x3 = n2 + m12 * b3 - m22 * a3;
-  precise Real e0 = u0 + b0 * v0 - a0 * x0; precise Real q0 = pc_inverse_or_zero(e0) * w0;
-  precise Real e1 = u1 + b1 * v1 - a1 * x1; precise Real q1 = pc_inverse_or_zero(e1) * w1;
-  precise Real e2 = u2 + b2 * v2 - a2 * x2; precise Real q2 = pc_inverse_or_zero(e2) * w2;
-  precise Real e3 = u3 + b3 * v3 - a3 * x3; precise Real q3 = pc_inverse_or_zero(e3) * w3;
-  precise Real d01 = u0 + b1 * v0 - a1 * x0;
-  precise Real d02 = u0 + b2 * v0 - a2 * x0;
-  precise Real d03 = u0 + b3 * v0 - a3 * x0;
-  precise Real d12 = u1 + b2 * v1 - a2 * x1;
-  precise Real d13 = u1 + b3 * v1 - a3 * x1;
-  precise Real d23 = u2 + b3 * v2 - a3 * x2;
   precise Real spread = (a0 * a0 + b0 * b0 + a1 * a1 + b1 * b1 + a2 * a2 + b2 * b2 + a3 * a3 + b3 * b3) * share;
 
   // approach of each point, for restitution
@@ -94,12 +77,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_A, a0); PC_ST(contact_rows, m, ROW_A + 1u, a1); PC_ST(contact_rows, m, ROW_A + 2u, a2); PC_ST(contact_rows, m, ROW_A + 3u, a3);
   PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
   PC_ST(contact_rows, m, ROW_S, p0.s); PC_ST(contact_rows, m, ROW_S + 1u, p1.s); PC_ST(contact_rows, m, ROW_S + 2u, p2.s); PC_ST(contact_rows, m, ROW_S + 3u, p3.s);
-  PC_ST(contact_rows, m, ROW_MASS, q0); PC_ST(contact_rows, m, ROW_MASS + 1u, q1); PC_ST(contact_rows, m, ROW_MASS + 2u, q2); PC_ST(contact_rows, m, ROW_MASS + 3u, q3);
-  PC_ST(contact_rows, m, ROW_D, d01); PC_ST(contact_rows, m, ROW_D + 1u, d02); PC_ST(contact_rows, m, ROW_D + 2u, d03); PC_ST(contact_rows, m, ROW_D + 3u, d12); PC_ST(contact_rows, m, ROW_D + 4u, d13); PC_ST(contact_rows, m, ROW_D + 5u, d23);
-  PC_ST(contact_rows, m, ROW_TT, t11); PC_ST(contact_rows, m, ROW_TT + 1u, t12); PC_ST(contact_rows, m, ROW_TT + 2u, t22);
-  PC_ST(contact_rows, m, ROW_KW, pc_dot(n, h1)); PC_ST(contact_rows, m, ROW_KW + 1u, pc_dot(n, h2));
-  PC_ST(contact_rows, m, ROW_TWIST, twist);
-  PC_ST(contact_rows, m, ROW_C, cn1); PC_ST(contact_rows, m, ROW_C + 1u, cn2); PC_ST(contact_rows, m, ROW_C + 2u, pc_dot(n, hn)); PC_ST(contact_rows, m, ROW_C + 3u, pc_dot(t1, h1)); PC_ST(contact_rows, m, ROW_C + 4u, pc_dot(t1, h2)); PC_ST(contact_rows, m, ROW_C + 5u, pc_dot(t1, in_)); PC_ST(contact_rows, m, ROW_C + 6u, pc_dot(t2, h1)); PC_ST(contact_rows, m, ROW_C + 7u, pc_dot(t2, h2)); PC_ST(contact_rows, m, ROW_C + 8u, pc_dot(t2, in_));
+  pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
   PC_ST(contact_rows, m, ROW_MU_STATIC, material.v.x);
   PC_ST(contact_rows, m, ROW_MU_KINETIC, material.v.y);
   PC_ST(contact_rows, m, ROW_RADIUS, pc_sqrt(spread));
@@ -108,7 +86,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   PC_ST(contact_rows, m, ROW_IMPACT, material.s); PC_ST(contact_rows, m, ROW_SCALE, one);
   PC_ST(contact_rows, m, ROW_SHARE, share_a); pc_st3_rows(PC_PASS m, ROW_PATH, path);
-  PC_ST(contact_rows, m, ROW_K, pc_select(flight > zero, zero, pc_min(nn, pc_min(k11, k22))));
+  PC_ST(contact_rows, m, ROW_K, pc_select(flight > zero, zero, PC_LD(contact_rows, m, ROW_K)));
 
   // remembered impulses; they scale with the sub-step
   Real ratio = PC_INFO(impulse_ratio);
@@ -118,4 +96,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_impulses, m, IMPULSE_T, f1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, ft);
   PC_ST(contact_impulses, m, IMPULSE_LARGEST, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, zero);
   precise Real load = l0 + l1 + l2 + l3; PC_ST(contact_impulses, m, IMPULSE_BEFORE, load);
+  precise Vec3 means = mean.v * ratio; precise Real last_mean = mean.s * ratio;
+  PC_ST(contact_impulses, m, IMPULSE_MEAN, means.x); PC_ST(contact_impulses, m, IMPULSE_MEAN + 1u, means.y); PC_ST(contact_impulses, m, IMPULSE_MEAN + 2u, means.z); PC_ST(contact_impulses, m, IMPULSE_MEAN + 3u, last_mean);
 }

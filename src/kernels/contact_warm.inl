@@ -1,7 +1,8 @@
-// Start of a sub-step's impulses: what lasts of the last ones acts again (warm start), at the present arms.
+// Start of a sub-step's impulses between free bodies: what lasts of the last ones acts again (warm start), at the present
+// arms.
 #include "contact_rows.inl"
 #include "contact_response.inl"
-#include "contact_lasting.inl"
+#include "contact_warming.inl"
 
 // Where an arm has grown since the start of the step, the frozen effective masses are too large, by up to
 // (K + dK) / K with dK <= growth of arm^2 times trace I^-1; fast bodies would overshoot and gain energy.
@@ -21,12 +22,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   PC_ST(contact_rows, m, ROW_SCALE, pc_mass_scale(PC_PASS m, arms, a, b));
-  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
-  Lasting l = pc_lasting(PC_PASS m);
-  PC_ST(contact_impulses, m, IMPULSE_BEFORE, l.load);
-  PC_ST(contact_impulses, m, 0u, l.l0); PC_ST(contact_impulses, m, 1u, l.l1); PC_ST(contact_impulses, m, 2u, l.l2); PC_ST(contact_impulses, m, 3u, l.l3);
-  precise Real f1 = PC_LD(contact_impulses, m, IMPULSE_T) * l.share; precise Real f2 = PC_LD(contact_impulses, m, IMPULSE_T + 1u) * l.share; precise Real twist = PC_LD(contact_impulses, m, IMPULSE_T + 2u) * l.share;
-  PC_ST(contact_impulses, m, IMPULSE_T, f1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, twist);
-  Push push = pc_push(PC_PASS m, l.l0, l.l1, l.l2, l.l3);
-  pc_apply(PC_PASS ia, ib, a, b, arms, pc_combine(t1, f1, t2, f2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, twist));
+  Wrench w = pc_warm_start(PC_PASS m);
+  pc_apply(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple);
 }

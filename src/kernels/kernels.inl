@@ -3,8 +3,8 @@
 //
 //   PC_KERNEL(name, domain, stage, accesses)
 //
-// domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once), tree (a joint
-// tree a lane, blocks of trees of one shape).
+// domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once; free_contact and
+// tree_contact are those without and with a body of a tree), tree (a joint tree a lane, blocks of trees of one shape).
 // stage: whose backend runs it. accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in
 // GLSL; PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum).
 // Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
@@ -14,10 +14,10 @@
 
 #ifdef PC_ROWS
 PC_ROWS(contact, contact_rows, 64)
-PC_ROWS(contact, contact_impulses, 12)
+PC_ROWS(contact, contact_impulses, 16)
 PC_ROWS(contact, rolling_impulses, 4)
 PC_ROWS(joint, joint_rows, 36)
-PC_ROWS(joint, tree_rows, 160)
+PC_ROWS(joint, tree_rows, 168)
 #endif
 
 #ifdef PC_KERNEL
@@ -35,11 +35,17 @@ PC_KERNEL(tree_prepare, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents)
 PC_KERNEL(tree_solve, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse))
 PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_WRITE(tree_rows) PC_WRITE(motion))
+PC_KERNEL(tree_collect, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(node_pending) PC_WRITE(tree_rows))
+PC_KERNEL(tree_respond, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(tree_rows) PC_WRITE(node_operator) PC_WRITE(node_pending))
+PC_KERNEL(tree_flush, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(tree_order) PC_WRITE(tree_rows) PC_WRITE(node_pending) PC_WRITE(motion))
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
-PC_KERNEL(contact_warm, contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
-PC_KERNEL(contact_impact, contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(force) PC_WRITE(contact_rows) PC_WRITE(delta) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(motion))
+PC_KERNEL(contact_impact, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(force) PC_WRITE(contact_rows) PC_WRITE(delta) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(motion))
+PC_KERNEL(contact_warm, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_rolling, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(material) PC_WRITE(rolling_impulses) PC_WRITE(motion))
-PC_KERNEL(contact_solve, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
+PC_KERNEL(contact_solve, free_contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
+PC_KERNEL(tree_contact_warm, tree_contact, impulses, PC_READ(contact_paths) PC_READ(inertia) PC_READ(delta) PC_READ(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending))
+PC_KERNEL(tree_contact_prepare, tree_contact, impulses, PC_READ(contact_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
+PC_KERNEL(tree_contact_solve, tree_contact, impulses, PC_READ(contact_paths) PC_READ(contact_rows) PC_READ(node_operator) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(contact_restitution, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(delta) PC_WRITE(motion))
 PC_KERNEL(contact_store, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(contact))
 #endif

@@ -52,12 +52,12 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
     pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
     pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k, PC_REAL(1.0))));
   }
-  pc_tree_apply(PC_PASS m, t);
+  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real wanted = PC_REAL(1.0);
-  for (uint k = 0u; k < t.count; k++) pc_st3_tree(PC_PASS PC_NODE(m, t.first + k), TREE_DAMPING, pc_zero3());
+  for (uint k = 0u; k < t.count; k++) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   for (uint turn = 0u; turn < 4u; turn++) {
     pc_tree_residual(PC_PASS m, t, wanted);
     Real left = PC_REAL(0.0);
@@ -71,6 +71,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_st3_tree(PC_PASS n, TREE_C, pc_closing(PC_PASS pc_ld3_tree(PC_PASS n, TREE_GAP)));
   }
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
-  pc_tree_apply(PC_PASS m, t);
+  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
   for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
 }

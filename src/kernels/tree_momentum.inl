@@ -1,11 +1,12 @@
 // Keeps both momenta of a free tree. What a sweep changes satisfies the pins, but its torques are those of an inertia with
 // geometric stiffness in it, and of arms at the start of the sub-step: the sum of angular momenta is off by a term of
-// second order. It is taken out as a motion of the whole tree as one rigid body, which strains no joint. Before:
+// second order. It is taken out as a motion of the whole tree as one rigid body, which strains no joint. What came from
+// outside, as an impulse and a moment about the root's centre of mass, stays. Before:
 // TREE_X holds the changes of velocity, TREE_CHANGE those of angular momentum, TREE_PLACE where the bodies are.
-PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t) {
+PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
   Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
   if (!PC_ANY(free)) return;  // lint: allow (what it would do to trees with a fixed root is nothing)
-  Real mass = PC_REAL(0.0); Vec3 centre = pc_zero3(); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
+  Real mass = PC_REAL(0.0); Vec3 centre = pc_zero3(); Vec3 push = pc_negate(given_push); Vec3 turn = pc_negate(given_turn);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Real own = PC_LD(tree_rows, n, TREE_MASS); Vec3 r = pc_ld3_tree(PC_PASS n, TREE_PLACE); Vec3 p = pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), own);
     precise Real sum = mass + own; mass = sum; centre = pc_madd(centre, r, own); push = pc_add(push, p);
@@ -27,8 +28,8 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t) {
 }
 
 // Adds the changes to the bodies' velocities and momenta, both momenta of a free tree kept.
-PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t) {
-  pc_tree_conserve(PC_PASS m, t);
+PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
+  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);

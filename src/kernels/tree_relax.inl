@@ -13,5 +13,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_sub(here.v, place.v), pc_sub(here_low.v, low.v)));
     pc_st3_tree(PC_PASS n, TREE_X, pc_negate(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED))); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_negate(pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
   }
-  pc_tree_add_changes(PC_PASS m, t);
+  pc_tree_add_changes(PC_PASS m, t, pc_zero3(), pc_zero3());
 }

@@ -32,9 +32,9 @@ const uint TREE_MOMENTS = 142u; // inverse principal moments, and which is the m
 const uint TREE_BODY = 146u;    // inertia, world axes
 const uint TREE_FAST = 137u;    // share of the body's turning that the sub-step is too long to resolve, 0 to 1
 const uint TREE_TOTAL = 152u;   // mass of the whole tree, the unit of all masses, inertias and impulses here
-const uint TREE_DAMPING = 153u; // the impulse that does it
+const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
-const uint TREE_HAS_ROWS = 159u; // 1 where the joint has angle rows
+const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }
@@ -43,6 +43,12 @@ PC_FN Sym3 pc_lds_tree(PC_IO Slot n, uint f) {
 }
 PC_FN Mat3 pc_ldm_tree(PC_IO Slot n, uint f) { return pc_mat3(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u), pc_ld3_tree(PC_PASS n, f + 6u)); }
 PC_FN Sym6 pc_ldh_tree(PC_IO Slot n, uint f) { Sym6 h; h.l = pc_lds_tree(PC_PASS n, f); h.c = pc_ldm_tree(PC_PASS n, f + 6u); h.a = pc_lds_tree(PC_PASS n, f + 15u); return h; }
+// W^T times a motion, with the six rows of W at TREE_W (tree_sweep.inl).
+PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
+  Vec3 l = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W), a.l.x, pc_ld3_tree(PC_PASS n, TREE_W + 3u), a.l.y, pc_ld3_tree(PC_PASS n, TREE_W + 6u), a.l.z);
+  Vec3 r = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W + 9u), a.a.x, pc_ld3_tree(PC_PASS n, TREE_W + 12u), a.a.y, pc_ld3_tree(PC_PASS n, TREE_W + 15u), a.a.z);
+  return pc_add(l, r);
+}
 // Whether any lane's joint has angle rows. Skipping them changes no bit: where there are none they are zeros.
 PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(0.5); }
 // where a tree's nodes stand, and its topology

@@ -51,22 +51,27 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t) {
     precise Real beyond = fast - PC_REAL(0.02); precise Real whip = (pc_dot(swing, swing) - reach * PC_REAL(0.02)) * pc_inverse_or_zero(reach) * PC_REAL(10.0);
     precise Real share = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real scale = pc_min(share, PC_REAL(1.0)) * PC_INFO(tree_damping) * PC_REAL(-2.0);
     Sym3 stiffness = pc_sym_sub(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_lds_tree(PC_PASS n, TREE_BODY));
-    pc_st3_tree(PC_PASS n, TREE_DAMPING, pc_scale(pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), scale));
+    pc_st3_tree(PC_PASS n, TREE_OUTSIDE + 3u, pc_madd(pc_ld3_tree(PC_PASS n, TREE_OUTSIDE + 3u), pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), scale));
   }
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
   pc_tree_residual(PC_PASS m, t, one);
+  Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();  // what contacts give to the tree as a whole
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); push = pc_add(push, f.l);
+    precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l); turn = moment;
+  }
   for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
   pc_tree_damping(PC_PASS m, t);
-  for (uint turn = 0u; turn < 4u; turn++) {
+  for (uint round = 0u; round < 4u; round++) {
     pc_factor(PC_PASS m, t);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
-    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(turn), PC_REAL(0.0), one);
+    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one);
     for (uint k = 1u; k < t.count; k++) changed = pc_max(changed, pc_tree_revise(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), may_enter));
     if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
   }
   for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
-  pc_tree_apply(PC_PASS m, t);
+  pc_tree_apply(PC_PASS m, t, push, turn);
 }

@@ -14,11 +14,6 @@ PC_FN Six pc_w_mul(PC_IO Slot n, Vec3 t) {
   return pc_six(Vec3(pc_dot(pc_ld3_tree(PC_PASS n, TREE_W), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 3u), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 6u), t)),
                 Vec3(pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 9u), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 12u), t), pc_dot(pc_ld3_tree(PC_PASS n, TREE_W + 15u), t)));
 }
-PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
-  Vec3 l = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W), a.l.x, pc_ld3_tree(PC_PASS n, TREE_W + 3u), a.l.y, pc_ld3_tree(PC_PASS n, TREE_W + 6u), a.l.z);
-  Vec3 r = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W + 9u), a.a.x, pc_ld3_tree(PC_PASS n, TREE_W + 12u), a.a.y, pc_ld3_tree(PC_PASS n, TREE_W + 15u), a.a.z);
-  return pc_add(l, r);
-}
 // t of a node: what is collected there, and the springs of its angle rows where `limits` is 1.
 PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
   precise Vec3 t = f.a + pc_cross(f.l, rc);
@@ -31,7 +26,7 @@ PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
 // Fills TREE_X of all nodes and, at `pin`, the impulses of the pins, from the right-hand sides at `c`.
 PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
   for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Vec3 damping = pc_scale(pc_ld3_tree(PC_PASS n, TREE_DAMPING), limits); pc_st6_tree(PC_PASS n, TREE_F, pc_six(pc_zero3(), damping));
+    Slot n = PC_NODE(m, t.first + k); Six outside = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); pc_st6_tree(PC_PASS n, TREE_F, outside);
   }
   for (uint i = 1u; i < t.count; i++) {
     uint k = t.count - i; Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
@@ -74,12 +69,12 @@ PC_FN Vec3 pc_row_impulses(PC_IO Tree t, Slot n, uint k, Real limits) {
 
 // Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
 // between heavy ones as the difference of large numbers.
-PC_FN void pc_tree_apply(PC_IO Slot m, Tree t) {
+PC_FN void pc_tree_apply(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k);
     pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
   }
-  pc_tree_add_changes(PC_PASS m, t);
+  pc_tree_add_changes(PC_PASS m, t, given_push, given_turn);
 }
 
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.

@@ -77,6 +77,7 @@ void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
   out.blocks.clear();
   out.parents.clear();
   out.ends.clear();
+  out.order.clear();
   for (const std::vector<std::size_t>& trees : alike)
     for (std::size_t begin = 0; begin < trees.size(); begin += width) {
       const std::size_t lanes = std::min<std::size_t>(width, trees.size() - begin), count = forest.tree(trees[begin]).size();
@@ -87,10 +88,12 @@ void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
         out.parents.push_back(like.parent << 1 | std::uint32_t(like.flipped));
         const std::size_t at = out.ends.size();
         out.ends.resize(at + 2 * width, 0);
+        out.order.resize(at / 2 + width, 0);
         for (std::size_t lane = 0; lane < lanes; lane++) {
           const TreeNode& node = forest.tree(trees[begin + lane])[k];
           out.ends[at + lane] = node.body;
           out.ends[at + width + lane] = node.joint;
+          out.order[at / 2 + lane] = 1 + forest.first(trees[begin + lane]) + std::uint32_t(k);
         }
       }
     }

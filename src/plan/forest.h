@@ -27,6 +27,8 @@ class Forest {
   void build(std::span<const JointLink> links, std::span<const double> masses, std::span<const std::uint32_t> ids);
 
   std::size_t trees() const { return first_.empty() ? 0 : first_.size() - 1; }
+  /// Place of a tree's first node among all nodes.
+  std::uint32_t first(std::size_t i) const { return first_[i]; }
   /// Parents before children; the first is the root.
   std::span<const TreeNode> tree(std::size_t i) const { return std::span(nodes_).subspan(first_[i], first_[i + 1] - first_[i]); }
   /// Rows of the joints that stand in no tree, ascending.
@@ -49,6 +51,7 @@ struct TreeBlocks {
   std::vector<std::uint32_t> blocks;   // of each block its first node and their number
   std::vector<std::uint32_t> parents;  // of each node parent << 1 | flipped
   std::vector<std::uint32_t> ends;     // ends[(node * 2 + side) * width + lane]: body row, joint row
+  std::vector<std::uint32_t> order;    // order[node * width + lane]: 1 + the node's place in the forest; 0 pads
 
   std::uint32_t count() const { return std::uint32_t(blocks.size() / 2); }
 };

@@ -41,6 +41,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_mass_scale = Scalar(contact.mass_scale);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
+  biased.mean_share = Scalar(constants::mean_impulse_share);
   biased.push_speed = Scalar(settings.push_speed);
   biased.joint_rate = Scalar(joint.rate);
   biased.joint_mass_scale = Scalar(joint.mass_scale);

@@ -29,13 +29,15 @@ class Builder {
       if (!a.write) continue;
       current_[std::size_t(a.buffer)][0] = place == Place::cpu;
       current_[std::size_t(a.buffer)][1] = place == Place::gl;
+      host_wrote_[std::size_t(a.buffer)] |= place == Place::cpu;
     }
   }
 
-  /// What the host reads after a step: every buffer that holds state.
+  /// What the host reads after a step: every buffer that holds state; and of what both sides wrote the last version, since
+  /// the next step begins with the host's.
   void results(std::uint32_t substep) {
     for (std::size_t b = 0; b < table_buffer_count; b++)
-      if (holds_state(Buffer(b))) bring(Buffer(b), Place::cpu, substep);
+      if (holds_state(Buffer(b)) || host_wrote_[b]) bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
@@ -61,6 +63,7 @@ class Builder {
   StepPlan& plan_;
   std::array<std::array<bool, 2>, buffer_count> current_{};  // by Place
   std::array<bool, buffer_count> written_{}, read_{};        // on GL since the last barrier
+  std::array<bool, buffer_count> host_wrote_{};
 };
 
 void leave_out(const PlanSignature& s, StepPlan& plan) {
@@ -71,10 +74,19 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.joints && !s.trees) out("joints", "the world has no joints");
   if (!s.joints && s.trees) out("joint rows", "no joint closes a loop");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
-  if (!s.contacts) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
-  if (s.contacts && !s.restitution) out("restitution", "no contact has a restitution above zero");
-  if (s.contacts && !s.rolling) out("rolling friction", "no material that touches has any");
-  if (s.contacts && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
+  if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
+  if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
+  if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
+  if (s.contacts() && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
+}
+
+// contacts with trees first: the floor under what lies on them comes later (see Colouring)
+void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+  if (s.tree_contacts) {
+    b.kernel(Kernel::tree_contact_solve, phase, substep);
+    b.kernel(Kernel::tree_flush, phase, substep);
+  }
+  if (s.free_contacts) b.kernel(Kernel::contact_solve, phase, substep);
 }
 
 }  // namespace
@@ -87,7 +99,7 @@ StepPlan make_plan(const PlanSignature& s) {
 
   Builder b(s, plan);
   b.kernel(s.drag ? Kernel::begin_drag : Kernel::begin, Phase::first, 0);
-  if (s.contacts) b.kernel(Kernel::contact_prepare, Phase::first, 0);
+  if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);
     b.kernel(s.drag ? Kernel::integrate_drag : Kernel::integrate, Phase::biased, k);
@@ -95,23 +107,31 @@ StepPlan make_plan(const PlanSignature& s) {
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
-    if (s.contacts && s.impacts)
+    if (s.free_contacts && s.impacts)
       for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
-    if (s.contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
-    if (s.contacts && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
+    if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+    if (s.tree_contacts) {
+      b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
+      b.kernel(Kernel::tree_collect, Phase::biased, k);
+    }
+    if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
-    if (s.contacts) b.kernel(Kernel::contact_solve, Phase::biased, k);
+    if (s.tree_contacts) {
+      b.kernel(Kernel::tree_respond, Phase::biased, k);
+      b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
+    }
+    solve_contacts(b, s, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
     b.kernel(s.gyroscopic ? Kernel::advance : Kernel::advance_round, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
-    if (s.contacts && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
-    if (s.contacts) b.kernel(Kernel::contact_solve, Phase::relax, k);
+    if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
+    solve_contacts(b, s, Phase::relax, k);
   }
   const std::uint32_t last = s.substeps - 1;
-  if (s.contacts && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
-  if (s.contacts) b.kernel(Kernel::contact_store, Phase::relax, last);
+  if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
+  if (s.contacts()) b.kernel(Kernel::contact_store, Phase::relax, last);
   b.kernel(Kernel::synchronise, Phase::relax, last);
   b.results(last);
   return plan;

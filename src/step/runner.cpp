@@ -34,6 +34,8 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::tree_blocks: return &schedule.trees.lists().blocks;
     case Buffer::tree_parents: return &schedule.trees.lists().parents;
     case Buffer::tree_ends: return &schedule.trees.lists().ends;
+    case Buffer::tree_order: return &schedule.trees.lists().order;
+    case Buffer::contact_paths: return &schedule.contacts.paths();
     case Buffer::contact_ends: return &schedule.contacts.ends();
     case Buffer::contact_order: return &schedule.contacts.order();
     default: return nullptr;
@@ -45,6 +47,16 @@ bool needs_colours(const KernelSchema& k) {
     if (a.write && a.buffer < Buffer::table_buffers && schema(a.buffer).table == Table::body) return true;
   return false;
 }
+bool of_contacts(Domain domain) {
+  return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
+}
+std::span<const Range> ranges_of(Domain domain, const Schedule& schedule) {
+  if (domain == Domain::joint) return schedule.joints.ranges();
+  if (domain == Domain::tree) return schedule.trees.ranges();
+  if (domain == Domain::free_contact) return schedule.contacts.free_ranges();
+  if (domain == Domain::tree_contact) return schedule.contacts.tree_ranges();
+  return schedule.contacts.ranges();
+}
 std::size_t slots_of(Domain domain, const Schedule& schedule) {
   if (domain == Domain::tree) return schedule.trees.slots();
   return (domain == Domain::joint ? schedule.joints : schedule.contacts).slots();
@@ -53,7 +65,8 @@ std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule&
   if (buffer < Buffer::table_buffers) return state.tables.version(buffer) + 1;
   if (buffer == Buffer::bodies) return schedule.bodies_version + 1;
   if (buffer == Buffer::joint_ends || buffer == Buffer::joint_order) return schedule.joints.version() + 1;
-  if (buffer == Buffer::contact_ends || buffer == Buffer::contact_order) return schedule.contacts.version() + 1;
+  if (buffer == Buffer::contact_ends || buffer == Buffer::contact_order || buffer == Buffer::contact_paths)
+    return schedule.contacts.version() + 1;
   return schedule.trees.version() + 1;
 }
 
@@ -95,7 +108,7 @@ void Runner::forget() {
 }
 
 void Runner::keep(const WorldState& state, Buffer buffer) {
-  if (gl_ && schema(buffer).table != Table::contact) rollback_.keep(state.tables, buffer);
+  if (gl_ && schema(buffer).table != Table::contact && schema(buffer).table != Table::node) rollback_.keep(state.tables, buffer);
 }
 
 void Runner::undo(WorldState& state) {
@@ -120,7 +133,7 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
     if (entry.kind != PlanEntry::Kind::kernel) continue;
     const KernelSchema& k = schema(entry.kernel);
     if (k.domain == Domain::joint) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
-    if (k.domain == Domain::contact) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
+    if (of_contacts(k.domain)) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
     if (k.domain == Domain::tree) schedule.trees.pack(at(place_of(settings, k.stage)).backend->width());
     for (const Access& a : k.accesses) {
       bool& done = bound[std::size_t(entry.place)][std::size_t(a.buffer)];
@@ -163,11 +176,9 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
   const KernelSchema& k = schema(entry.kernel);
   const Range moving{0, std::uint32_t(schedule.bodies.size())};
   std::span<const Range> ranges(&moving, 1);
-  if (k.domain == Domain::joint) ranges = schedule.joints.ranges();
-  if (k.domain == Domain::contact) ranges = schedule.contacts.ranges();
-  if (k.domain == Domain::tree) ranges = schedule.trees.ranges();
-  const Range all{0, ranges.back().end};
-  if ((k.domain == Domain::joint || k.domain == Domain::contact) && !needs_colours(k)) ranges = std::span<const Range>(&all, 1);
+  if (k.domain != Domain::body) ranges = ranges_of(k.domain, schedule);
+  const Range all{ranges.front().begin, ranges.back().end};
+  if (!needs_colours(k)) ranges = std::span<const Range>(&all, 1);
   if (entry.place == Place::cpu)
     for (const Access& a : k.accesses)
       if (a.write && a.buffer < Buffer::table_buffers) {

@@ -5,19 +5,23 @@
 
 namespace pcphys {
 
-void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind) {
+void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
+                           const TreeNodes& trees) {
   rows_.resize(ends.size() - 1);
   std::iota(rows_.begin(), rows_.end(), 1u);
-  colour_rows(state, ends, kind);
+  colour_rows(state, ends, kind, &trees);
 }
 
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
                            std::span<const std::uint32_t> rows, std::uint32_t kind) {
   rows_.assign(rows.begin(), rows.end());
-  colour_rows(state, ends, kind);
+  colour_rows(state, ends, kind, nullptr);
 }
 
-void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind) {
+void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
+                                const TreeNodes* trees) {
+  trees_ = trees;
+  kinds_.clear();
   units_.clear();
   priorities_.clear();
   ends_.clear();
@@ -26,12 +30,14 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
     for (int side = 0; side < 2; side++) {
       const BodyRecord& body = state.bodies[ends[row][side]];
       ids[side] = body.index;
-      units_.push_back(body.kind == BodyKind::dynamic ? ends[row][side] : Colouring::fixed_unit);
+      const std::uint32_t unit = trees ? trees->unit(ends[row][side]) : ends[row][side];
+      units_.push_back(body.kind == BodyKind::dynamic ? unit : Colouring::fixed_unit);
       ends_.push_back(ends[row][side]);
     }
+    if (trees) kinds_.push_back(path_kind(*trees, ends[row][0], ends[row][1]));
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
   }
-  colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_);
+  colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);
   width_ = 0;
 }
 
@@ -40,6 +46,7 @@ void ColouredSlots::pack(std::uint32_t width) {
   width_ = width;
   version_++;
   pack_slots(colouring_, width, ends_, rows_, slots_);
+  if (any_with_trees()) pack_paths(*trees_, width, tree_ranges().back().end, slots_.ends, paths_);
 }
 
 void TreeSlots::build(const WorldState& state) {
@@ -55,6 +62,7 @@ void TreeSlots::build(const WorldState& state) {
     ids[row] = state.bodies[row].index;
   }
   forest_.build(links, masses, ids);
+  nodes_.build(forest_, masses);
   width_ = 0;
 }
 

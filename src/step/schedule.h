@@ -7,6 +7,7 @@
 
 #include "plan/coloring.h"
 #include "plan/forest.h"
+#include "plan/tree_paths.h"
 #include "step/backend.h"
 #include "world/state.h"
 
@@ -17,7 +18,9 @@ class ColouredSlots {
  public:
   /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ. Of all
   /// rows but 0, or of those in `rows`.
-  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind);
+  /// Constraints with bodies of `trees` come first, and whole trees are what answers them.
+  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
+              const TreeNodes& trees);
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::span<const std::uint32_t> rows,
               std::uint32_t kind);
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
@@ -27,6 +30,12 @@ class ColouredSlots {
   std::uint32_t constraints() const { return colouring_.constraints(); }
   std::size_t slots() const { return slots_.order.size(); }
   std::span<const Range> ranges() const { return slots_.ranges; }
+  /// Those of constraints with a body of a tree, and the others.
+  std::span<const Range> tree_ranges() const { return ranges().first(colouring_.leading_colours()); }
+  std::span<const Range> free_ranges() const { return ranges().subspan(colouring_.leading_colours()); }
+  bool any_with_trees() const { return colouring_.leading_colours() > 0; }
+  bool any_without_trees() const { return colouring_.leading_colours() < colouring_.colours(); }
+  std::vector<std::uint32_t>& paths() { return paths_; }
   std::vector<std::uint32_t>& ends() { return slots_.ends; }
   std::vector<std::uint32_t>& order() { return slots_.order; }
   /// Counts the changes of `ends` and `order`.
@@ -35,9 +44,12 @@ class ColouredSlots {
  private:
   Colouring colouring_;
   Slots slots_;
-  void colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind);
+  void colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
+                   const TreeNodes* trees);
 
-  std::vector<std::uint32_t> units_, priorities_, ends_, rows_;
+  std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
+  std::vector<std::uint8_t> kinds_;
+  const TreeNodes* trees_ = nullptr;
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
 };
@@ -49,6 +61,7 @@ class TreeSlots {
   void pack(std::uint32_t width);
 
   const Forest& forest() const { return forest_; }
+  const TreeNodes& nodes() const { return nodes_; }
   std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
   std::span<const Range> ranges() const { return {&all_, 1}; }
   TreeBlocks& lists() { return blocks_; }
@@ -56,6 +69,7 @@ class TreeSlots {
 
  private:
   Forest forest_;
+  TreeNodes nodes_;
   TreeBlocks blocks_;
   Range all_{0, 0};
   std::uint32_t width_ = 0;
@@ -66,7 +80,7 @@ class Schedule {
  public:
   /// Follows a change of the world's objects.
   void update_structure(const WorldState& state);
-  void update_contacts(const WorldState& state) { contacts.colour(state, state.contacts.ends, 1); }
+  void update_contacts(const WorldState& state) { contacts.colour(state, state.contacts.ends, 1, trees.nodes()); }
 
   std::vector<std::uint32_t> bodies;      // rows that move, padded with row 0 to a multiple of `padding`
   std::uint32_t moving = 0;               // without the padding

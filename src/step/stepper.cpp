@@ -170,7 +170,11 @@ struct Stepper::Inside {
     remember(s);
     PlanSignature wanted = signature(schedule);
     wanted.shapes = detector.possible();
-    wanted.contacts = s.contact_rows() > 1;
+    wanted.free_contacts = schedule.contacts.any_without_trees();
+    wanted.tree_contacts = schedule.contacts.any_with_trees();
+    if (other) s.tables.resize(Table::node, 1);
+    if (const std::uint32_t rows = schedule.trees.nodes().rows(); wanted.tree_contacts && s.tables.rows(Table::node) != rows)
+      s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
@@ -191,6 +195,7 @@ struct Stepper::Inside {
   Status undo(WorldState& s, const Status& failed) {
     runner.undo(s);
     detector.put_back(s);
+    s.tables.resize(Table::node, 1);  // nothing is pending
     s.contacts_version++;
     return failed;
   }
@@ -240,7 +245,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   Detector detector;
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
   PlanSignature wanted = in.signature(schedule);
-  wanted.shapes = wanted.contacts = detector.possible();
+  wanted.shapes = wanted.free_contacts = detector.possible();
+  wanted.tree_contacts = wanted.shapes && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
   return make_plan(wanted);

@@ -21,6 +21,8 @@ constexpr BufferSchema buffer_schemas[] = {
     {"tree_blocks", Table::joint, 0, "of a block of trees its first node and their number"},
     {"tree_parents", Table::joint, 0, "of a node twice its parent's place, and 1 where the joint's body a is the child"},
     {"tree_ends", Table::joint, 0, "body row and joint row of a node"},
+    {"tree_order", Table::node, 0, "row of a node in the table of nodes"},
+    {"contact_paths", Table::contact, 0, "of contacts with trees the way from the roots to their bodies"},
 #define PC_ROWS(domain, buffer, reals) {#buffer, Table::domain, reals, "scratch of the solver"},
 #include "kernels/kernels.inl"
 #undef PC_ROWS
@@ -65,7 +67,7 @@ const KernelSchema& schema(Kernel kernel) { return kernel_schemas[std::size_t(ke
 std::span<const PropertySchema> properties() { return property_schemas; }
 
 std::string_view name(Table table) {
-  constexpr std::string_view names[] = {"body", "joint", "contact", "shape"};
+  constexpr std::string_view names[] = {"body", "joint", "node", "contact", "shape"};
   return names[std::size_t(table)];
 }
 std::string_view name(Stage stage) {

@@ -36,6 +36,8 @@ enum class Buffer : std::uint8_t {
   tree_blocks,
   tree_parents,
   tree_ends,
+  tree_order,
+  contact_paths,
 #define PC_ROWS(domain, buffer, reals) buffer,
 #include "kernels/kernels.inl"
 #undef PC_ROWS
@@ -49,7 +51,8 @@ enum class Kernel : std::uint8_t {
   count
 };
 
-enum class Domain : std::uint8_t { body, contact, joint, tree };
+/// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others.
+enum class Domain : std::uint8_t { body, contact, free_contact, tree_contact, joint, tree };
 enum class Stage : std::uint8_t { integrate, joints, impulses };
 enum class PropertyType : std::uint8_t { real, vec3, quat, sym3 };
 enum class Role : std::uint8_t { input, state, derived, scratch };

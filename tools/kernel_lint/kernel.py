@@ -17,7 +17,7 @@ class Names:
     """What all kernel files declare: functions and whether they return integers, integer constants and members."""
 
     def __init__(self, sources):
-        self.functions, self.integers, self.integer_members = {}, set(), set()
+        self.functions, self.integers, self.integer_members = {}, {"PC_W"}, set()  # PC_W: lanes of a block
         for source in sources:
             t = source.tokens
             for i in range(len(t) - 2):

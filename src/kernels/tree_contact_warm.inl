@@ -1,0 +1,21 @@
+// contact_warm with bodies of trees: their impulses go into the solve of the tree (tree_collect), as it would answer them.
+#include "tree_math.inl"
+#include "tree_path.inl"
+#include "node_push.inl"
+#include "contact_rows.inl"
+#include "contact_response.inl"
+#include "contact_warming.inl"
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Way w = pc_way(PC_PASS m);
+  Index ia = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY)); Index ib = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY + 1u));
+  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
+  Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
+  Wrench wrench = pc_warm_start(PC_PASS m);
+  Vec3 torque_a = pc_add(wrench.couple, pc_cross(arms.a, wrench.impulse)); Vec3 torque_b = pc_add(wrench.couple, pc_cross(arms.b, wrench.impulse));
+  Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
+  pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, wrench.impulse, torque_a, torque_b);
+  pc_note_push(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(wrench.impulse), pc_negate(torque_a)));
+  pc_note_push(PC_PASS w, m, 1u, tree_b, pc_six(wrench.impulse, torque_b));
+}

@@ -1,0 +1,42 @@
+// Joint trees as contacts see them: which bodies answer together, and the ways between roots and bodies.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "plan/forest.h"
+
+namespace pcphys {
+
+/// The nodes of a forest as rows of the table of nodes (row 0 pads), by body row and by node row.
+class TreeNodes {
+ public:
+  /// Larger trees are left out: each of their contacts would wait for all others, and walk far. Their bodies answer
+  /// contacts alone, and their joints follow.
+  static constexpr std::uint32_t largest_tree = 64;
+
+  /// `masses` by body row, 0 for bodies that nothing moves.
+  void build(const Forest& forest, std::span<const double> masses);
+
+  std::uint32_t rows() const { return std::uint32_t(parent_.size()); }
+  /// Row of a body's node; 0: it stands in no tree, or in one that is too large, or does not move.
+  std::uint32_t node(std::uint32_t body) const { return node_[body]; }
+  /// What answers an impulse on the body: itself, or the first moving body of its tree.
+  std::uint32_t unit(std::uint32_t body) const { return unit_[body]; }
+  /// Of a node; 0 above a root.
+  std::uint32_t parent(std::uint32_t node) const { return parent_[node]; }
+  /// Levels between a node and its root.
+  std::uint32_t level(std::uint32_t node) const { return level_[node]; }
+
+ private:
+  std::vector<std::uint32_t> node_, unit_, parent_, level_;
+};
+
+/// Contacts of one kind have ways of about one length; 0 where neither body has a node.
+std::uint8_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b);
+
+/// The lists `contact_paths` of tree_path.inl for the first `blocks` blocks of slots. `ends` as in Slots.
+void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
+                std::vector<std::uint32_t>& out);
+
+}  // namespace pcphys
