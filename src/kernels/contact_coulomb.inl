@@ -3,9 +3,9 @@
 // mu_kinetic times the load acts against the sliding (a circle, not a pyramid).
 struct Friction { Real next1; Real next2; Real next_twist; Real change1; Real change2; Real change_twist; Twist after; };
 
-// f1, f2, ft: the impulses that act already; holding: the load by which what sticks is judged.
-PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real holding, Real mass_scale, Real f1, Real f2, Real ft) {
-  precise Real static_limit = holding * PC_LD(contact_rows, m, ROW_MU_STATIC); precise Real kinetic_limit = load * PC_LD(contact_rows, m, ROW_MU_KINETIC);
+// f1, f2, ft: the impulses that act already.
+PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real mass_scale, Real f1, Real f2, Real ft) {
+  precise Real static_limit = load * PC_LD(contact_rows, m, ROW_MU_STATIC); precise Real kinetic_limit = load * PC_LD(contact_rows, m, ROW_MU_KINETIC);
   precise Real twist_limit = kinetic_limit * PC_LD(contact_rows, m, ROW_RADIUS);
   Real t12 = PC_LD(contact_rows, m, ROW_TT + 1u);
   precise Real g1 = f1 - mass_scale * (PC_LD(contact_rows, m, ROW_TT) * v.v1 + t12 * v.v2); precise Real g2 = f2 - mass_scale * (t12 * v.v1 + PC_LD(contact_rows, m, ROW_TT + 2u) * v.v2);

@@ -145,7 +145,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real v2_after = v.v2 + (PC_LD(contact_rows, m, ROW_C + 1u) * push.n + PC_LD(contact_rows, m, ROW_C + 4u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 7u) * push.m2);
   precise Real wn_after = v.wn + (PC_LD(contact_rows, m, ROW_C + 2u) * push.n + PC_LD(contact_rows, m, ROW_C + 5u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 8u) * push.m2);
   after.v1 = v1_after; after.v2 = v2_after; after.wn = wn_after;
-  Friction f = pc_coulomb(PC_PASS m, after, push.n, push.n, scale, zero, zero, zero);
+  Friction f = pc_coulomb(PC_PASS m, after, push.n, scale, zero, zero, zero);
   precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
 
   // what has bounced does not bounce again at the end of the step
