@@ -49,7 +49,7 @@ class Bench {
     settings_.set_all(variant.place);
     settings_.lanes = variant.lanes;
     settings_.timings = false;
-    options_ = {settings_.narrow, settings_.contact_margin, settings_.max_pairs};
+    options_ = {settings_.narrow, settings_.contact_margin, settings_.restitution_threshold, settings_.max_pairs};
     schedule_.update_structure(state());
     for (Status status : {broad(), narrow()})
       if (!status) return status;

@@ -46,7 +46,7 @@ StepPlan plan_of_contact(Place place, bool restitution) {
   signature.substeps = 1;
   signature.places.fill(place);
   signature.bodies = signature.shapes = signature.free_contacts = true;
-  signature.restitution = restitution;
+  signature.restitution = signature.impacts = restitution;
   return make_plan(signature);
 }
 

@@ -36,7 +36,9 @@ double shortest_bone(const Simulated& run) {
 }
 
 double beyond_limits(const Simulated& run) {
-  return scenes::limit_excess(run.problem().scene, run.problem().world) * 180 / std::numbers::pi;
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < run.problem().scene.bodies.size(); i++) poses.push_back(run.pose(int(i)));
+  return scenes::limit_excess(run.problem().scene, run.problem().world, poses).any * 180 / std::numbers::pi;
 }
 
 struct Watch {

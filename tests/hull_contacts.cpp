@@ -254,7 +254,7 @@ TEST_CASE("hull: a pile comes to rest, nothing escapes, run to run the same") {
       scenes::RimWatch rim;
       for (int i = 0; i < 900; i++) {
         run(s.world, stepper, 1);
-        rim.look(s.scene, s.world);
+        rim.look(s.scene, scenes::poses(s.scene, s.world));
       }
       const scenes::Metrics m = scenes::measure(s.scene, s.world, rim);
       CHECK(m.escapes.through == 0);

@@ -222,6 +222,11 @@ TEST_CASE("set functions refuse") {
                 "Only dynamic bodies have a mass.");
   CHECK_REFUSED(w, w.set_material(p.a, {-1, 0, 0}), ErrorCode::bad_argument, "below zero");
   CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 2}), ErrorCode::bad_argument, "The restitution is 2");
+  CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, -0.1}), ErrorCode::bad_argument, "it is a length");
+  CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, 0, -1}), ErrorCode::bad_argument, "it is a length");
+  CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, infinity}), ErrorCode::not_finite, "not a number");
+  CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, 0, 0, Combine(9)}), ErrorCode::bad_argument, "rule");
+  CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, 0, 0, Combine::mean, Combine(5)}), ErrorCode::bad_argument, "rule");
   CHECK_REFUSED(w, w.set_drag(p.a, -1, 0), ErrorCode::bad_argument, "A drag is below zero; use 0 for none.");
   CHECK_REFUSED(w, w.set_drag(p.a, 0, not_a_number), ErrorCode::not_finite, "The angular drag of a body is nan");
   CHECK_REFUSED(w, w.add_force(p.a, Wrench{{not_a_number, 0, 0}, {}}), ErrorCode::not_finite,

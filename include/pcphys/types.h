@@ -28,12 +28,21 @@ enum class ShapeKind : std::uint8_t {
   plane      // the half space below local y = 0; fixed bodies only
 };
 
-/// How a body answers contacts. Coefficients are dimensionless.
-/// Of two bodies in contact: restitution is the mean, friction the geometric mean.
+/// How the coefficients of two bodies in contact make one. Where the two ask for different rules, the one that stands
+/// later in this list holds.
+enum class Combine : std::uint8_t { mean, geometric_mean, minimum, product, maximum };
+
+/// How a body answers contacts. Static and kinetic friction and restitution are dimensionless; of two bodies in contact
+/// they are combined by rule. Rolling and torsional friction are levers: the contact resists rolling, and turning about
+/// its normal, by a couple of up to that length times its load; the larger of the two bodies' holds, 0 is none.
 struct Material {
   double static_friction = 0.5;
   double kinetic_friction = 0.5;
   double restitution = 0;
+  double rolling_friction = 0;    // [m]
+  double torsional_friction = 0;  // [m]
+  Combine friction_rule = Combine::geometric_mean;
+  Combine restitution_rule = Combine::mean;
 };
 
 /// Two shapes collide when each one's category is in the other's mask, unless both have the same

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "collision/flights.h"
 #include "collision/hook.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
@@ -62,6 +63,17 @@ bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const flo
   return false;
 }
 
+/// The largest speed at which a gap closes [m/s].
+template <class Scalar> double fastest(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const Scalar* apart) {
+  float n[3], d[3], most = 0;
+  for (int k = 0; k < 3; k++) n[k] = float(m.normal[k]), d[k] = float(apart[k]);
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
+    most = std::max(most, passing(a, b, n, r, d).closing);
+  }
+  return double(most);
+}
+
 /// Of the sphere about the shape's centre that holds it [m].
 double bounding_radius(const ShapeDef& d) {
   switch (d.kind) {
@@ -75,6 +87,15 @@ double bounding_radius(const ShapeDef& d) {
 
 // Beyond it, turning closes no gap that is larger than the body: spins of everyday scenes keep their contacts' bits [rad].
 constexpr float wild_turn = 100.0f;
+
+/// Half a shape's thickness [m].
+float inner_radius(const ShapeDef& d) {
+  if (d.kind == ShapeKind::plane) return std::numeric_limits<float>::infinity();
+  if (d.kind == ShapeKind::box) return float(std::min({d.size.x, d.size.y, d.size.z}));
+  if (d.kind == ShapeKind::hull) return float(d.convex.inner_radius());
+  return float(d.kind == ShapeKind::cylinder ? std::min(d.size.x, d.size.y) : d.size.x);
+}
+
 constexpr float largest_turn = 2.0f;  // beyond it a turning surface comes no further outward [rad]
 
 }  // namespace
@@ -91,13 +112,24 @@ void Detector::rebuild(const WorldState& s) {
   hints_.clear();
   bool some_dynamic = false;
   std::uint32_t solid = 0;
+  std::vector<bool> jointed(s.bodies.size());
+  for (std::uint32_t row = 1; row < s.joints.size(); row++)
+    for (std::uint32_t body : {s.joints[row].body_a, s.joints[row].body_b}) jointed[s.body_ids.row(body)] = true;
   for (std::uint32_t i = 0; i < s.shapes.size(); i++) {
     const ShapeRecord& shape = s.shapes[i];
     if (!shape.alive || (shape.filter.mask == 0 && shape.filter.group <= 0)) continue;
     const std::uint32_t row = s.body_ids.row(shape.body);
     const auto [across, any] = levers(shape.def);
-    proxies_[i] = {shape.def.kind, true, shape.def.local == Pose{},  row,
-                   across,         any,  bounding_radius(shape.def), shape.def.convex.data()};
+    proxies_[i] = {shape.def.kind,
+                   true,
+                   shape.def.local == Pose{},
+                   row,
+                   across,
+                   any,
+                   bounding_radius(shape.def),
+                   s.responds(row) ? inner_radius(shape.def) : 0.0f,
+                   jointed[row],
+                   shape.def.convex.data()};
     pairs_.add(i, !s.stands(row));
     some_dynamic |= s.responds(row);
     solid++;
@@ -105,9 +137,10 @@ void Detector::rebuild(const WorldState& s) {
   possible_ = some_dynamic && solid > 1;
 }
 
-bool Detector::may_bounce(const WorldState& s) {
+bool Detector::some_material(const WorldState& s, std::initializer_list<std::uint32_t> offsets) {
   for (std::uint32_t row = 0; row < s.bodies.size(); row++)
-    if (s.tables.get(Buffer::material, row, 2) > 0) return true;
+    for (std::uint32_t k : offsets)
+      if (s.tables.get(Buffer::material, row, k) > 0) return true;
   return false;
 }
 
@@ -193,7 +226,6 @@ Status Detector::find_contacts(WorldState& s, double dt, const Options& options,
 template <class Scalar>
 Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   const auto pairs = pairs_.pairs();
-  const BodyReader<Scalar> bodies(s.tables);
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
   const Scalar* before = s.tables.data<Scalar>(Buffer::contact);
   const std::uint32_t before_rows = s.contact_rows();
@@ -206,42 +238,50 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   hints_.resize(pairs.size());
   found = {};
   found.pairs = std::uint32_t(pairs.size());
+  look_ahead(s, dt, options, scratch);
+  std::size_t flight = 0;
   for (std::size_t i = 0; i < pairs.size(); i++) {
     const auto [a, b] = pairs[i];
     if (!overlap(tight_[a], tight_[b])) continue;
-    const ContactKey key{a, b};
-    const auto [row_a, row_b] = s.ends_of(key);
-    const bool swap = row_a != proxies_[a].body;
-    const std::uint32_t first = swap ? b : a, second = swap ? a : b;
-    ShapeView<Scalar> there = scratch.shapes[second];
-    bodies.shift(row_a, row_b, there.p);
+    double impact = 0;
     Manifold<Scalar> manifold;
-    const Scalar margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
-    if (options.narrow == NarrowPhase::fcl)
-      fcl_hook()(scratch.shapes[first], there, margin, manifold);
-    else
-      narrow(scratch.shapes[first], there, margin, hints_[i], manifold);
-    Scalar apart[3] = {};
-    bodies.shift(row_a, row_b, apart);
-    const float apart_f[3] = {float(apart[0]), float(apart[1]), float(apart[2])};
-    if (!closes(manifold, twists_[row_a], twists_[row_b], apart_f, options.contact_margin, dt, fall,
-                proxies_[a].radius + proxies_[b].radius))
-      continue;
+    const Sight<Scalar> view = sight(s, scratch, std::uint32_t(i), options);
+    const std::uint32_t row_a = view.rows[0], row_b = view.rows[1];
+    if (flight < scratch.flights.size() && scratch.flights[flight].pair == i) {
+      Flight<Scalar>& f = scratch.flights[flight++];
+      if (!settle(s, dt, options, scratch, view, f)) continue;
+      manifold = f.manifold;
+      impact = f.impact;
+    } else {
+      find(options, view, scratch.shapes[view.shapes[0]], view.there, std::uint32_t(i), manifold);
+      const float apart[3] = {float(view.apart[0]), float(view.apart[1]), float(view.apart[2])};
+      if (!closes(manifold, twists_[row_a], twists_[row_b], apart, options.contact_margin, dt, fall,
+                  proxies_[a].radius + proxies_[b].radius))
+        continue;
+      to_light_side(manifold, share_of(s.tables, row_a, row_b));
+      if (proxies_[a].jointed || proxies_[b].jointed) impact = -1;
+    }
 
+    const ContactKey key{a, b};
     const std::uint32_t row = std::uint32_t(next_.keys.size());
     next_.keys.push_back(key);
     next_.ends.push_back({row_a, row_b});
     next_.features.push_back({});
     if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
     Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
-    write_contact(manifold, materials + std::size_t(row_a) * 4, materials + std::size_t(row_b) * 4, out,
-                  next_.features[row].data());
+    const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
+    write_contact(manifold, of_a, of_b, out, next_.features[row].data());
+    out[31] = Scalar(impact);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
     if (old < before_rows && s.contacts.keys[old] == key)
       remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(options.contact_margin), out,
                         next_.features[row].data());
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
+    found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
+    found.impacts |=
+        impact > 0 || (impact == 0 && out[30] > 0 &&
+                       fastest(manifold, twists_[row_a], twists_[row_b], view.apart) + fall / dt >= options.least_bounce);
   }
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;

@@ -1,11 +1,14 @@
 // Finds the contacts of a step: boxes, pairs, manifolds, and each manifold's memory from the last step.
 // What it finds depends on poses and velocities alone, never on what the broad phase remembers.
 #pragma once
+#include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
 #include "collision/aabb.h"
+#include "collision/flights.h"
 #include "collision/narrow.h"
 #include "collision/pair_cache.h"
 #include "collision/twist.h"
@@ -19,11 +22,14 @@ class Detector {
   struct Options {
     NarrowPhase narrow = NarrowPhase::native;
     double contact_margin = 0.02;
+    double least_bounce = 0;  // slower approaches do not bounce [m/s]
     std::size_t max_pairs = 0;
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
     bool restitution = false;  // some contact bounces
+    bool impacts = false;      // or is between shapes that meet in flight
+    bool rolling = false;      // some contact resists rolling or turning
     bool changed = false;      // other pairs touch than in the last step
   };
 
@@ -35,8 +41,9 @@ class Detector {
   void put_back(WorldState& state);
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
-  /// Whether some body's restitution is above zero.
-  static bool may_bounce(const WorldState& state);
+  /// Whether some body has restitution, rolling or torsional friction.
+  static bool may_bounce(const WorldState& state) { return some_material(state, {2}); }
+  static bool may_resist_rolling(const WorldState& state) { return some_material(state, {4, 5}); }
 
  private:
   /// What does not change while the structure stays, compact and by shape index.
@@ -46,19 +53,39 @@ class Detector {
     std::uint32_t body = 0;              // row
     // how far a turn of one radian moves its surface outward: a turn across its axis (the body's y), any turn
     float lever_across = 0, lever_any = 0;
-    double radius = 0;  // of the sphere about its centre that holds it
+    double radius = 0;     // of the sphere about its centre that holds it
+    float inner = 0;       // half its thickness; 0: its body does not move by forces
+    bool jointed = false;  // its body hangs on joints
     const HullData* hull = nullptr;
   };
 
   template <class Scalar> struct Scratch {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
     AlignedBytes contacts;                  // the table of the next step
+    std::vector<Flight<Scalar>> flights;    // in the order of the pairs
   };
 
+  static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
   void rebuild(const WorldState& state);
   template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  template <class Scalar>
+  Sight<Scalar> sight(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, const Options& options) const;
+  template <class Scalar>
+  void find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
+            std::uint32_t pair, Manifold<Scalar>& manifold);
+  /// The smaller of what may move of the two [m].
+  float thickness(std::uint32_t a, std::uint32_t b) const;
+  /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
+  template <class Scalar> void look_ahead(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
+  /// Whether a contact comes of it, once all flights are known.
+  template <class Scalar>
+  bool settle(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch,
+              const Sight<Scalar>& view, Flight<Scalar>& flight);
+  template <class Scalar>
+  void fly(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch, const Sight<Scalar>& view,
+           Flight<Scalar>& flight);
   template <class Scalar> Scratch<Scalar>& scratch();
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
@@ -67,6 +94,7 @@ class Detector {
   std::vector<Aabb> tight_;
   std::vector<float> reach_;   // how far a shape may come this step [m]
   std::vector<Twist> twists_;  // of bodies, by row
+  std::vector<float> struck_;  // of bodies: when they first meet something in flight; dt: not in this step [s]
   PairCache pairs_;
   std::vector<std::uint32_t> hints_, next_hints_;
   ContactColumns next_;  // of the next step, or of the last one

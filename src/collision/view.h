@@ -1,5 +1,6 @@
 // Between tables and collision shapes: where a shape stands, its box, its contact row.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -109,6 +110,18 @@ template <class Scalar> Aabb box_of(const ShapeView<Scalar>& view, Vec3 centre, 
   return box;
 }
 
+/// Two coefficients as one; the rules' numbers are those of `Combine`.
+template <class Scalar> Scalar combine(Scalar rule_a, Scalar rule_b, Scalar a, Scalar b) {
+  switch (Combine(std::uint8_t(std::max(rule_a, rule_b)))) {
+    case Combine::mean: return (a + b) * Scalar(0.5);
+    case Combine::geometric_mean: return std::sqrt(a * b);
+    case Combine::minimum: return std::min(a, b);
+    case Combine::product: return a * b;
+    case Combine::maximum: break;
+  }
+  return std::max(a, b);
+}
+
 /// A manifold as a row of the contact table (properties.inl), without impulses.
 template <class Scalar>
 void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Scalar* material_b, Scalar* out,
@@ -122,9 +135,8 @@ void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Sc
     features[i] = real ? m.points[i].feature : 0xffffffffu;
   }
   for (int k = 20; k < 28; k++) out[k] = 0;
-  out[28] = std::sqrt(material_a[0] * material_b[0]);
-  out[29] = std::sqrt(material_a[1] * material_b[1]);
-  out[30] = (material_a[2] + material_b[2]) * Scalar(0.5);
+  for (int k = 0; k < 2; k++) out[28 + k] = combine(material_a[3], material_b[3], material_a[k], material_b[k]);
+  out[30] = combine(material_a[6], material_b[6], material_a[2], material_b[2]);
   for (int k = 31; k < 36; k++) out[k] = 0;
 }
 

@@ -32,15 +32,19 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real share = pc_inverse_or_zero(count);
   precise Vec3 ra = (p0.v * w0 + p1.v * w1 + p2.v * w2 + p3.v * w3) * share;
   Vec3 apart = pc_add(pc_sub(place_a.v, place_b.v), pc_sub(low_a.v, low_b.v));
-  Vec3 rb = pc_add(ra, apart);
-  Vec3 d0 = pc_sub(p0.v, ra); Vec3 d1 = pc_sub(p1.v, ra); Vec3 d2 = pc_sub(p2.v, ra); Vec3 d3 = pc_sub(p3.v, ra);
+  // effective masses are those of the arms at impact, which pc_arms gives when the bodies have come so far
+  precise Real k = a.inverse_mass + b.inverse_mass; precise Real share_a = b.inverse_mass * pc_inverse_or_zero(k);
+  precise Real rest_a = share_a - PC_REAL(1.0); Real flight = pc_max(material.s, PC_REAL(0.0));
+  precise Vec3 path = (b.v - a.v) * flight;
+  Vec3 start_a = ra; Vec3 start_b = pc_add(ra, apart);
+  ra = pc_madd(start_a, path, share_a); Vec3 rb = pc_madd(start_b, path, rest_a);
+  Vec3 d0 = pc_sub(p0.v, start_a); Vec3 d1 = pc_sub(p1.v, start_a); Vec3 d2 = pc_sub(p2.v, start_a); Vec3 d3 = pc_sub(p3.v, start_a);
   precise Real a0 = pc_dot(d0, t1) * w0; precise Real b0 = pc_dot(d0, t2) * w0;
   precise Real a1 = pc_dot(d1, t1) * w1; precise Real b1 = pc_dot(d1, t2) * w1;
   precise Real a2 = pc_dot(d2, t1) * w2; precise Real b2 = pc_dot(d2, t2) * w2;
   precise Real a3 = pc_dot(d3, t1) * w3; precise Real b3 = pc_dot(d3, t2) * w3;
 
   // angular parts of unit impulses t1, t2, n at the centre
-  precise Real k = a.inverse_mass + b.inverse_mass;
   Vec3 ga1 = pc_cross(ra, t1); Vec3 ga2 = pc_cross(ra, t2); Vec3 gan = pc_cross(ra, n);
   Vec3 gb1 = pc_cross(rb, t1); Vec3 gb2 = pc_cross(rb, t2); Vec3 gbn = pc_cross(rb, n);
   Vec3 ha1 = pc_sym_mul(inertia_a, ga1); Vec3 ha2 = pc_sym_mul(inertia_a, ga2); Vec3 han = pc_sym_mul(inertia_a, gan);
@@ -69,7 +73,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real approach2 = vn + b2 * r1 - a2 * r2;
   precise Real approach3 = vn + b3 * r1 - a3 * r2;
 
-  pc_st3_rows(PC_PASS m, ROW_N, n); pc_st3_rows(PC_PASS m, ROW_T, t1); pc_st3_rows(PC_PASS m, ROW_ARM_A, ra); pc_st3_rows(PC_PASS m, ROW_ARM_B, rb);
+  pc_st3_rows(PC_PASS m, ROW_N, n); pc_st3_rows(PC_PASS m, ROW_T, t1); pc_st3_rows(PC_PASS m, ROW_ARM_A, start_a); pc_st3_rows(PC_PASS m, ROW_ARM_B, start_b);
   PC_ST(contact_rows, m, ROW_A, a0); PC_ST(contact_rows, m, ROW_A + 1u, a1); PC_ST(contact_rows, m, ROW_A + 2u, a2); PC_ST(contact_rows, m, ROW_A + 3u, a3);
   PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
   PC_ST(contact_rows, m, ROW_S, p0.s); PC_ST(contact_rows, m, ROW_S + 1u, p1.s); PC_ST(contact_rows, m, ROW_S + 2u, p2.s); PC_ST(contact_rows, m, ROW_S + 3u, p3.s);
@@ -80,8 +84,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_E, material.v.z);
   PC_ST(contact_rows, m, ROW_APPROACH, approach0); PC_ST(contact_rows, m, ROW_APPROACH + 1u, approach1); PC_ST(contact_rows, m, ROW_APPROACH + 2u, approach2); PC_ST(contact_rows, m, ROW_APPROACH + 3u, approach3);
 
-  precise Real share_a = b.inverse_mass * pc_inverse_or_zero(k);
-  PC_ST(contact_rows, m, ROW_SHARE, share_a);
+  PC_ST(contact_rows, m, ROW_IMPACT, material.s); PC_ST(contact_rows, m, ROW_SCALE, one);
+  PC_ST(contact_rows, m, ROW_SHARE, share_a); pc_st3_rows(PC_PASS m, ROW_PATH, path);
+  PC_ST(contact_rows, m, ROW_K, pc_select(flight > zero, zero, PC_LD(contact_rows, m, ROW_K)));
 
   // remembered impulses; they scale with the sub-step
   Real ratio = PC_INFO(impulse_ratio);

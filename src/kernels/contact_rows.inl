@@ -23,8 +23,10 @@ const uint ROW_RADIUS = 51u;   // lever of the twist friction: root mean square 
 const uint ROW_E = 52u;        // restitution
 const uint ROW_APPROACH = 53u; // relative normal velocity of each point at the start of the step
 const uint ROW_SHARE = 57u;   // of body a in what the arms must shift by, see pc_arms
-const uint ROW_K = 58u;       // smallest response of the three directions at the centre
+const uint ROW_K = 58u;       // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
 const uint ROW_SCALE = 59u;   // of all effective masses in this sub-step, see pc_mass_scale
+const uint ROW_IMPACT = 60u;  // contact_impact's: below 0 none of it, 0 where it bounces, above 0 always
+const uint ROW_PATH = 61u;    // b's way against a until they meet
 // impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
 // the step 8..11, slow means 12..15
 const uint IMPULSE_T = 4u;

@@ -18,7 +18,9 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real me
   Real mass_scale = pc_select(open, PC_REAL(1.0), PC_INFO(contact_mass_scale));
   Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
   precise Real next = impulse - mass * mass_scale * (vn + bias) - impulse_scale * (impulse - mean);
-  return pc_snap(pc_max(next, PC_REAL(0.0)));
+  // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
+  Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
+  return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));
 }
 
 // How the separations changed since the start of the step: of the centre, and by how the bodies turned.

@@ -13,8 +13,9 @@
 //   PC_ROWS(domain, buffer, reals)            array of structures of arrays, the backend's width
 
 #ifdef PC_ROWS
-PC_ROWS(contact, contact_rows, 60)
+PC_ROWS(contact, contact_rows, 64)
 PC_ROWS(contact, contact_impulses, 16)
+PC_ROWS(contact, rolling_impulses, 4)
 PC_ROWS(joint, joint_rows, 36)
 PC_ROWS(joint, tree_rows, 168)
 #endif
@@ -39,7 +40,9 @@ PC_KERNEL(tree_collect, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents)
 PC_KERNEL(tree_respond, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(tree_rows) PC_WRITE(node_operator) PC_WRITE(node_pending))
 PC_KERNEL(tree_flush, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(tree_order) PC_WRITE(tree_rows) PC_WRITE(node_pending) PC_WRITE(motion))
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
+PC_KERNEL(contact_impact, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(force) PC_WRITE(contact_rows) PC_WRITE(delta) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(motion))
 PC_KERNEL(contact_warm, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
+PC_KERNEL(contact_rolling, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(material) PC_WRITE(rolling_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, free_contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(tree_contact_warm, tree_contact, impulses, PC_READ(contact_paths) PC_READ(inertia) PC_READ(delta) PC_READ(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_contact_prepare, tree_contact, impulses, PC_READ(contact_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))

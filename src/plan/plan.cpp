@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pcphys/constants.h"
+
 namespace pcphys {
 namespace {
 
@@ -71,6 +73,8 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
+  if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
+  if (s.contacts() && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
 }
 
 // contacts with trees first: the floor under what lies on them comes later (see Colouring)
@@ -99,11 +103,15 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    // before what lasts of the contacts acts again: an impact is between velocities that bodies have
+    if (s.free_contacts && s.impacts)
+      for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
     if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
     if (s.tree_contacts) {
       b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
       b.kernel(Kernel::tree_collect, Phase::biased, k);
     }
+    if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
     if (s.tree_contacts) {
@@ -115,6 +123,7 @@ StepPlan make_plan(const PlanSignature& s) {
     b.kernel(s.gyroscopic ? Kernel::advance : Kernel::advance_round, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
+    if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
     solve_contacts(b, s, Phase::relax, k);
   }
   const std::uint32_t last = s.substeps - 1;

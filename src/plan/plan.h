@@ -21,6 +21,8 @@ struct PlanSignature {
   bool free_contacts = false;               // some do in this step, of bodies that stand in no tree
   bool tree_contacts = false;               // and of bodies that do
   bool restitution = false;                 // some contact bounces
+  bool impacts = false;                     // or is between shapes that meet in flight
+  bool rolling = false;                     // some contact resists rolling, or turning about its normal
   bool contacts() const { return free_contacts || tree_contacts; }
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };

@@ -89,7 +89,9 @@ struct Stepper::Inside {
     began = now;
   }
 
-  Detector::Options detection() const { return {settings.narrow, settings.contact_margin, settings.max_pairs}; }
+  Detector::Options detection() const {
+    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs};
+  }
 
   /// What the objects of `schedule` need; contacts are for the caller to say.
   PlanSignature signature(const Schedule& from) const {
@@ -212,6 +214,8 @@ struct Stepper::Inside {
     if (const std::uint32_t rows = schedule.trees.nodes().rows(); wanted.tree_contacts && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
+    wanted.impacts = found.impacts;
+    wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
@@ -285,7 +289,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   PlanSignature wanted = in.signature(schedule);
   wanted.shapes = wanted.free_contacts = detector.possible();
   wanted.tree_contacts = wanted.shapes && wanted.trees;
-  wanted.restitution = detector.may_bounce(world.state());
+  wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
+  wanted.rolling = detector.may_resist_rolling(world.state());
   return make_plan(wanted);
 }
 

@@ -29,6 +29,10 @@ void write_material(Tables& t, std::uint32_t row, const Material& m) {
   t.set(Buffer::material, row, 0, m.static_friction);
   t.set(Buffer::material, row, 1, m.kinetic_friction);
   t.set(Buffer::material, row, 2, m.restitution);
+  t.set(Buffer::material, row, 3, double(m.friction_rule));
+  t.set(Buffer::material, row, 4, m.rolling_friction);
+  t.set(Buffer::material, row, 5, m.torsional_friction);
+  t.set(Buffer::material, row, 6, double(m.restitution_rule));
 }
 
 std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) {
@@ -326,7 +330,8 @@ Result<Material> World::material(BodyId body) const {
   if (!valid(body)) return stale("body");
   const std::uint32_t row = state_->body_ids.row(body.index);
   const Tables& t = state_->tables;
-  return Material{t.get(Buffer::material, row, 0), t.get(Buffer::material, row, 1), t.get(Buffer::material, row, 2)};
+  const auto get = [&](std::uint32_t k) { return t.get(Buffer::material, row, k); };
+  return Material{get(0), get(1), get(2), get(4), get(5), Combine(std::uint8_t(get(3))), Combine(std::uint8_t(get(6)))};
 }
 
 Status World::set_material(BodyId body, const Material& material) {

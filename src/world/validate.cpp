@@ -89,11 +89,18 @@ Status check(const ShapeDef& shape) {
 }
 
 Status check(const Material& m) {
-  for (double x : {m.static_friction, m.kinetic_friction, m.restitution})
+  for (double x : {m.static_friction, m.kinetic_friction, m.restitution, m.rolling_friction, m.torsional_friction})
     if (!std::isfinite(x))
       return Error{ErrorCode::not_finite, "A coefficient of friction or restitution is not a number; give finite ones."};
   if (m.static_friction < 0 || m.kinetic_friction < 0)
     return Error{ErrorCode::bad_argument, "A coefficient of friction is below zero; use 0 for none."};
+  if (m.rolling_friction < 0 || m.torsional_friction < 0)
+    return Error{ErrorCode::bad_argument, "The rolling or torsional friction is below zero; it is a length [m], 0 for none."};
+  if (m.friction_rule > Combine::maximum || m.restitution_rule > Combine::maximum)
+    return Error{
+        ErrorCode::bad_argument,
+        "A rule of friction or restitution is none that there is; use Combine::mean, geometric_mean, minimum, product or "
+        "maximum."};
   if (m.restitution < 0 || m.restitution > 1)
     return Error{ErrorCode::bad_argument,
                  "The restitution is " + number(m.restitution) + "; it must lie between 0 (no bounce) and 1 (no loss)."};

@@ -1,0 +1,163 @@
+#include "collision/flights.h"
+
+#include <limits>
+
+#include "collision/detector.h"
+#include "collision/hook.h"
+#include "collision/meeting.h"
+
+namespace pcphys {
+namespace {
+
+/// Beyond this turn within the step [rad] a body is taken to meet others with its centre behind the point: which of its
+/// corners comes first is then chance, and the rows of a manifold know small turns only.
+constexpr double many_corners = 0.5;
+
+template <class Scalar> void behind_centre(Manifold<Scalar>& m) {
+  ManifoldPoint<Scalar>& first = m.points[0];
+  for (std::uint32_t i = 1; i < m.count; i++)
+    if (m.points[i].separation < first.separation) first = m.points[i];
+  m.count = 1;
+  const Scalar along = m.normal[0] * first.p[0] + m.normal[1] * first.p[1] + m.normal[2] * first.p[2];
+  for (int k = 0; k < 3; k++) first.p[k] = m.normal[k] * along;
+}
+
+/// The manifold of time t as seen from the start: gaps open again with the speeds of the points, arms go back by the
+/// first body's share of the way.
+template <class Scalar>
+void back_to_start(const Twist& a, const Twist& b, const Scalar* apart, double share, double t, Manifold<Scalar>& m) {
+  float path[3], n[3];
+  for (int k = 0; k < 3; k++) path[k] = float((double(b.v[k]) - double(a.v[k])) * t), n[k] = float(m.normal[k]);
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    ManifoldPoint<Scalar>& point = m.points[i];
+    float r[3], d[3];
+    for (int k = 0; k < 3; k++) r[k] = float(point.p[k]), d[k] = float(apart[k]) + path[k];
+    point.separation += Scalar(double(passing(a, b, n, r, d).closing) * t);
+    for (int k = 0; k < 3; k++) point.p[k] -= Scalar(double(path[k]) * share);
+  }
+}
+
+/// As seen from the start, for whatever way it comes.
+template <class Scalar> void from_start(double dt, double share, bool whirls, Flight<Scalar>& f) {
+  to_light_side(f.manifold, share);
+  f.impact = dt;
+  if (whirls) behind_centre(f.manifold);
+}
+
+}  // namespace
+
+template <class Scalar>
+Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair,
+                              const Options& options) const {
+  const auto [a, b] = pairs_.pairs()[pair];
+  const auto [row_a, row_b] = s.ends_of({a, b});
+  const bool swap = row_a != proxies_[a].body;
+  Sight<Scalar> view = {{swap ? b : a, swap ? a : b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[swap ? a : b], 0};
+  BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
+  for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
+  view.margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
+  return view;
+}
+
+template <class Scalar>
+void Detector::find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
+                    std::uint32_t pair, Manifold<Scalar>& manifold) {
+  if (options.narrow == NarrowPhase::fcl)
+    fcl_hook()(a, b, view.margin, manifold);
+  else
+    narrow(a, b, view.margin, hints_[pair], manifold);
+}
+
+float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
+  const float x = proxies_[a].inner, y = proxies_[b].inner;
+  return x == 0 ? y : y == 0 ? x : std::min(x, y);
+}
+
+// Bodies on joints are left out: their impulses are not theirs alone.
+template <class Scalar>
+void Detector::look_ahead(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
+  scratch.flights.clear();
+  const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
+  const auto pairs = pairs_.pairs();
+  for (std::uint32_t i = 0; i < pairs.size(); i++) {
+    const auto [a, b] = pairs[i];
+    const Proxy &x = proxies_[a], &y = proxies_[b];
+    constexpr std::size_t stride = reals_of(Buffer::material);
+    const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
+    if (reach_[a] + reach_[b] <= (bounces ? 0.01f : 0.5f) * thickness(a, b)) continue;
+    if (x.jointed || y.jointed || !overlap(tight_[a], tight_[b])) continue;
+    if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
+    Flight<Scalar>& f = scratch.flights.emplace_back();
+    f.pair = i;
+    const Sight<Scalar> view = sight(s, scratch, i, options);
+    fly(s, dt, options, scratch, view, f);
+    if (f.counts && f.impact > 0)
+      for (std::uint32_t row : view.rows) struck_[row] = std::min(struck_[row], float(f.impact));
+  }
+}
+
+template <class Scalar>
+void Detector::fly(const WorldState& s, double dt, const Options& options, const Scratch<Scalar>& scratch,
+                   const Sight<Scalar>& view, Flight<Scalar>& f) {
+  const auto mover = [&](int side) {
+    const Proxy& p = proxies_[view.shapes[side]];
+    const Twist& t = twists_[view.rows[side]];
+    return Mover<Scalar>{&scratch.shapes[view.shapes[side]], &t, t.across * p.lever_across + t.turn * p.lever_any, p.centred};
+  };
+  const Mover<Scalar> a = mover(0), b = mover(1);
+  f.counts = f.stray = f.turned = false;
+  f.impact = 0;
+  find(options, view, *a.view, view.there, f.pair, f.manifold);
+  if (f.manifold.count == 0) return;
+  const double gap = double(least_separation(f.manifold)), share = share_of(s.tables, view.rows[0], view.rows[1]);
+  const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
+  const double near = std::max(1e-6 * double(thickness(view.shapes[0], view.shapes[1])),
+                               16 * double(std::numeric_limits<Scalar>::epsilon()) * far);
+  f.counts = gap <= options.contact_margin;
+  if (gap <= near) return;
+  Manifold<Scalar> met = f.manifold;
+  const double fall = length(s.gravity) * dt * dt;
+  const double t = meet(
+      a, b, view.apart, near, fall + 0.5 * options.contact_margin, dt,
+      [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& m) { find(options, view, x, y, f.pair, m); },
+      met);
+  const bool whirls = double(a.spin) > 0 && double(a.twist->turn) * dt > many_corners;
+  if (t >= 0) {
+    f.counts = true;
+    f.impact = t;
+    const Scalar *n = f.manifold.normal, *m = met.normal;
+    f.turned = !(share > 0 && share < 1) && n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < Scalar(0.5);
+    f.manifold = met;
+    if (whirls) behind_centre(f.manifold);
+    back_to_start(*a.twist, *b.twist, view.apart, share, t, f.manifold);
+    return;
+  }
+  if (f.counts) return to_light_side(f.manifold, share);
+  // what stands may be met all the same, once something sends the other there
+  if (share > 0 && share < 1) return;
+  (t == past ? f.stray : f.counts) = true;
+  from_start(dt, share, whirls, f);
+}
+
+template <class Scalar>
+bool Detector::settle(const WorldState& s, double dt, const Options& options, const Scratch<Scalar>& scratch,
+                      const Sight<Scalar>& view, Flight<Scalar>& f) {
+  const float first = std::min(struck_[view.rows[0]], struck_[view.rows[1]]);
+  if (f.turned && double(first) < f.impact) {  // it will be sent elsewhere before
+    find(options, view, scratch.shapes[view.shapes[0]], view.there, f.pair, f.manifold);
+    from_start(dt, share_of(s.tables, view.rows[0], view.rows[1]), false, f);
+  }
+  return f.counts || (f.stray && first < float(dt));
+}
+
+#define PC_INSTANTIATE(Scalar)                                                                                            \
+  template Sight<Scalar> Detector::sight(const WorldState&, const Scratch<Scalar>&, std::uint32_t, const Options&) const; \
+  template void Detector::find(const Options&, const Sight<Scalar>&, const ShapeView<Scalar>&, const ShapeView<Scalar>&,  \
+                               std::uint32_t, Manifold<Scalar>&);                                                         \
+  template bool Detector::settle(const WorldState&, double, const Options&, const Scratch<Scalar>&, const Sight<Scalar>&, \
+                                 Flight<Scalar>&);                                                                        \
+  template void Detector::look_ahead(const WorldState&, double, const Options&, Scratch<Scalar>&);
+PC_INSTANTIATE(float)
+PC_INSTANTIATE(double)
+
+}  // namespace pcphys

@@ -1,0 +1,43 @@
+// Pairs of shapes that move fast for their size, as the detector looks at them before the others.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+
+#include "collision/narrow.h"
+#include "world/tables.h"
+
+namespace pcphys {
+
+/// A pair as the narrow phase is to see it: from the first body's centre.
+template <class Scalar> struct Sight {
+  std::uint32_t shapes[2], rows[2];  // in the order of the contact's bodies
+  Scalar apart[3];                   // the second body's centre
+  ShapeView<Scalar> there;           // the second shape
+  Scalar margin;                     // no gap beyond it matters in this step
+};
+
+template <class Scalar> struct Flight {
+  std::uint32_t pair;
+  bool counts;    // they meet, or may
+  bool stray;     // against what stands: only if something sends the other elsewhere before
+  bool turned;    // against what stands: from another side than it is seen from the start
+  double impact;  // impact_time of the contact [s]
+  Manifold<Scalar> manifold;
+};
+
+/// Of the way that two bodies come together, the part that the second does not go: by their inverse masses.
+inline double share_of(const Tables& t, std::uint32_t a, std::uint32_t b) {
+  const double wa = t.get(Buffer::motion, a, 3), wb = t.get(Buffer::motion, b, 3);
+  return wb / (wa + wb);
+}
+
+/// Across a gap the bodies meet nearer to the heavy one, and nowhere but at the surface of one that stands: `pc_arms`
+/// draws the arms together by the same shares.
+template <class Scalar> void to_light_side(Manifold<Scalar>& m, double share) {
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    const Scalar shift = std::max(m.points[i].separation, Scalar(0)) * Scalar(share - 0.5);
+    for (int k = 0; k < 3; k++) m.points[i].p[k] += m.normal[k] * shift;
+  }
+}
+
+}  // namespace pcphys

@@ -1,0 +1,160 @@
+// Impacts, at the instant at which they happen. A row whose gap closes within this sub-step closes at the time t of
+//   s + v t + A t^2 / 2 = 0,   v = u - A h / 2,   v* = v + A t,
+// with u the stored velocity, half a sub-step behind, and A the acceleration between impulses. The impulse J turns v*
+// into -e v* there, with friction by Coulomb's law, at the arms of that instant. As seen from the end of the sub-step
+// it changed the velocity by J / m and the position by (h - t) J / m: so J acts on u whole and the position goes
+// back by t J / m. For a single contact that is exact, energy and all; several follow one another, colour by colour.
+// The rows of one manifold that close are solved together. What is left (slow approaches, several impacts of one body
+// in one sub-step that block each other, bodies on joints) is contact_solve's and contact_restitution's; but shapes that
+// meet in flight, whose arms mean nothing before they do, are left to this kernel for the whole step.
+#include "contact_rows.inl"
+#include "contact_response.inl"
+#include "contact_coulomb.inl"
+
+// u_aim: the velocity u that the row is to leave with; closes: 1 or 0
+struct Closing { Real t; Real u_aim; Real closes; };
+PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Real e, Mask always) {
+  Real h = PC_INFO(h); Real zero = PC_REAL(0.0);
+  precise Real half_change = acceleration * h * PC_REAL(0.5); precise Real v = u - half_change;
+  precise Real square = v * v - acceleration * s * PC_REAL(2.0);
+  Mask open = s > zero; Mask meets = pc_and(open, square > zero);
+  Real root = pc_sqrt(pc_select(meets, square, zero)); precise Real nearer = root - v;
+  meets = pc_and(meets, nearer > zero);
+  precise Real twice = s * PC_REAL(2.0); Real t = pc_select(meets, pc_div(twice, pc_select(meets, nearer, PC_REAL(1.0))), zero);
+  Real impact = pc_select(open, -root, v);
+  // what rests approaches with what the forces give it in a sub-step
+  precise Real slow = PC_INFO(restitution_threshold) + pc_abs(acceleration) * h; Mask fast = impact < -slow;
+  precise Real most = h * PC_REAL(1.00001);  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
+  Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < zero, zero, most));
+  Mask now = ahead < most;
+  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < zero)));
+  Real bounce = pc_select(fast, e, zero);
+  precise Real aim = half_change - acceleration * t - bounce * impact;
+  Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); return r;
+}
+PC_FN Real pc_impact_row(Real j, Real u, Closing c, Real mass) {
+  precise Real next = j - mass * (u - c.u_aim); precise Real acts = pc_max(next, PC_REAL(0.0)) * c.closes; return acts;
+}
+
+// Acceleration between impulses, of the centre and of the turning.
+struct Acceleration { Vec3 a; Vec3 turn; };
+PC_FN Acceleration pc_acceleration(PC_IO Index i, BodyState b) {
+  Quad push = PC_GATHER(force, i, 0u); Quad turn = PC_GATHER(force, i, 1u);
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Acceleration r; r.a = pc_select3(b.inverse_mass > PC_REAL(0.0), pc_madd(gravity, push.v, b.inverse_mass), pc_zero3());
+  precise Real response = b.response; r.turn = pc_scale(pc_sym_mul(b.inertia, turn.v), response); return r;
+}
+
+// The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise).
+PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits) {
+  Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
+  Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
+  precise Real back = -t; Vec3 shift = pc_scale(dv, back);
+  Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
+  TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
+  PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
+  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s));
+  Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
+  PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
+  PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
+}
+
+// A body that flies against one that stands and turns far within the sub-step meets it with its centre behind the point:
+// which of its corners comes first is chance, and rows know small turns only. So nothing gets past.
+PC_FN Mask pc_whirls(PC_IO BodyState a, BodyState b) {
+  Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b); Real h = PC_INFO(h);
+  precise Real turn = (pc_dot(wa, wa) + pc_dot(wb, wb)) * h * h; return turn > PC_REAL(0.06);
+}
+PC_FN Arms pc_arms_at(PC_IO Slot m, Vec3 moved_a, Vec3 moved_b, Vec3 n, Mask central) {
+  Arms r = pc_arms(PC_PASS m, moved_a, moved_b);
+  r.a = pc_select3(central, pc_scale(n, pc_dot(n, r.a)), r.a); r.b = pc_select3(central, pc_scale(n, pc_dot(n, r.b)), r.b); return r;
+}
+PC_FN Real pc_impact_mass(Real mass, Real scale, Real light, Mask central) {
+  precise Real scaled = mass * scale; return pc_select(central, pc_select(mass > PC_REAL(0.0), pc_inverse_or_zero(light), PC_REAL(0.0)), scaled);
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Real zero = PC_REAL(0.0);
+  Real kind = PC_LD(contact_rows, m, ROW_IMPACT); Real e = PC_LD(contact_rows, m, ROW_E);
+  Mask always = kind > zero; Mask mine = pc_and(kind > PC_REAL(-0.5), pc_or(always, e > zero));
+  if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
+  Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
+  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
+  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u); Quad turned_a = PC_GATHER(delta, ia, 1u); Quad turned_b = PC_GATHER(delta, ib, 1u);
+
+  // the arms at impact: when the centres have come as near as the first gap is wide, or as found for a flight
+  Vec3 relative = pc_sub(b.v, a.v); precise Real nearing = -pc_dot(n, relative);
+  Vec3 come = pc_sub(moved_b.v, moved_a.v); precise Real gap = PC_LD(contact_rows, m, ROW_S) + pc_dot(n, come);
+  precise Real flight = pc_max(gap, zero) * pc_inverse_or_zero(nearing); Real until = pc_min(flight, PC_INFO(h));
+  Vec3 path = pc_select3(always, pc_ld3_rows(PC_PASS m, ROW_PATH), pc_madd(come, relative, until));
+  Mask both_move = pc_and(a.inverse_mass > zero, b.inverse_mass > zero); Mask both_fly = pc_and(always, both_move);
+  Mask whirls = pc_and(pc_and(always, pc_whirls(PC_PASS a, b)), pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY);
+  Arms arms = pc_arms_at(PC_PASS m, pc_zero3(), path, n, whirls);
+  Twist v = pc_twist(a, b, arms, n, t1, t2);
+
+  // gaps, and accelerations in the contact frame
+  Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, arms.a)); Vec3 shift_b = pc_add(moved_b.v, pc_cross(turned_b.v, arms.b));
+  Vec3 turn = pc_sub(turned_b.v, turned_a.v); Real shift_n = pc_dot(n, pc_sub(shift_b, shift_a)); Real turn1 = pc_dot(t1, turn); Real turn2 = pc_dot(t2, turn);
+  Acceleration pull_a = pc_acceleration(PC_PASS ia, a); Acceleration pull_b = pc_acceleration(PC_PASS ib, b);
+  Vec3 pull = pc_sub(pc_add(pull_b.a, pc_cross(pull_b.turn, arms.b)), pc_add(pull_a.a, pc_cross(pull_a.turn, arms.a)));
+  Vec3 spin_up = pc_sub(pull_b.turn, pull_a.turn); Real pull_n = pc_dot(n, pull); Real up1 = pc_dot(t1, spin_up); Real up2 = pc_dot(t2, spin_up);
+
+  Real a0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A)); Real a1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 1u)); Real a2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 2u)); Real a3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 3u));
+  Real b0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B)); Real b1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 1u)); Real b2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 2u)); Real b3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 3u));
+  precise Real u0 = v.vn + b0 * v.w1 - a0 * v.w2; precise Real u1 = v.vn + b1 * v.w1 - a1 * v.w2;
+  precise Real u2 = v.vn + b2 * v.w1 - a2 * v.w2; precise Real u3 = v.vn + b3 * v.w1 - a3 * v.w2;
+  precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift_n + b0 * turn1 - a0 * turn2); precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift_n + b1 * turn1 - a1 * turn2);
+  precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift_n + b2 * turn1 - a2 * turn2); precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift_n + b3 * turn1 - a3 * turn2);
+  precise Real g0 = pull_n + b0 * up1 - a0 * up2; precise Real g1 = pull_n + b1 * up1 - a1 * up2;
+  precise Real g2 = pull_n + b2 * up1 - a2 * up2; precise Real g3 = pull_n + b3 * up1 - a3 * up2;
+  Real scale = pc_select(always, PC_REAL(1.0), PC_LD(contact_rows, m, ROW_SCALE));
+  precise Real light = a.inverse_mass + b.inverse_mass;
+  Real m0 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS), scale, light, whirls); Real m1 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 1u), scale, light, whirls);
+  Real m2 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 2u), scale, light, whirls); Real m3 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 3u), scale, light, whirls);
+  Closing c0 = pc_closing(PC_PASS u0, s0, g0, m0, e, always); Closing c1 = pc_closing(PC_PASS u1, s1, g1, m1, e, always);
+  Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
+  precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
+  // two that fly and were sent elsewhere on their way do not meet as was found
+  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), path); precise Real size = pc_dot(arms.a, arms.a) + pc_dot(arms.b, arms.b);
+  Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
+  Mask hits = pc_and(mine, here > zero);
+  if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
+
+  // all rows that close, together: equal shares of what stops their mean, then one after the other
+  Real d01 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D)); Real d02 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 1u)); Real d03 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 2u));
+  Real d12 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 3u)); Real d13 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 4u)); Real d23 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 5u));
+  precise Real own = c0.closes * pc_inverse_or_zero(m0) + c1.closes * pc_inverse_or_zero(m1) + c2.closes * pc_inverse_or_zero(m2) + c3.closes * pc_inverse_or_zero(m3);
+  precise Real coupled = c0.closes * (c1.closes * d01 + c2.closes * d02 + c3.closes * d03) + c1.closes * (c2.closes * d12 + c3.closes * d13) + c2.closes * c3.closes * d23;
+  precise Real whole = own + coupled * PC_REAL(2.0);
+  precise Real missing = c0.closes * (c0.u_aim - u0) + c1.closes * (c1.u_aim - u1) + c2.closes * (c2.u_aim - u2) + c3.closes * (c3.u_aim - u3);
+  precise Real each = pc_max(missing, zero) * pc_inverse_or_zero(whole);
+  precise Real j0 = each * c0.closes; precise Real j1 = each * c1.closes; precise Real j2 = each * c2.closes; precise Real j3 = each * c3.closes;
+  for (uint k = 0u; k < 8u; k++) {
+    precise Real r0 = u0 + j0 * pc_inverse_or_zero(m0) + j1 * d01 + j2 * d02 + j3 * d03; j0 = pc_impact_row(j0, r0, c0, m0);
+    precise Real r1 = u1 + j0 * d01 + j1 * pc_inverse_or_zero(m1) + j2 * d12 + j3 * d13; j1 = pc_impact_row(j1, r1, c1, m1);
+    precise Real r2 = u2 + j0 * d02 + j1 * d12 + j2 * pc_inverse_or_zero(m2) + j3 * d23; j2 = pc_impact_row(j2, r2, c2, m2);
+    precise Real r3 = u3 + j0 * d03 + j1 * d13 + j2 * d23 + j3 * pc_inverse_or_zero(m3); j3 = pc_impact_row(j3, r3, c3, m3);
+  }
+  j0 = pc_select(hits, j0, zero); j1 = pc_select(hits, j1, zero); j2 = pc_select(hits, j2, zero); j3 = pc_select(hits, j3, zero);
+
+  Push push = pc_push(PC_PASS m, j0, j1, j2, j3); push.m1 = pc_select(whirls, zero, push.m1); push.m2 = pc_select(whirls, zero, push.m2);
+  // by symmetry the responses of sliding and twist to the normal rows are those of the rows to them
+  Twist after = v;
+  precise Real v1_after = v.v1 + (PC_LD(contact_rows, m, ROW_C) * push.n + PC_LD(contact_rows, m, ROW_C + 3u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 6u) * push.m2);
+  precise Real v2_after = v.v2 + (PC_LD(contact_rows, m, ROW_C + 1u) * push.n + PC_LD(contact_rows, m, ROW_C + 4u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 7u) * push.m2);
+  precise Real wn_after = v.wn + (PC_LD(contact_rows, m, ROW_C + 2u) * push.n + PC_LD(contact_rows, m, ROW_C + 5u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 8u) * push.m2);
+  after.v1 = v1_after; after.v2 = v2_after; after.wn = wn_after;
+  Friction f = pc_coulomb(PC_PASS m, after, push.n, scale, zero, zero, zero);
+  precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
+
+  // what has bounced does not bounce again at the end of the step
+  PC_ST(contact_rows, m, ROW_APPROACH, pc_select(j0 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH))); PC_ST(contact_rows, m, ROW_APPROACH + 1u, pc_select(j1 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 1u)));
+  PC_ST(contact_rows, m, ROW_APPROACH + 2u, pc_select(j2 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 2u))); PC_ST(contact_rows, m, ROW_APPROACH + 3u, pc_select(j3 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 3u)));
+  PC_ST(contact_rows, m, ROW_IMPACT, pc_select(pc_and(hits, both_fly), PC_REAL(-1.0), kind));
+  // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
+  Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
+  BodyState before_a = a; BodyState before_b = b;
+  pc_apply(PC_PASS ia, ib, a, b, struck, pc_combine(t1, f.change1, t2, f.change2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist));
+  pc_set_back(PC_PASS ia, before_a, a, t, hits); pc_set_back(PC_PASS ib, before_b, b, t, hits);
+}
