@@ -116,6 +116,8 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"contact_points", outcome.last.points},
       {"pairs", outcome.last.pairs},
       {"colours", outcome.last.colours},
+      {"joints_as_rows", outcome.last.joints_as_rows},
+      {"tree_contacts_as_rows", outcome.last.tree_contacts_as_rows},
       {"max_penetration", end.penetration.max},
       {"mean_penetration", end.penetration.mean()},
       {"peak_penetration", outcome.peaks.penetration},

@@ -62,7 +62,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Sym6 g; g.l = pc_sym_scale(h.l, share); g.a = pc_sym_scale(h.a, share); g.c = pc_mat3(pc_scale(h.c.a, share), pc_scale(h.c.b, share), pc_scale(h.c.c, share));
   Index row = PC_ORDER(tree_order, root);
   Sym3 none = pc_diagonal(PC_REAL(0.0));
-  pc_store_response(PC_PASS row, pc_and(exists, g.l.xx > PC_REAL(0.0)), root, none, zero, zero, g);
+  pc_store_response(PC_PASS row, exists, root, none, zero, zero, g);
   for (uint k = 1u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Index own = PC_ORDER(tree_order, n); Index up = PC_ORDER(tree_order, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
     Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); Sym3 d_inverse = pc_sym_scale(pc_lds_tree(PC_PASS n, TREE_D), share);

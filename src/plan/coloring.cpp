@@ -17,18 +17,18 @@ template <class T> void assign_with_room(std::vector<T>& values, std::size_t cou
 }  // namespace
 
 void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,
-                      std::span<const char> leading) {
-  assert(units.size() == 2 * priorities.size() && (leading.empty() || leading.size() == priorities.size()));
+                      std::span<const std::uint8_t> kinds) {
+  assert(units.size() == 2 * priorities.size() && (kinds.empty() || kinds.size() == priorities.size()));
   sort_by_priority(priorities);
   colour_of_.resize(order_.size());
   std::uint32_t above = 0;
   for (const bool leads : {true, false}) {
-    if (leads && leading.empty()) continue;
-    for (const bool with_fixed : {false, true}) above = choose(unit_count, units, leading, with_fixed, leads, above);
+    if (leads && kinds.empty()) continue;
+    for (const bool with_fixed : {false, true}) above = choose(unit_count, units, kinds, with_fixed, leads, above);
     if (leads) leading_colours_ = above;
   }
-  if (leading.empty()) leading_colours_ = 0;
-  group();
+  if (kinds.empty()) leading_colours_ = 0;
+  group(kinds);
 }
 
 void Colouring::sort_by_priority(std::span<const std::uint32_t> priorities) {
@@ -41,8 +41,8 @@ void Colouring::sort_by_priority(std::span<const std::uint32_t> priorities) {
 }
 
 // Row `unit_count` stands for all fixed units: its mask is cleared whenever it was set.
-std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const char> leading,
-                                bool with_fixed, bool leads, std::uint32_t first) {
+std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units,
+                                std::span<const std::uint8_t> kinds, bool with_fixed, bool leads, std::uint32_t first) {
   taken_.assign(std::size_t{unit_count} + 1, 0);
   next_above_.clear();
   std::uint32_t above = first;
@@ -51,7 +51,7 @@ std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::u
     const auto i = static_cast<std::uint32_t>(item);
     const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count),
                         b = std::min(units[2 * std::size_t{i} + 1], unit_count);
-    if ((a == unit_count || b == unit_count) != with_fixed || (!leading.empty() && (leading[i] != 0) != leads)) continue;
+    if ((a == unit_count || b == unit_count) != with_fixed || (!kinds.empty() && (kinds[i] > 0) != leads)) continue;
     const std::uint64_t free = ~(taken[a] | taken[b]), lowest = free & (0 - free);
     taken[a] |= lowest;
     taken[b] |= lowest;
@@ -70,7 +70,7 @@ std::uint32_t Colouring::choose_above(std::uint32_t a, std::uint32_t b, std::uin
   return colour;
 }
 
-void Colouring::group() {
+void Colouring::group(std::span<const std::uint8_t> kinds) {
   std::uint32_t colours = 0;
   for (const std::uint32_t colour : colour_of_) colours = std::max(colours, colour + 1);
   assign_with_room(offsets_, std::size_t{colours} + 1, 0u);
@@ -79,7 +79,17 @@ void Colouring::group() {
   assign_with_room(cursor_, offsets_.size(), 0u);
   std::ranges::copy(offsets_, cursor_.begin());
   list_.resize(colour_of_.size());
-  for (std::uint32_t i = 0; i < colour_of_.size(); ++i) list_[cursor_[colour_of_[i]]++] = i;
+  const auto place = [&](std::uint32_t i) { list_[cursor_[colour_of_[i]]++] = i; };
+  if (kinds.empty()) {
+    for (std::uint32_t i = 0; i < colour_of_.size(); ++i) place(i);
+    return;
+  }
+  std::uint32_t starts[257] = {};  // of each kind in by_kind_: a counting sort
+  for (const std::uint8_t kind : kinds) ++starts[kind + 1];
+  for (int k = 0; k < 256; ++k) starts[k + 1] += starts[k];
+  by_kind_.resize(kinds.size());
+  for (std::uint32_t i = 0; i < kinds.size(); ++i) by_kind_[starts[kinds[i]]++] = i;
+  for (const std::uint32_t i : by_kind_) place(i);
 }
 
 void pack_slots(const Colouring& colouring, std::uint32_t width, std::span<const std::uint32_t> ends,

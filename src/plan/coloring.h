@@ -38,18 +38,18 @@ class Colouring {
   static constexpr std::uint32_t fixed_unit = 0xffffffffu;
 
   /// Constraint i acts on units[2i] and units[2i + 1], each below `unit_count` or `fixed_unit`. Lower
-  /// priorities choose first; of equal ones the constraint with the lower index. `leading`: of each constraint 1 where it
-  /// belongs to the first group of colours; empty where there is one group.
+  /// priorities choose first; of equal ones the constraint with the lower index. `kinds`: above 0 where a constraint
+  /// belongs to the first group of colours; those of a kind stand together within a colour. Empty where there is one group.
   /// The first 64 colours of either kind are greedy exactly. What finds none of them free goes on above: it takes the colour
   /// after the last one above 63 on either unit. Only a unit with more than 64 constraints comes to that.
   void build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,
-             std::span<const char> leading = {});
+             std::span<const std::uint8_t> kinds = {});
 
   std::uint32_t colours() const { return static_cast<std::uint32_t>(offsets_.size()) - 1; }
   /// Of the first group.
   std::uint32_t leading_colours() const { return leading_colours_; }
   std::uint32_t constraints() const { return static_cast<std::uint32_t>(list_.size()); }
-  /// The constraints of a colour in ascending index order: that of the caller's table.
+  /// The constraints of a colour in ascending order of kind and index (of the caller's table).
   std::span<const std::uint32_t> of_colour(std::uint32_t colour) const {
     return std::span(list_).subspan(offsets_[colour], offsets_[colour + 1] - offsets_[colour]);
   }
@@ -62,16 +62,16 @@ class Colouring {
 
   void sort_by_priority(std::span<const std::uint32_t> priorities);
   /// Colours the constraints of a group with a fixed unit, or those without, from `first` on; the first colour above them.
-  std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const char> leading,
+  std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint8_t> kinds,
                        bool with_fixed, bool leads, std::uint32_t first);
   std::uint32_t choose_above(std::uint32_t a, std::uint32_t b, std::uint32_t unit_count);
-  void group();
+  void group(std::span<const std::uint8_t> kinds);
 
   std::vector<std::uint32_t> offsets_{0}, list_, colour_of_;
   std::vector<std::uint64_t> order_, order_scratch_;  // priority << 32 | constraint
   std::vector<std::uint64_t> taken_;                  // per unit; bit c: colour c
   std::vector<std::uint32_t> next_above_;             // per unit, empty until some unit needs it
-  std::vector<std::uint32_t> cursor_;
+  std::vector<std::uint32_t> cursor_, by_kind_;
   std::uint32_t leading_colours_ = 0;
 };
 

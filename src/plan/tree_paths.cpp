@@ -9,6 +9,7 @@ namespace pcphys {
 
 void TreeNodes::build(const Forest& forest, std::span<const double> masses) {
   node_.assign(masses.size(), 0);
+  large_.assign(masses.size(), false);
   unit_.resize(masses.size());
   std::iota(unit_.begin(), unit_.end(), 0u);
   parent_.assign(1, 0);
@@ -20,7 +21,9 @@ void TreeNodes::build(const Forest& forest, std::span<const double> masses) {
     for (std::uint32_t k = 0; k < tree.size(); k++) {
       parent_.push_back(k == 0 ? 0 : root + tree[k].parent);
       level_.push_back(k == 0 ? 0 : level_[root + tree[k].parent] + 1);
-      if (tree.size() > largest_tree || masses[tree[k].body] == 0) continue;
+      if (masses[tree[k].body] == 0) continue;
+      large_[tree[k].body] = tree.size() > largest_tree;
+      if (tree.size() > largest_tree) continue;
       node_[tree[k].body] = root + k;
       unit_[tree[k].body] = unit;
     }
@@ -50,11 +53,24 @@ Ends ends_of(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b) {
   return e;
 }
 
-std::uint32_t depth_of(const TreeNodes& nodes, const Ends& e) { return std::max(nodes.level(e.own[0]), nodes.level(e.own[1])); }
-
 constexpr std::uint32_t fixed_entries = 7;  // PATH_LEVELS of tree_path.inl
 
+/// Levels of the ways of a block: the longest of its lanes.
+struct Levels {
+  std::array<std::uint32_t, 2> depth{}, below{};
+  std::uint32_t all() const { return depth[0] + depth[1] + below[0] + below[1]; }
+};
+
 }  // namespace
+
+std::uint8_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t node_a = nodes.node(a), node_b = nodes.node(b);
+  if (node_a == 0 && node_b == 0) return 0;
+  constexpr std::uint32_t most = 10;  // levels told apart
+  const bool within = nodes.unit(a) == nodes.unit(b);
+  const std::uint32_t kind = std::min(nodes.level(node_a), most) * (most + 1) + std::min(nodes.level(node_b), most);
+  return std::uint8_t(1 + kind + (within ? (most + 1) * (most + 1) : 0));
+}
 
 void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
                 std::vector<std::uint32_t>& out) {
@@ -64,31 +80,38 @@ void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t block
   };
   out.assign(blocks, 0);
   for (std::uint32_t block = 0; block < blocks; block++) {
-    std::uint32_t depth = 0, below = 0;
+    Levels levels;
     for (std::uint32_t lane = 0; lane < width; lane++) {
       const Ends e = ends_of(nodes, end(block, lane, 0), end(block, lane, 1));
-      depth = std::max(depth, depth_of(nodes, e));
-      below = std::max({below, e.below[0], e.below[1]});
+      for (std::size_t side = 0; side < 2; side++) {
+        levels.depth[side] = std::max(levels.depth[side], nodes.level(e.own[side]));
+        levels.below[side] = std::max(levels.below[side], e.below[side]);
+      }
     }
     const std::size_t at = out.size();
     out[block] = std::uint32_t(at);
-    out.resize(at + 2 + std::size_t{width} * (fixed_entries + 2 * (depth + below)), 0);
-    out[at] = depth;
-    out[at + 1] = below;
-    std::uint32_t* entries = out.data() + at + 2;
+    out.resize(at + 4 + std::size_t{width} * (fixed_entries + levels.all()), 0);
+    for (std::size_t side = 0; side < 2; side++) out[at + side] = levels.depth[side], out[at + 2 + side] = levels.below[side];
+    std::uint32_t* entries = out.data() + at + 4;
     for (std::uint32_t lane = 0; lane < width; lane++) {
       const Ends e = ends_of(nodes, end(block, lane, 0), end(block, lane, 1));
       const auto put = [&](std::uint32_t entry, std::uint32_t value) { entries[entry * width + lane] = value; };
+      /// The last `count` levels of a side's way, from entry `first` on.
+      const auto put_way = [&](std::size_t side, std::uint32_t first, std::uint32_t count) {
+        std::uint32_t node = e.own[side];
+        for (std::uint32_t level = count; level-- > 0; node = nodes.parent(node)) put(first + level, node);
+      };
+      std::uint32_t entry = fixed_entries;
       for (std::uint32_t side = 0; side < 2; side++) {
         put(side, end(block, lane, side));
         put(2 + side, e.root[side]);
         put(4 + side, e.own[side]);
-        std::uint32_t node = e.own[side];
-        for (std::uint32_t level = nodes.level(node); level-- > 0; node = nodes.parent(node))
-          put(fixed_entries + level * 2 + side, node);
-        node = e.own[side];
-        for (std::uint32_t level = e.below[side]; level-- > 0; node = nodes.parent(node))
-          put(fixed_entries + (depth + level) * 2 + side, node);
+        put_way(side, entry, nodes.level(e.own[side]));
+        entry += levels.depth[side];
+      }
+      for (std::uint32_t side = 0; side < 2; side++) {
+        put_way(side, entry, e.below[side]);
+        entry += levels.below[side];
       }
       put(6, e.common);
     }

@@ -21,6 +21,8 @@ class TreeNodes {
   std::uint32_t rows() const { return std::uint32_t(parent_.size()); }
   /// Row of a body's node; 0: it stands in no tree, or in one that is too large, or does not move.
   std::uint32_t node(std::uint32_t body) const { return node_[body]; }
+  /// Whether the body moves in a tree that is too large.
+  bool is_large(std::uint32_t body) const { return large_[body]; }
   /// What answers an impulse on the body: itself, or the first moving body of its tree.
   std::uint32_t unit(std::uint32_t body) const { return unit_[body]; }
   /// Of a node; 0 above a root.
@@ -30,7 +32,11 @@ class TreeNodes {
 
  private:
   std::vector<std::uint32_t> node_, unit_, parent_, level_;
+  std::vector<char> large_;  // by body row
 };
+
+/// Contacts of one kind have ways of about one length; 0 where neither body has a node.
+std::uint8_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b);
 
 /// The lists `contact_paths` of tree_path.inl for the first `blocks` blocks of slots. `ends` as in Slots.
 void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,

@@ -21,7 +21,8 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
 void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
                                 const TreeNodes* trees) {
   trees_ = trees;
-  leading_.clear();
+  kinds_.clear();
+  beside_trees_ = 0;
   units_.clear();
   priorities_.clear();
   ends_.clear();
@@ -34,10 +35,13 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
       units_.push_back(state.responds(row_of_side) ? unit : Colouring::fixed_unit);
       ends_.push_back(ends[row][side]);
     }
-    if (trees) leading_.push_back(trees->node(ends[row][0]) != 0 || trees->node(ends[row][1]) != 0);
+    if (trees) {
+      kinds_.push_back(path_kind(*trees, ends[row][0], ends[row][1]));
+      beside_trees_ += trees->is_large(ends[row][0]) || trees->is_large(ends[row][1]);
+    }
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
   }
-  colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, leading_);
+  colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);
   width_ = 0;
 }
 

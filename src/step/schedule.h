@@ -35,6 +35,8 @@ class ColouredSlots {
   std::span<const Range> free_ranges() const { return ranges().subspan(colouring_.leading_colours()); }
   bool any_with_trees() const { return colouring_.leading_colours() > 0; }
   bool any_without_trees() const { return colouring_.leading_colours() < colouring_.colours(); }
+  /// Constraints with a body of a tree that is too large for them to be solved in it.
+  std::uint32_t beside_trees() const { return beside_trees_; }
   std::vector<std::uint32_t>& paths() { return paths_; }
   std::vector<std::uint32_t>& ends() { return slots_.ends; }
   std::vector<std::uint32_t>& order() { return slots_.order; }
@@ -48,8 +50,9 @@ class ColouredSlots {
                    const TreeNodes* trees);
 
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
-  std::vector<char> leading_;
+  std::vector<std::uint8_t> kinds_;
   const TreeNodes* trees_ = nullptr;
+  std::uint32_t beside_trees_ = 0;
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
 };

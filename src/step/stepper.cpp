@@ -223,6 +223,8 @@ struct Stepper::Inside {
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;
+    report.joints_as_rows = schedule.joints.constraints();
+    report.tree_contacts_as_rows = schedule.contacts.beside_trees();
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
     return {};
   }
