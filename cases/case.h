@@ -80,6 +80,7 @@ struct Variant {
   std::vector<std::uint32_t> substeps{1};
   bool single = true;          // runs in single precision too
   bool direct = false;         // uses `resolve`: in pcphys alone, with steps of its own
+  bool own = false;            // of a setting that pcphys alone has
   std::string second_order{};  // the metric whose slope must be 1.9 at least, in double
   std::vector<double> slow{};  // step lengths that only --all runs
 };

@@ -31,7 +31,7 @@ bool same(double a, double b) { return std::fabs(a / b - 1) < 1e-9; }
 
 std::vector<Setting> settings(const Selection& selection, const Variant& variant, const Engine& engine) {
   std::vector<Setting> result;
-  if (!variant.name.starts_with(selection.variant) || (variant.direct && !engine.peer().empty())) return result;
+  if (!variant.name.starts_with(selection.variant) || ((variant.direct || variant.own) && !engine.peer().empty())) return result;
   for (Precision precision : {Precision::f64, Precision::f32}) {
     const bool twice = precision == Precision::f64;
     if (!(twice ? selection.twice : selection.single && variant.single) || !engine.has(precision)) continue;

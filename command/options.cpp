@@ -85,8 +85,6 @@ Status check_later(const RunOptions& options) {
   if (options.sleep == "on") return bad("--sleep on comes with a later version; until then nothing sleeps, so leave it off.");
   if (options.threads != 1)
     return bad("--threads is " + std::to_string(options.threads) + "; threads come with a later version, so give 1.");
-  if (options.integrator != "verlet")
-    return bad("--integrator is '" + options.integrator + "'; this version has verlet, others come with a later one.");
   return {};
 }
 
@@ -162,7 +160,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--threads", options.threads, "1; more come with a later version")->capture_default_str();
   app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
   app.add_option("--sleep", options.sleep, "off; on comes with a later version")->capture_default_str();
-  app.add_option("--integrator", options.integrator, "verlet; others come with a later version")->capture_default_str();
+  app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")->capture_default_str();
   app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
       ->capture_default_str();
   app.add_option("--timings", options.timings, "on: clock every stage, which makes a GPU wait after each; off: whole steps only")
@@ -178,6 +176,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   Setup setup;
   for (const Status& status :
        {check_later(options), check_numbers(options), check_choice("narrow", options.narrow, {"native", "fcl"}),
+        check_choice("integrator", options.integrator, {"verlet", "seed"}),
         check_choice("timings", options.timings, {"on", "off"})})
     if (!status) return status.error();
   if (auto status = set_places(options, setup.settings); !status) return status.error();
@@ -190,6 +189,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   if (options.seed) setup.scene_options.seed = std::uint64_t(*options.seed);
   setup.scene_options.ratio = options.ratio;
   setup.settings.narrow = options.narrow == "fcl" ? NarrowPhase::fcl : NarrowPhase::native;
+  setup.settings.integrator = options.integrator == "seed" ? Integrator::seed : Integrator::verlet;
   setup.settings.substeps = std::uint32_t(options.substeps);
   setup.settings.device = int(options.device);
   setup.settings.timings = options.timings == "on";

@@ -98,7 +98,7 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"device", device_name(simulation)},
       {"devices", {{"cpu", simulation.stepper.device(Place::cpu)}, {"gl", simulation.stepper.device(Place::gl)}}},
       {"precision", setup.precision == Precision::f64 ? "double" : "float"},
-      {"integrator", "verlet"},
+      {"integrator", name(setup.settings.integrator)},
       {"narrow", setup.settings.narrow == NarrowPhase::fcl ? "fcl" : "native"},
       {"steps", setup.steps},
       {"warmup", setup.warmup},

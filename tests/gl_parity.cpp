@@ -46,12 +46,15 @@ constexpr Call drag_calls[] = {{Kernel::begin_drag, 0},
                                {Kernel::remember, 0},
                                {Kernel::advance_round, 0},
                                {Kernel::synchronise_drag, 1}};
+constexpr Call seed_calls[] = {
+    {Kernel::begin_seed, 0}, {Kernel::integrate_seed, 0}, {Kernel::advance_seed, 0}, {Kernel::synchronise_seed, 1}};
 
 std::vector<Call> calls(int sub_steps) {
   std::vector<Call> all;
   for (int i = 0; i < sub_steps; i++) all.insert(all.end(), std::begin(step_calls), std::end(step_calls));
   all.insert(all.end(), std::begin(last_calls), std::end(last_calls));
   all.insert(all.end(), std::begin(drag_calls), std::end(drag_calls));
+  all.insert(all.end(), std::begin(seed_calls), std::end(seed_calls));
   return all;
 }
 

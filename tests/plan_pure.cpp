@@ -187,6 +187,19 @@ TEST_CASE("left out: shapes that could never touch") {
                "collision") == "");
 }
 
+TEST_CASE("the original's scheme takes other kernels, and says what it lacks") {
+  for_all_signatures([](PlanSignature s) {
+    s.integrator = Integrator::seed;
+    const StepPlan plan = make_plan(s);
+    const int n = s.bodies ? int(s.substeps) : 0;
+    CHECK(runs(plan, "begin_seed") == (s.bodies ? 1 : 0));
+    CHECK(runs(plan, s.drag ? "integrate_seed" : "integrate") == n);
+    CHECK(runs(plan, s.gyroscopic ? "advance_seed" : "advance_round") == n);
+    CHECK(runs(plan, "remember") + runs(plan, "synchronise") + runs(plan, "synchronise_drag") == 0);
+    if (s.bodies) CHECK(reason(plan, "gyroscopic terms") != "");
+  });
+}
+
 TEST_CASE("left out names have a reason, a sentence a reader can use") {
   for_all_signatures([](const PlanSignature& s) {
     const StepPlan plan = make_plan(s);

@@ -12,9 +12,16 @@ namespace pcphys {
 enum class Place : std::uint8_t { cpu, gl };
 const char* name(Place place);
 
-/// Which coefficients a kernel is given: those of the step's start, of the solve, or of the relax pass.
-enum class Phase : std::uint8_t { first, biased, relax };
-inline constexpr unsigned phase_count = 3;
+/// How bodies move between impulses (docs/integrate.md). `verlet`: exact drag, and free rotation of second order. `seed`:
+/// the scheme of the document that pcphys began with, to compare with it: drag by a factor 1 - F h, constant angular
+/// velocity, velocities half a sub-step late.
+enum class Integrator : std::uint8_t { verlet, seed };
+const char* name(Integrator integrator);
+
+/// Which coefficients a kernel is given: those of the step's start, of the solve, of the relax pass, or those
+/// of the step's start as joints need them.
+enum class Phase : std::uint8_t { first, biased, relax, first_joints };
+inline constexpr unsigned phase_count = 4;
 
 enum class Kernel : std::uint8_t;
 enum class Buffer : std::uint8_t;

@@ -18,6 +18,7 @@ enum class NarrowPhase : std::uint8_t { native, fcl };
 /// How steps are made. All of it may change between two steps; results do not depend on where a stage runs.
 struct StepSettings {
   Place integrate = Place::cpu, joints = Place::cpu, impulses = Place::cpu;
+  Integrator integrator = Integrator::verlet;
   std::uint32_t substeps = 4;
   std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is
   std::uint32_t threads = 1;  // more is refused until threads exist

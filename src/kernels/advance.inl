@@ -4,6 +4,7 @@
 // small turns in single precision would otherwise add up a million roundings of 6e-8 (docs/integrate.md).
 // Rotation: free_rotation.inl.
 // Where every body has three equal moments (PC_ROUND) only that rotation is left: the same bits, less work.
+// The original's scheme (PC_SEED) has no gyroscopic terms: w is constant, so that L = I w turns as the body does.
 
 #ifdef PC_ROUND
 PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
@@ -11,7 +12,7 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
   Turn world = pc_turn(pc_scale(l, world_time));
   return pc_quaternion_mul(pc_quaternion(world.q.v, world.fall), q);
 }
-#else
+#elif !defined(PC_SEED)
 #include "free_rotation.inl"
 #endif
 
@@ -42,7 +43,15 @@ PC_FN void pc_kernel(PC_IO Index i) {
   place.v = p.sum; place_low.v = pc_snap3(p.low);
 
   Quaternion q = pc_quaternion(turned.v, turned.s);
+#ifdef PC_SEED
+  Vec3 w0 = pc_sym_mul(pc_world_inertia(q, inverse.v), angular.v);
+  Turn spin = pc_turn(pc_scale(w0, h));
+  Quaternion change = pc_quaternion_mul(pc_quaternion(spin.q.v, spin.fall), q);
+  angular.v = pc_select3(linear.s > PC_REAL(0.0), pc_rotate(spin.q, angular.v), angular.v);
+  PC_SCATTER(motion, i, 1u, angular);
+#else
   Quaternion change = pc_free_rotation(q, angular.v, inverse, h);
+#endif
   Real lack = pc_select(pc_turns(change), pc_lack_of_unit(q, turned_low), PC_REAL(0.0));
   // what does not turn keeps its bits; the correction of length is along the turned quaternion: along the old one it would grow what turns by half a circle
   precise Vec3 change_v = (turned_low.v + (q.v + change.v) * lack) + change.v; precise Real change_w = (turned_low.s + (q.w + change.w) * lack) + change.w;

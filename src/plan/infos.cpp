@@ -22,8 +22,13 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 double substep_length(const StepSettings& settings, double dt) { return dt / settings.substeps; }
 
+double load_time(const StepSettings& settings, double dt, double last_substep) {
+  const double h = substep_length(settings, dt);
+  return settings.substeps > 1 || last_substep == 0 || last_substep == h ? h : 0.5 * (last_substep + h);
+}
+
 template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep,
+void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep, double load_time,
                 InfoOf<Scalar> (&infos)[phase_count]) {
   const double h = substep_length(settings, dt), ratio = last_substep > 0 ? h / last_substep : 1;
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
@@ -60,6 +65,10 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   first.h_before = Scalar(h / ratio);
   first.impulse_ratio = Scalar(ratio);
 
+  InfoOf<Scalar>& joints = infos[unsigned(Phase::first_joints)];
+  joints = first;
+  joints.impulse_ratio = Scalar(load_time > 0 ? h / load_time : 1);
+
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
   relax.contact_rate = relax.joint_rate = 0;
@@ -68,7 +77,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   relax.contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
-template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);
-template void fill_infos<double>(const StepSettings&, Vec3, double, double, InfoOf<double> (&)[phase_count]);
+template void fill_infos<float>(const StepSettings&, Vec3, double, double, double, InfoOf<float> (&)[phase_count]);
+template void fill_infos<double>(const StepSettings&, Vec3, double, double, double, InfoOf<double> (&)[phase_count]);
 
 }  // namespace pcphys

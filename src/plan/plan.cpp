@@ -67,6 +67,8 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   const auto out = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
   if (!s.bodies) out("integrate", "no body moves");
   if (s.bodies && !s.drag) out("drag", "no body has any");
+  const bool seed = s.integrator == Integrator::seed;
+  if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
   if (!s.joints && !s.trees) out("joints", "the world has no joints");
   if (!s.joints && s.trees) out("joint rows", "no joint closes a loop");
@@ -75,6 +77,20 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
   if (s.contacts() && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
+}
+
+/// The kernels that move bodies between impulses.
+struct Motion {
+  Kernel begin, integrate, advance, synchronise;
+};
+Motion motion(const PlanSignature& s) {
+  const Kernel round = Kernel::advance_round;  // the same in every scheme
+  if (s.integrator == Integrator::seed)
+    return {Kernel::begin_seed, s.drag ? Kernel::integrate_seed : Kernel::integrate, s.gyroscopic ? Kernel::advance_seed : round,
+            Kernel::synchronise_seed};
+  const Kernel advance = s.gyroscopic ? Kernel::advance : round;
+  if (s.drag) return {Kernel::begin_drag, Kernel::integrate_drag, advance, Kernel::synchronise_drag};
+  return {Kernel::begin, Kernel::integrate, advance, Kernel::synchronise};
 }
 
 // contacts with trees first: the floor under what lies on them comes later (see Colouring)
@@ -95,14 +111,15 @@ StepPlan make_plan(const PlanSignature& s) {
   if (!s.bodies) return plan;
 
   Builder b(s, plan);
-  b.kernel(s.drag ? Kernel::begin_drag : Kernel::begin, Phase::first, 0);
+  const Motion with = motion(s);
+  b.kernel(with.begin, Phase::first, 0);
   if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < s.substeps; k++) {
-    if (k + 1 == s.substeps) b.kernel(Kernel::remember, Phase::biased, k);
-    b.kernel(s.drag ? Kernel::integrate_drag : Kernel::integrate, Phase::biased, k);
-    if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    if (k + 1 == s.substeps && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
+    b.kernel(with.integrate, Phase::biased, k);
+    if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first_joints : Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
-    if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first_joints : Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
     if (s.free_contacts && s.impacts)
       for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
@@ -120,7 +137,7 @@ StepPlan make_plan(const PlanSignature& s) {
     }
     solve_contacts(b, s, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
-    b.kernel(s.gyroscopic ? Kernel::advance : Kernel::advance_round, Phase::biased, k);
+    b.kernel(with.advance, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
     if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
@@ -129,7 +146,7 @@ StepPlan make_plan(const PlanSignature& s) {
   const std::uint32_t last = s.substeps - 1;
   if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
   if (s.contacts()) b.kernel(Kernel::contact_store, Phase::relax, last);
-  b.kernel(s.drag ? Kernel::synchronise_drag : Kernel::synchronise, Phase::relax, last);
+  b.kernel(with.synchronise, Phase::relax, last);
   b.results(last);
   return plan;
 }

@@ -11,6 +11,7 @@ namespace pcphys {
 /// Everything a plan depends on.
 struct PlanSignature {
   std::uint32_t substeps = 4;
+  Integrator integrator = Integrator::verlet;
   std::array<Place, stage_count> places{};  // by Stage
   bool bodies = false;                      // some move
   bool drag = false;                        // of some body

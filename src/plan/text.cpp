@@ -5,6 +5,7 @@
 
 namespace pcphys {
 
+const char* name(Integrator integrator) { return integrator == Integrator::seed ? "seed" : "verlet"; }
 const char* name(Place place) { return place == Place::cpu ? "cpu" : "gl"; }
 std::string_view kernel_name(const PlanEntry& entry) {
   return entry.kind == PlanEntry::Kind::kernel ? schema(entry.kernel).name : std::string_view();
@@ -16,7 +17,7 @@ std::string_view stage_name(const PlanEntry& entry) {
   return entry.kind == PlanEntry::Kind::kernel ? name(schema(entry.kernel).stage) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
-  constexpr std::string_view names[phase_count] = {"first", "biased", "relax"};
+  constexpr std::string_view names[phase_count] = {"first", "biased", "relax", "first"};
   return names[std::size_t(entry.phase)];
 }
 

@@ -97,6 +97,7 @@ struct Stepper::Inside {
   PlanSignature signature(const Schedule& from) const {
     PlanSignature s;
     s.substeps = settings.substeps;
+    s.integrator = settings.integrator;
     s.places = {settings.integrate, settings.joints, settings.impulses};
     s.bodies = from.moving > 0;
     s.drag = from.drag;
@@ -114,10 +115,10 @@ struct Stepper::Inside {
 
   const void* fill(const WorldState& s, double dt) {
     if (s.tables.precision() == Precision::f32) {
-      fill_infos(settings, s.gravity, dt, s.last_substep, infos_f);
+      fill_infos(settings, s.gravity, dt, s.last_substep, s.load_time, infos_f);
       return infos_f;
     }
-    fill_infos(settings, s.gravity, dt, s.last_substep, infos_d);
+    fill_infos(settings, s.gravity, dt, s.last_substep, s.load_time, infos_d);
     return infos_d;
   }
 
@@ -223,6 +224,7 @@ struct Stepper::Inside {
     if (ok = runner.run(settings, *plan, s, schedule, fill(s, dt), report); !ok) return undo(s, ok);
     find_outside(s, schedule.bodies, outside);
     if (!outside.empty()) return {};
+    s.load_time = load_time(settings, dt, s.last_substep);
     s.last_substep = substep_length(settings, dt);
     report.pairs = found.pairs;
     report.contacts = found.contacts;
