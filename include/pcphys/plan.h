@@ -19,9 +19,9 @@ enum class Integrator : std::uint8_t { verlet, seed };
 const char* name(Integrator integrator);
 
 /// Which coefficients a kernel is given: those of the step's start, of the solve, of the relax pass, or those
-/// of the step's start as joints need them.
-enum class Phase : std::uint8_t { first, biased, relax, first_joints };
-inline constexpr unsigned phase_count = 4;
+/// that joints are prepared with in the first and the second sub-step.
+enum class Phase : std::uint8_t { first, biased, relax, first_joints, second_joints };
+inline constexpr unsigned phase_count = 5;
 
 enum class Kernel : std::uint8_t;
 enum class Buffer : std::uint8_t;

@@ -22,9 +22,14 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 double substep_length(const StepSettings& settings, double dt) { return dt / settings.substeps; }
 
+namespace {
+/// What time the impulses of a step's first sub-step stand for [s].
+double first_load_time(double h, double last_substep) { return last_substep > 0 ? 0.5 * (last_substep + h) : h; }
+}  // namespace
+
 double load_time(const StepSettings& settings, double dt, double last_substep) {
   const double h = substep_length(settings, dt);
-  return settings.substeps > 1 || last_substep == 0 || last_substep == h ? h : 0.5 * (last_substep + h);
+  return settings.substeps > 1 ? h : first_load_time(h, last_substep);
 }
 
 template <class Scalar>
@@ -65,9 +70,13 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   first.h_before = Scalar(h / ratio);
   first.impulse_ratio = Scalar(ratio);
 
-  InfoOf<Scalar>& joints = infos[unsigned(Phase::first_joints)];
-  joints = first;
-  joints.impulse_ratio = Scalar(load_time > 0 ? h / load_time : 1);
+  const double first_load = first_load_time(h, last_substep);
+  InfoOf<Scalar>& first_joints = infos[unsigned(Phase::first_joints)];
+  first_joints = first;
+  first_joints.impulse_ratio = Scalar(load_time > 0 ? first_load / load_time : 1);
+  InfoOf<Scalar>& second_joints = infos[unsigned(Phase::second_joints)];
+  second_joints = biased;
+  second_joints.impulse_ratio = Scalar(h / first_load);
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
