@@ -61,8 +61,8 @@ class Bench {
                        detector_.possible(),
                        state().contact_rows() > 1,
                        found_.restitution});
-    fill_infos(settings_, world_.gravity(), dt, state().last_substep, state().load_time, infos_f_);
-    fill_infos(settings_, world_.gravity(), dt, state().last_substep, state().load_time, infos_d_);
+    fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_f_);
+    fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_d_);
     if (auto status = runner_.prepare(settings_, variant.precision); !status) return status;
     if (auto status = bind(); !status) return status;
     return run(plan_);

@@ -59,8 +59,8 @@ Status run_plan(const StepSettings& settings, const StepPlan& plan, double dt, W
   static Runner runner;  // keeps its backends: a GL context is slow to make
   InfoOf<float> single[phase_count];
   InfoOf<double> twice[phase_count];
-  fill_infos(settings, {}, dt, 0, 0, single);
-  fill_infos(settings, {}, dt, 0, 0, twice);
+  fill_infos(settings, {}, dt, 0, single);
+  fill_infos(settings, {}, dt, 0, twice);
   const void* infos = world.precision() == Precision::f64 ? static_cast<const void*>(twice) : single;
   StepReport report;
   const FlushSubnormals flush;

@@ -1,4 +1,4 @@
-// Pins A6 to A8 and A20: what turns about a pin, solved directly, also with steps of changing length. Second order in the step, twice the error of converged
+// Pins A6 to A8: what turns about a pin, solved directly. Second order in the step, twice the error of converged
 // SHAKE at most, one sub-step a step. cases/pendulums.cpp holds the cases and their bounds.
 #include "support_cases.h"
 
@@ -19,10 +19,6 @@ TEST_CASE("A7: a compound pendulum") {
 
 TEST_CASE("A8: a double pendulum from horizontal") {
   for (const Mode& mode : precisions()) check_rows(rows_of("A8", mode));
-}
-
-TEST_CASE("A20: a pendulum with steps of changing length") {
-  for (const Mode& mode : precisions()) check_rows(rows_of("A20", mode));
 }
 
 // Not met: theta 3.5e-4 and 1.6e-2 rad, phi 2.7e-3 and 3.2e-2 rad at 1/240 s, falling with the square of the step. Not

@@ -18,10 +18,9 @@ const char* name(Place place);
 enum class Integrator : std::uint8_t { verlet, seed };
 const char* name(Integrator integrator);
 
-/// Which coefficients a kernel is given: those of the step's start, of the solve, of the relax pass, or those
-/// that joints are prepared with in the first and the second sub-step.
-enum class Phase : std::uint8_t { first, biased, relax, first_joints, second_joints };
-inline constexpr unsigned phase_count = 5;
+/// Which coefficients a kernel is given: those of the step's start, of the solve, or of the relax pass.
+enum class Phase : std::uint8_t { first, biased, relax };
+inline constexpr unsigned phase_count = 3;
 
 enum class Kernel : std::uint8_t;
 enum class Buffer : std::uint8_t;

@@ -5,10 +5,8 @@
 // velocity phi v + a h phi2 (without drag u = v - a h / 2, the half kick; Hairer, Lubich, Wanner, Geometric
 // Numerical Integration I.1).
 // * A velocity that was just set is in phase.
-// * When the sub-step changes from h0 to h: back into phase by h0, out of it by h, both by the forces of now: without
-//   drag u += a (h0 - h) / 2. Impulses of joints are none of it: the next sub-step finds those of now itself, as it
-//   does those of a whole sub-step (that is SHAKE with changing steps). What a contact touched in the last sub-step
-//   shifts by (h0 - h) / h0 of its half change, which is nothing or what is left of its velocity at rest.
+// * When the sub-step changes from h0 to h: back into phase by h0, out of it by h; and what impulses changed in
+//   the last sub-step shifts by (h0 - h) / (2 h0).
 // * The original's scheme (PC_SEED) knows no phase: p - p_last goes on as it is, also where the sub-step changes.
 #include "world_inertia.inl"
 
@@ -21,7 +19,7 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change) {
   return pc_select3(in_phase, half_change, shift);
 }
 #elif defined(PC_DRAG)
-PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Mask touched, Vec3 velocity, Vec3 half_change, Vec3 a, Real drag) {
+PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a, Real drag) {
   Real h = PC_INFO(h); Real share = PC_INFO(h_change);
   Real before = PC_INFO(h_before);
   precise Real x = drag * h; precise Real y = drag * before;
@@ -32,18 +30,16 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Mask touched, Vec3 velocity, Vec3 half_
   precise Real gap = now.phi2 - now.phi; precise Real time = pc_div(gap, now.e) * h;
   Vec3 v = pc_select3(in_phase, velocity, phased);
   precise Vec3 kick = (a - v * drag) * time;
-  precise Vec3 held = (half_change - back) * share;
-  precise Vec3 shift = back + kick + pc_select3(touched, held, pc_zero3());
+  precise Vec3 shift = back + kick + (half_change - back) * share;
   Mask changes = pc_abs(share) > PC_REAL(0.0);
   return pc_select3(in_phase, kick, pc_select3(changes, shift, pc_zero3()));
 }
 #else
-PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Mask touched, Vec3 half_change, Vec3 a) {
+PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 half_change, Vec3 a) {
   Real h = PC_INFO(h); Real share = PC_INFO(h_change);
   precise Vec3 kick = a * (h * PC_REAL(-0.5));
-  precise Vec3 held = half_change * share;
-  precise Vec3 shift = a * (PC_INFO(h_before) * share * PC_REAL(0.5));
-  return pc_select3(in_phase, kick, pc_select3(touched, held, shift));
+  precise Vec3 shift = half_change * share;
+  return pc_select3(in_phase, kick, shift);
 }
 #endif
 
@@ -65,15 +61,14 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Vec3 u_shift = pc_shift(PC_PASS in_phase, linear.v, linear_change.v);
   Vec3 l_shift = pc_shift(PC_PASS in_phase, angular.v, angular_change.v);
 #else
-  Mask touched = angular.s > PC_REAL(0.0);
   Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
   Vec3 acceleration = pc_madd(gravity, push.v, linear.s);
 #ifdef PC_DRAG
-  Vec3 u_shift = pc_shift(PC_PASS in_phase, touched, linear.v, linear_change.v, acceleration, push.s);
-  Vec3 l_shift = pc_shift(PC_PASS in_phase, touched, angular.v, angular_change.v, turn.v, turn.s);
+  Vec3 u_shift = pc_shift(PC_PASS in_phase, linear.v, linear_change.v, acceleration, push.s);
+  Vec3 l_shift = pc_shift(PC_PASS in_phase, angular.v, angular_change.v, turn.v, turn.s);
 #else
-  Vec3 u_shift = pc_shift(PC_PASS in_phase, touched, linear_change.v, acceleration);
-  Vec3 l_shift = pc_shift(PC_PASS in_phase, touched, angular_change.v, turn.v);
+  Vec3 u_shift = pc_shift(PC_PASS in_phase, linear_change.v, acceleration);
+  Vec3 l_shift = pc_shift(PC_PASS in_phase, angular_change.v, turn.v);
 #endif
 #endif
   TwoSum u = pc_two_sum(linear.v, pc_add(u_shift, linear_low.v));

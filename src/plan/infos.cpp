@@ -22,18 +22,8 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 double substep_length(const StepSettings& settings, double dt) { return dt / settings.substeps; }
 
-namespace {
-/// What time the impulses of a step's first sub-step stand for [s].
-double first_load_time(double h, double last_substep) { return last_substep > 0 ? 0.5 * (last_substep + h) : h; }
-}  // namespace
-
-double load_time(const StepSettings& settings, double dt, double last_substep) {
-  const double h = substep_length(settings, dt);
-  return settings.substeps > 1 ? h : first_load_time(h, last_substep);
-}
-
 template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep, double load_time,
+void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep,
                 InfoOf<Scalar> (&infos)[phase_count]) {
   const double h = substep_length(settings, dt), ratio = last_substep > 0 ? h / last_substep : 1;
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
@@ -70,14 +60,6 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   first.h_before = Scalar(h / ratio);
   first.impulse_ratio = Scalar(ratio);
 
-  const double first_load = first_load_time(h, last_substep);
-  InfoOf<Scalar>& first_joints = infos[unsigned(Phase::first_joints)];
-  first_joints = first;
-  first_joints.impulse_ratio = Scalar(load_time > 0 ? first_load / load_time : 1);
-  InfoOf<Scalar>& second_joints = infos[unsigned(Phase::second_joints)];
-  second_joints = biased;
-  second_joints.impulse_ratio = Scalar(h / first_load);
-
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
   relax.contact_rate = relax.joint_rate = 0;
@@ -86,7 +68,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   relax.contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
-template void fill_infos<float>(const StepSettings&, Vec3, double, double, double, InfoOf<float> (&)[phase_count]);
-template void fill_infos<double>(const StepSettings&, Vec3, double, double, double, InfoOf<double> (&)[phase_count]);
+template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);
+template void fill_infos<double>(const StepSettings&, Vec3, double, double, InfoOf<double> (&)[phase_count]);
 
 }  // namespace pcphys

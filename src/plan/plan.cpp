@@ -93,10 +93,6 @@ Motion motion(const PlanSignature& s) {
   return {Kernel::begin, Kernel::integrate, advance, Kernel::synchronise};
 }
 
-Phase joint_phase(std::uint32_t substep) {
-  return substep == 0 ? Phase::first_joints : substep == 1 ? Phase::second_joints : Phase::biased;
-}
-
 // contacts with trees first: the floor under what lies on them comes later (see Colouring)
 void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.tree_contacts) {
@@ -121,9 +117,9 @@ StepPlan make_plan(const PlanSignature& s) {
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
     b.kernel(with.integrate, Phase::biased, k);
-    if (s.trees) b.kernel(Kernel::tree_prepare, joint_phase(k), k);
+    if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
-    if (s.joints) b.kernel(Kernel::joint_prepare, joint_phase(k), k);
+    if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
     if (s.free_contacts && s.impacts)
       for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);

@@ -17,7 +17,7 @@ std::string_view stage_name(const PlanEntry& entry) {
   return entry.kind == PlanEntry::Kind::kernel ? name(schema(entry.kernel).stage) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
-  constexpr std::string_view names[phase_count] = {"first", "biased", "relax", "first", "second"};
+  constexpr std::string_view names[phase_count] = {"first", "biased", "relax"};
   return names[std::size_t(entry.phase)];
 }
 

@@ -115,10 +115,10 @@ struct Stepper::Inside {
 
   const void* fill(const WorldState& s, double dt) {
     if (s.tables.precision() == Precision::f32) {
-      fill_infos(settings, s.gravity, dt, s.last_substep, s.load_time, infos_f);
+      fill_infos(settings, s.gravity, dt, s.last_substep, infos_f);
       return infos_f;
     }
-    fill_infos(settings, s.gravity, dt, s.last_substep, s.load_time, infos_d);
+    fill_infos(settings, s.gravity, dt, s.last_substep, infos_d);
     return infos_d;
   }
 
@@ -224,7 +224,6 @@ struct Stepper::Inside {
     if (ok = runner.run(settings, *plan, s, schedule, fill(s, dt), report); !ok) return undo(s, ok);
     find_outside(s, schedule.bodies, outside);
     if (!outside.empty()) return {};
-    s.load_time = load_time(settings, dt, s.last_substep);
     s.last_substep = substep_length(settings, dt);
     report.pairs = found.pairs;
     report.contacts = found.contacts;

@@ -56,7 +56,7 @@ template <class Scalar> std::uint64_t hash_world(const WorldState& s) {
 
 // ---- snapshots -----------------------------------------------------------------------------------------
 
-constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '4'};
+constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '3'};
 
 class Writer {
  public:
@@ -194,7 +194,6 @@ std::vector<std::byte> World::snapshot() const {
   w.put(magic);
   w.put(object_hash(s));
   w.put(s.last_substep);
-  w.put(s.load_time);
   w.put(s.gravity);
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) {
     w.put(s.bodies[row].index);
@@ -226,19 +225,19 @@ Status World::restore(std::span<const std::byte> snapshot) {
   Reader r(snapshot);
   char head[8];
   std::uint64_t objects = 0;
-  double substep = 0, load_time = 0;
+  double substep = 0;
   Vec3 gravity;
   if (!r.get(head) || std::memcmp(head, magic, sizeof magic) != 0 || !r.get(objects)) return cut;
   if (objects != object_hash(s))
     return Error{ErrorCode::bad_snapshot,
                  "The snapshot is of a world with other objects or another precision; restore it into one with the same bodies "
                  "and joints."};
-  if (!r.get(substep) || !r.get(load_time) || !r.get(gravity)) return cut;
+  if (!r.get(substep) || !r.get(gravity)) return cut;
 
   // the whole length is checked before anything is written, so that a cut snapshot changes nothing
   const std::size_t fixed_part = (s.bodies.size() - 1) * (4 + state_bytes(s.tables, Table::body)) +
                                  (s.joints.size() - 1) * (4 + state_bytes(s.tables, Table::joint));
-  const std::size_t offset = sizeof magic + 8 + 8 + 8 + sizeof(Vec3) + fixed_part;
+  const std::size_t offset = sizeof magic + 8 + 8 + sizeof(Vec3) + fixed_part;
   std::uint32_t contacts = 0;
   if (snapshot.size() < offset + 4) return cut;
   std::memcpy(&contacts, snapshot.data() + offset, 4);
@@ -247,7 +246,6 @@ Status World::restore(std::span<const std::byte> snapshot) {
     return cut;
 
   s.last_substep = substep;
-  s.load_time = load_time;
   s.gravity = gravity;
   std::uint32_t index = 0;
   for (std::size_t i = 1; i < s.bodies.size(); i++) {

@@ -63,7 +63,6 @@ struct WorldState {
   Tables tables;
   Vec3 gravity;
   double last_substep = 0;  // h of the last step [s]; 0 before the first
-  double load_time = 0;     // what time the impulses stand for that joints remember [s]; see plan/infos.h
 
   IdPool body_ids, joint_ids, force_ids;
   std::vector<BodyRecord> bodies;   // by row
