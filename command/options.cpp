@@ -160,7 +160,8 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--threads", options.threads, "1; more come with a later version")->capture_default_str();
   app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
   app.add_option("--sleep", options.sleep, "off; on comes with a later version")->capture_default_str();
-  app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")->capture_default_str();
+  app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")
+      ->capture_default_str();
   app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
       ->capture_default_str();
   app.add_option("--timings", options.timings, "on: clock every stage, which makes a GPU wait after each; off: whole steps only")
