@@ -35,10 +35,10 @@ class TreeNodes {
   std::vector<char> large_;  // by body row
 };
 
-/// Contacts of one kind have ways of about one length; 0 where neither body has a node.
+/// Contacts or joints of one kind have ways of about one length; 0 where neither body has a node.
 std::uint8_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b);
 
-/// The lists `contact_paths` of tree_path.inl for the first `blocks` blocks of slots. `ends` as in Slots.
+/// The lists `contact_paths` and `joint_paths` of tree_path.inl for the first `blocks` blocks of slots. `ends` as in Slots.
 void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
                 std::vector<std::uint32_t>& out);
 

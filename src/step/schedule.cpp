@@ -9,18 +9,18 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
                            const TreeNodes& trees) {
   rows_.resize(ends.size() - 1);
   std::iota(rows_.begin(), rows_.end(), 1u);
-  colour_rows(state, ends, kind, &trees);
+  colour_rows(state, ends, kind, trees);
 }
 
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
-                           std::span<const std::uint32_t> rows, std::uint32_t kind) {
+                           std::span<const std::uint32_t> rows, std::uint32_t kind, const TreeNodes& trees) {
   rows_.assign(rows.begin(), rows.end());
-  colour_rows(state, ends, kind, nullptr);
+  colour_rows(state, ends, kind, trees);
 }
 
 void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
-                                const TreeNodes* trees) {
-  trees_ = trees;
+                                const TreeNodes& trees) {
+  trees_ = &trees;
   kinds_.clear();
   beside_trees_ = 0;
   units_.clear();
@@ -31,14 +31,12 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
     for (int side = 0; side < 2; side++) {
       const std::uint32_t row_of_side = ends[row][side];
       ids[side] = state.bodies[row_of_side].index;
-      const std::uint32_t unit = trees ? trees->unit(row_of_side) : row_of_side;
+      const std::uint32_t unit = trees.unit(row_of_side);
       units_.push_back(state.responds(row_of_side) ? unit : Colouring::fixed_unit);
       ends_.push_back(ends[row][side]);
     }
-    if (trees) {
-      kinds_.push_back(path_kind(*trees, ends[row][0], ends[row][1]));
-      beside_trees_ += trees->is_large(ends[row][0]) || trees->is_large(ends[row][1]);
-    }
+    kinds_.push_back(path_kind(trees, ends[row][0], ends[row][1]));
+    beside_trees_ += trees.is_large(ends[row][0]) || trees.is_large(ends[row][1]);
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
   }
   colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);
@@ -95,7 +93,7 @@ void Schedule::update_structure(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     joint_ends_[row] = {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)};
   trees.build(state);
-  joints.colour(state, joint_ends_, trees.forest().closing(), 0);
+  joints.colour(state, joint_ends_, trees.forest().closing(), 0, trees.nodes());
 }
 
 }  // namespace pcphys

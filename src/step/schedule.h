@@ -22,7 +22,7 @@ class ColouredSlots {
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
               const TreeNodes& trees);
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::span<const std::uint32_t> rows,
-              std::uint32_t kind);
+              std::uint32_t kind, const TreeNodes& trees);
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
@@ -33,6 +33,8 @@ class ColouredSlots {
   /// Those of constraints with a body of a tree, and the others.
   std::span<const Range> tree_ranges() const { return ranges().first(colouring_.leading_colours()); }
   std::span<const Range> free_ranges() const { return ranges().subspan(colouring_.leading_colours()); }
+  /// How many of them have a body of a tree.
+  std::uint32_t with_trees() const { return colouring_.offsets()[colouring_.leading_colours()]; }
   bool any_with_trees() const { return colouring_.leading_colours() > 0; }
   bool any_without_trees() const { return colouring_.leading_colours() < colouring_.colours(); }
   /// Constraints with a body of a tree that is too large for them to be solved in it.
@@ -47,7 +49,7 @@ class ColouredSlots {
   Colouring colouring_;
   Slots slots_;
   void colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
-                   const TreeNodes* trees);
+                   const TreeNodes& trees);
 
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
   std::vector<std::uint8_t> kinds_;
