@@ -13,14 +13,15 @@
 #include "joint_limits.inl"
 
 // Mean velocity of a pin over the sub-step, the body turning freely from the arm with momentum l (and w, its velocity now):
-// the middle's angular velocity is w + h / 2 I^-1 (L x w).
+// the middle's angular velocity is w + h / 2 I^-1 (L x w). Where it turns by more than half a radian the tangent, w x arm: what the
+// response knows of is that alone.
 PC_FN Vec3 pc_mean_velocity(PC_IO BodyState b, Vec3 v, Vec3 w, Vec3 arm, Vec3 l) {
   precise Real half_h = PC_INFO(h) * PC_REAL(0.5);
   Vec3 change = pc_scale(pc_sym_mul(b.inertia, pc_cross(l, w)), b.response);
-  Turn turn = pc_turn(pc_scale(pc_madd(w, change, half_h), PC_INFO(h)));
+  Vec3 angle = pc_scale(pc_madd(w, change, half_h), PC_INFO(h)); Turn turn = pc_turn(angle);
   // R r - r = 2 q x (q x r + w r)
   Vec3 moved = pc_cross(turn.q.v, pc_madd(pc_cross(turn.q.v, arm), arm, turn.q.w)); precise Real twice = PC_INFO(inverse_h) * PC_REAL(2.0);
-  return pc_madd(v, moved, twice);
+  return pc_select3(pc_dot(angle, angle) < PC_REAL(0.25), pc_madd(v, moved, twice), pc_add(v, pc_cross(w, arm)));
 }
 // Velocity that closes a share of the gap, at most joint_push_speed.
 PC_FN Vec3 pc_pin_bias(PC_IO Vec3 gap) {

@@ -212,7 +212,8 @@ struct Stepper::Inside {
     wanted.tree_contacts = schedule.contacts.any_with_trees();
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
-    if (const std::uint32_t rows = schedule.trees.nodes().rows(); (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
+    if (const std::uint32_t rows = schedule.trees.nodes().rows();
+        (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
     wanted.impacts = found.impacts;
