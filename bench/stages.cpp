@@ -54,13 +54,20 @@ class Bench {
     for (Status status : {broad(), narrow()})
       if (!status) return status;
     schedule_.update_contacts(state());
-    plan_ = make_plan({settings_.substeps,
-                       {variant.place, variant.place, variant.place},
-                       true,
-                       state().joints.size() > 1,
-                       detector_.possible(),
-                       state().contact_rows() > 1,
-                       found_.restitution});
+    PlanSignature wanted;
+    wanted.substeps = settings_.substeps;
+    wanted.places.fill(variant.place);
+    wanted.bodies = true;
+    wanted.drag = schedule_.drag;
+    wanted.gyroscopic = schedule_.gyroscopic;
+    wanted.trees = schedule_.trees.forest().trees() > 0;
+    wanted.free_joints = schedule_.joints.any_without_trees();
+    wanted.tree_joints = schedule_.joints.any_with_trees();
+    wanted.shapes = detector_.possible();
+    wanted.free_contacts = schedule_.contacts.any_without_trees();
+    wanted.tree_contacts = schedule_.contacts.any_with_trees();
+    wanted.restitution = found_.restitution;
+    plan_ = make_plan(wanted);
     fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_f_);
     fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_d_);
     if (auto status = runner_.prepare(settings_, variant.precision); !status) return status;

@@ -1,5 +1,5 @@
-// Pins how far the direct solve of joint trees goes, and says where it ends: loops under tension, which end in a soft
-// row; masses; spins too fast for the sub-step. What is marked may_fail is what a
+// Pins how far the direct solve of joint trees goes, and says where it ends: loops under
+// tension; masses; spins too fast for the sub-step. What is marked may_fail is what a
 // host would wish for and does not get yet; the figures are those measured when this was written.
 #include <random>
 
@@ -23,10 +23,9 @@ void add_bridge(Run& run, double load) {
 
 }  // namespace
 
-// The joint that closes the loop is a soft row, and carries what the tree's solve does not know of: measured (4 sub-steps,
-// float and double alike) 47 mm with links of 1 kg, 84 and 338 mm with one of 10 and of 100; with 16 sub-steps 5.8, 11
-// and 49 mm. All other joints stay below a millimetre.
-TEST_CASE("trees: a bridge between two posts holds to a centimetre" * doctest::may_fail()) {
+// The joint that closes the loop is solved inside what the tree leaves it. As a soft row on bare bodies it opened by 47 mm with
+// links of 1 kg, and 84 and 338 mm with one of 10 and of 100; now by 0.12, 0.28 and 2.4 mm, most of it loop_give.
+TEST_CASE("trees: a bridge between two posts holds to three millimetres") {
   for (const Mode& mode : precisions())
     for (const double load : {1.0, 10.0, 100.0}) {
       Run run(mode, {0, -gravity, 0}, 4);
@@ -35,7 +34,7 @@ TEST_CASE("trees: a bridge between two posts holds to a centimetre" * doctest::m
       CAPTURE(mode.name());
       tell("bridge with a load of " + std::to_string(long(load)), mode, w, w.kinetic);
       CHECK(w.finite);
-      CHECK(w.separation <= 10 * millimetre);
+      CHECK(w.separation <= 3 * millimetre);
     }
 }
 
@@ -56,7 +55,7 @@ TEST_CASE("trees: of a bridge between two posts the tree's own joints hold, and 
     CAPTURE(mode.name());
     CHECK(w.finite);
     CHECK(own <= 1 * millimetre);
-    CHECK(w.separation <= 500 * millimetre);
+    CHECK(w.separation <= 3 * millimetre);
     CHECK(w.gain <= 1e-3 * w.kinetic);
   }
 }

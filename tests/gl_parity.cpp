@@ -1,7 +1,7 @@
 // Pins the contract of the whole library, kernel by kernel: the same text gives the same bits as scalar C++,
 // as SIMD lanes and as GLSL, in float and double. Covered: static and kinematic bodies, padding slots,
 // zero vectors, colours, trees of several shapes (free, and hanging from what is fixed), locked and infinite
-// limits, contacts of trees with themselves, each other and the rest, many turns, small and large values.
+// limits, contacts and joints of trees with themselves, each other and the rest, many turns, small and large values.
 // On a device that cannot round exactly (see `pcphys doctor`) parity is not promised, and this test says so.
 #include "gl_parity.h"
 
@@ -21,13 +21,17 @@ constexpr Call step_calls[] = {
     {Kernel::integrate, 0},
     {Kernel::tree_prepare, 0},
     {Kernel::joint_prepare, 0},
+    {Kernel::joint_warm, 0},
     {Kernel::joint_solve, 0},
     {Kernel::contact_warm, 0},
+    {Kernel::tree_joint_warm, 0},
     {Kernel::tree_contact_warm, 0},
     {Kernel::tree_collect, 0},
     {Kernel::tree_solve, 0},
     {Kernel::tree_respond, 0},
+    {Kernel::tree_joint_mass, 0},
     {Kernel::tree_contact_prepare, 0},
+    {Kernel::tree_joint_solve, 0},
     {Kernel::tree_contact_solve, 0},
     {Kernel::tree_flush, 0},
     {Kernel::contact_solve, 0},
@@ -36,6 +40,8 @@ constexpr Call step_calls[] = {
     {Kernel::advance, 0},
     {Kernel::tree_relax, 1},
     {Kernel::joint_solve, 1},
+    {Kernel::tree_joint_arms, 1},
+    {Kernel::tree_joint_solve, 1},
     {Kernel::tree_contact_solve, 1},
     {Kernel::tree_flush, 1},
     {Kernel::contact_solve, 1},

@@ -43,10 +43,13 @@ std::vector<std::uint32_t> pack_indices(Buffer buffer, const State<Scalar>& stat
   if (buffer == Buffer::tree_parents) return trees.lists.parents;
   if (buffer == Buffer::tree_ends) return trees.lists.ends;
   if (buffer == Buffer::tree_order) return trees.lists.order;
-  if (buffer == Buffer::contact_paths) {
+  if (buffer == Buffer::contact_paths || buffer == Buffer::joint_paths) {
+    const bool contacts = buffer == Buffer::contact_paths;
+    const std::vector<Range>& colours = contacts ? state.contact_colours : state.joint_colours;
+    const Buffer ends = contacts ? Buffer::contact_ends : Buffer::joint_ends;
     std::vector<std::uint32_t> paths;
-    pack_paths(state.nodes, std::uint32_t(width), state.contact_colours[state.tree_colours - 1].end / std::uint32_t(width),
-               pack_ends(state.indices[std::size_t(Buffer::contact_ends)], width), paths);
+    pack_paths(state.nodes, std::uint32_t(width), colours[state.tree_colours - 1].end / std::uint32_t(width),
+               pack_ends(state.indices[std::size_t(ends)], width), paths);
     return paths;
   }
   return is_ends(buffer) ? pack_ends(logical, width) : logical;
@@ -73,9 +76,11 @@ template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<
   const Domain domain = schema(kernel).domain;
   if (domain == Domain::tree) return {{0, lay_out(state.trees, width).lists.count()}};
   if (domain == Domain::body) return {{0, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size())}};
-  std::vector<Range> ranges = domain == Domain::joint ? state.joint_colours : state.contact_colours;
-  if (domain == Domain::free_contact) ranges.erase(ranges.begin(), ranges.begin() + state.tree_colours);
-  if (domain == Domain::tree_contact) ranges.resize(state.tree_colours);
+  const bool joints = domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint;
+  std::vector<Range> ranges = joints ? state.joint_colours : state.contact_colours;
+  if (domain == Domain::free_contact || domain == Domain::free_joint)
+    ranges.erase(ranges.begin(), ranges.begin() + state.tree_colours);
+  if (domain == Domain::tree_contact || domain == Domain::tree_joint) ranges.resize(state.tree_colours);
   for (Range& range : ranges) range = {range.begin / width, range.end / width};
   return ranges;
 }

@@ -39,7 +39,7 @@ struct Mood {
 };
 inline constexpr Mood moods[] = {
     {"plausible", 3, 2, 5, 1, 0.5, 2},
-    {"many turns and far away", 50, 4000, 5000, 0.05, 1, 4000},
+    {"many turns and far away", 50, 4000, 5000, 0.05, 1, 100},  // at 4000 rad/s loops of trees leave the range of numbers
     {"small", 1e-6, 1e-7, 0.01, 1e-3, 1e-8, 1e-7},
     {"heavy", 20, 300, 50, 1e6, 1e5, 30},  // at 300 rad/s tree_again ends at 1e9 m/s, see analytic_tree_limits.cpp
 };
@@ -49,7 +49,7 @@ template <class Scalar> struct State {
   std::array<std::vector<std::uint32_t>, buffer_count> indices;  // ends: a and b of slot 0, of slot 1, ...
   std::array<InfoOf<Scalar>, 2> infos;                           // biased, relax
   std::vector<Range> contact_colours, joint_colours;             // in slots
-  std::uint32_t tree_colours = 0;                                // of contacts with trees, which come first
+  std::uint32_t tree_colours = 0;                                // of contacts and joints with trees, which come first
   Forest trees;                                                  // of joints of their own
   TreeNodes nodes;
 };
@@ -85,13 +85,13 @@ template <class Scalar> class Maker {
   void joint(std::uint32_t row);
   void slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count, std::uint32_t blocks);
   void trees();
-  void tree_contacts();
+  void tree_slots(Buffer ends, Buffer order, std::vector<Range>& colours);
   void assemble(std::span<const TreeNode> tree);
   void infos();
 
   static constexpr std::uint32_t colour_count = 3, contact_blocks = 8, joint_blocks = 4;
   static constexpr std::uint32_t tree_colour_count = 2, tree_blocks = 2;
-  static constexpr std::uint32_t coloured_joints = colour_count * joint_blocks * 32;
+  static constexpr std::uint32_t coloured_joints = (colour_count * joint_blocks + tree_colour_count * tree_blocks) * 32;
 
   std::mt19937_64 random_;
   Mood mood_;
@@ -201,12 +201,11 @@ void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours
   }
 }
 
-/// Contacts with bodies of trees, in colours of their own before all others: within one, no tree and no free body stands in
+/// Contacts or joints with bodies of trees, in colours of their own before all others: within one, no tree and no free body stands in
 /// two slots. Between two bodies of a tree, with something fixed, with a free body, between two trees.
-template <class Scalar> void Maker<Scalar>::tree_contacts() {
+template <class Scalar> void Maker<Scalar>::tree_slots(Buffer ends_of, Buffer order_of, std::vector<Range>& colours) {
   std::uint32_t record = 1;
-  std::vector<std::uint32_t>&ends = state_.indices[std::size_t(Buffer::contact_ends)],
-  &order = state_.indices[std::size_t(Buffer::contact_order)];
+  std::vector<std::uint32_t>&ends = state_.indices[std::size_t(ends_of)], &order = state_.indices[std::size_t(order_of)];
   for (std::uint32_t c = 0; c < tree_colour_count; c++) {
     std::vector<std::size_t> trees(state_.trees.trees());
     for (std::size_t i = 0; i < trees.size(); i++) trees[i] = i;
@@ -235,7 +234,7 @@ template <class Scalar> void Maker<Scalar>::tree_contacts() {
       ends.push_back(b);
       order.push_back(padding ? 0 : record++);
     }
-    state_.contact_colours.push_back({begin, begin + count});
+    colours.push_back({begin, begin + count});
   }
   state_.tree_colours = tree_colour_count;
 }
@@ -298,6 +297,7 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.joint_mass_scale = Scalar(relax ? 1 : 0.95);
     info.joint_impulse_scale = Scalar(relax ? 0 : 0.05);
     info.joint_push_speed = Scalar(8);
+    info.loop_give = Scalar(1e-5);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.spin_floor = Scalar(6e-5);
@@ -326,7 +326,8 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   for (std::uint32_t row = 1; row < body_count; row++) state_.indices[std::size_t(Buffer::bodies)].push_back(row);
   while (state_.indices[std::size_t(Buffer::bodies)].size() % 32 != 0) state_.indices[std::size_t(Buffer::bodies)].push_back(0);
   trees();
-  tree_contacts();
+  tree_slots(Buffer::contact_ends, Buffer::contact_order, state_.contact_colours);
+  tree_slots(Buffer::joint_ends, Buffer::joint_order, state_.joint_colours);
   slots(Buffer::contact_ends, Buffer::contact_order, state_.contact_colours, colour_count, contact_blocks);
   slots(Buffer::joint_ends, Buffer::joint_order, state_.joint_colours, colour_count, joint_blocks);
   infos();

@@ -10,13 +10,13 @@ namespace {
 /// Every signature there is, for two numbers of sub-steps.
 template <class Visit> void for_all_signatures(Visit&& visit) {
   for (const Mix& mix : mixes())
-    for (unsigned bits = 0; bits < 512; bits++)
+    for (unsigned bits = 0; bits < 1024; bits++)
       for (std::uint32_t substeps : {1u, 4u}) {
         PlanSignature s;
         s.substeps = substeps;
         s.places = mix.places;
         s.bodies = bits & 1;
-        s.joints = bits & 2;
+        s.free_joints = bits & 2;
         s.shapes = bits & 4;
         s.free_contacts = bits & 8;
         s.restitution = bits & 16;
@@ -24,6 +24,7 @@ template <class Visit> void for_all_signatures(Visit&& visit) {
         s.gyroscopic = bits & 64;
         s.trees = bits & 128;
         s.tree_contacts = s.trees && bits & 256;
+        s.tree_joints = s.trees && bits & 512;
         visit(s);
       }
 }
@@ -204,8 +205,8 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
   for_all_signatures([](const PlanSignature& s) {
     const StepPlan plan = make_plan(s);
     CHECK((reason(plan, "integrate") != "") == !s.bodies);
-    CHECK((reason(plan, "joints") != "") == (!s.joints && !s.trees));
-    CHECK((reason(plan, "joint rows") != "") == (!s.joints && s.trees));
+    CHECK((reason(plan, "joints") != "") == (!s.joints() && !s.trees));
+    CHECK((reason(plan, "joint rows") != "") == (!s.joints() && s.trees));
     CHECK((reason(plan, "collision") != "") == !s.shapes);
     CHECK((reason(plan, "impulses") != "") == !s.contacts());
     CHECK((reason(plan, "restitution") != "") == (s.contacts() && !s.restitution));
@@ -213,16 +214,22 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
     CHECK((reason(plan, "gyroscopic terms") != "") == (s.bodies && !s.gyroscopic));
     if (s.bodies) CHECK(runs(plan, s.drag ? "integrate_drag" : "integrate") == int(s.substeps));
     if (s.bodies) CHECK(runs(plan, s.gyroscopic ? "advance" : "advance_round") == int(s.substeps));
-    if (!s.joints) CHECK(runs(plan, "joint_prepare") + runs(plan, "joint_solve") == 0);
-    if (s.bodies && s.joints) CHECK(runs(plan, "joint_prepare") == int(s.substeps));
+    CHECK(runs(plan, "joint_prepare") == (s.bodies && s.joints() ? int(s.substeps) : 0));
+    CHECK(runs(plan, "joint_warm") == (s.bodies && s.free_joints ? int(s.substeps) : 0));
+    CHECK(runs(plan, "joint_solve") == (s.bodies && s.free_joints ? 2 * int(s.substeps) : 0));
+    for (const char* kernel : {"tree_joint_warm", "tree_joint_mass", "tree_joint_arms"})
+      CHECK(runs(plan, kernel) == (s.bodies && s.tree_joints ? int(s.substeps) : 0));
+    CHECK(runs(plan, "tree_joint_solve") == (s.bodies && s.tree_joints ? 2 * int(s.substeps) : 0));
     for (const char* kernel : {"tree_prepare", "tree_solve", "tree_again", "tree_relax"})
       CHECK(runs(plan, kernel) == (s.bodies && s.trees ? int(s.substeps) : 0));
     if (!s.contacts()) CHECK(runs(plan, "contact_prepare") + runs(plan, "contact_store") == 0);
     for (const char* kernel : {"contact_warm", "contact_solve"}) CHECK((runs(plan, kernel) > 0) == (s.bodies && s.free_contacts));
-    for (const char* kernel : {"tree_contact_warm", "tree_collect", "tree_respond", "tree_contact_prepare"})
+    for (const char* kernel : {"tree_contact_warm", "tree_contact_prepare"})
       CHECK(runs(plan, kernel) == (s.bodies && s.tree_contacts ? int(s.substeps) : 0));
-    for (const char* kernel : {"tree_contact_solve", "tree_flush"})
-      CHECK(runs(plan, kernel) == (s.bodies && s.tree_contacts ? 2 * int(s.substeps) : 0));
+    CHECK(runs(plan, "tree_contact_solve") == (s.bodies && s.tree_contacts ? 2 * int(s.substeps) : 0));
+    const bool on_trees = s.bodies && (s.tree_contacts || s.tree_joints);
+    for (const char* kernel : {"tree_collect", "tree_respond"}) CHECK(runs(plan, kernel) == (on_trees ? int(s.substeps) : 0));
+    CHECK(runs(plan, "tree_flush") == (on_trees ? 2 * int(s.substeps) : 0));
     if (!s.bodies) CHECK(plan.entries.empty());
   });
 }

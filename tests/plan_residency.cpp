@@ -103,20 +103,21 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
 
 template <class Visit> void for_all_needs(Visit&& visit) {
   for (const Mix& mix : mixes())
-    for (unsigned bits = 0; bits < 32; bits++)
+    for (unsigned bits = 0; bits < 64; bits++)
       for (std::uint32_t substeps : {1u, 2u, 4u, 8u}) {
         PlanSignature s;
         s.substeps = substeps;
         s.places = mix.places;
         s.bodies = true;
-        s.shapes = s.joints = bits & 1;
+        s.shapes = s.free_joints = bits & 1;
         s.free_contacts = bits & 2;
         s.restitution = bits & 4;
         s.trees = bits & 8;
         s.tree_contacts = s.trees && bits & 16;
+        s.tree_joints = s.trees && bits & 32;
         s.shapes |= s.contacts();
-        INFO(mix.text() << ", trees " << s.trees << ", joints " << s.joints << ", contacts " << s.free_contacts << s.tree_contacts
-                        << ", restitution " << s.restitution << ", sub-steps " << substeps);
+        INFO(mix.text() << ", trees " << s.trees << ", joints " << s.free_joints << s.tree_joints << ", contacts "
+                        << s.free_contacts << s.tree_contacts << ", restitution " << s.restitution << ", sub-steps " << substeps);
         visit(s);
       }
 }
@@ -129,7 +130,7 @@ TEST_CASE("every kernel finds current data; no copy is redundant; no hazard is w
 
 TEST_CASE("all on the cpu: no transfer, no barrier") {
   PlanSignature s;
-  s.bodies = s.trees = s.joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
+  s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
   for (const PlanEntry& e : make_plan(s).entries) {
     CHECK(e.kind == PlanEntry::Kind::kernel);
     CHECK_FALSE(e.barrier);
@@ -139,7 +140,7 @@ TEST_CASE("all on the cpu: no transfer, no barrier") {
 TEST_CASE("all on gl: each buffer goes up at most once, and nothing comes down before the end") {
   PlanSignature s;
   s.places.fill(Place::gl);
-  s.bodies = s.trees = s.joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
+  s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
   std::set<Buffer> up;
   bool coming_down = false;
   for (const PlanEntry& e : make_plan(s).entries) {

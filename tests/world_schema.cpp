@@ -14,7 +14,8 @@ namespace {
 /// The table whose rows a domain visits.
 Table own_table(Domain domain) {
   if (domain == Domain::body) return Table::body;
-  return domain == Domain::joint || domain == Domain::tree ? Table::joint : Table::contact;
+  const bool joints = domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint;
+  return joints || domain == Domain::tree ? Table::joint : Table::contact;
 }
 }  // namespace
 
@@ -66,17 +67,20 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
       CHECK(bound.insert(a.buffer).second);
       writes |= a.write;
       const Table table = schema(a.buffer).table, own = own_table(s.domain);
-      const bool of_node = table == Table::node && (s.domain == Domain::tree || s.domain == Domain::tree_contact);
+      const bool of_tree = s.domain == Domain::tree || s.domain == Domain::tree_contact || s.domain == Domain::tree_joint;
+      const bool of_node = table == Table::node && of_tree;
       CHECK((table == own || table == Table::body || of_node));
       if (schema(a.buffer).reals == 0) CHECK_FALSE(a.write);  // the host makes the lists
     }
     CHECK(writes);
     if (s.domain == Domain::body) CHECK(bound.contains(Buffer::bodies));
-    if (s.domain == Domain::joint) CHECK((bound.contains(Buffer::joint_ends) || bound.contains(Buffer::joint_order)));
+    if (s.domain == Domain::joint || s.domain == Domain::free_joint)
+      CHECK((bound.contains(Buffer::joint_ends) || bound.contains(Buffer::joint_order)));
     if (s.domain == Domain::tree) {
       for (const Buffer list : {Buffer::tree_blocks, Buffer::tree_parents}) CHECK(bound.contains(list));
       CHECK((bound.contains(Buffer::tree_ends) || bound.contains(Buffer::tree_order)));
     }
+    if (s.domain == Domain::tree_joint) CHECK(bound.contains(Buffer::joint_paths));
     if (s.domain == Domain::tree_contact) CHECK(bound.contains(Buffer::contact_paths));
     if (s.domain == Domain::contact || s.domain == Domain::free_contact)
       CHECK((bound.contains(Buffer::contact_ends) || bound.contains(Buffer::contact_order)));

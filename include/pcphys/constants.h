@@ -43,6 +43,9 @@ inline constexpr double mean_impulse_share = 0.025;
 inline constexpr double tree_spin_floor = 6e-5;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
+/// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a
+/// tree holds by itself answers nothing.
+inline constexpr double loop_give = 1e-4;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

@@ -13,6 +13,7 @@ using element_contact_ends = uint;
 using element_contact_order = uint;
 using element_joint_ends = uint;
 using element_joint_order = uint;
+using element_joint_paths = uint;
 using element_tree_blocks = uint;
 using element_tree_parents = uint;
 using element_tree_ends = uint;
@@ -47,6 +48,8 @@ using element_contact_paths = uint;
 #define PC_LOOP_free_contact PC_LOOP_contact
 #define PC_LOOP_tree_contact PC_LOOP_contact
 #define PC_LOOP_joint PC_LOOP_contact
+#define PC_LOOP_free_joint PC_LOOP_contact
+#define PC_LOOP_tree_joint PC_LOOP_contact
 #define PC_LOOP_tree PC_LOOP_contact
 #define PC_READ(buffer) io.buffer = static_cast<const element_##buffer*>(call.buffers[unsigned(Buffer::buffer)]);
 #define PC_WRITE(buffer) io.buffer = static_cast<element_##buffer*>(call.buffers[unsigned(Buffer::buffer)]);

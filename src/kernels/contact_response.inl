@@ -1,16 +1,8 @@
 // Impulse F at the manifold's centre and couple M act on b, their opposites on a. Momentum is what is
 // stored, so both momenta are conserved to rounding: the arms end in one common point (see pc_arms).
-#include "body_state.inl"
+#include "body_push.inl"
 #include "contact_arms.inl"
 
-PC_FN Vec3 pc_pushed(Vec3 v, Vec3 impulse, Real inverse_mass) { return pc_madd(v, impulse, inverse_mass); }
-
-PC_FN void pc_store_states(PC_IO Index ia, Index ib, BodyState a, BodyState b) {
-  PC_SCATTER_IF(a.inverse_mass > PC_REAL(0.0), motion, ia, 0u, pc_quad(a.v, a.inverse_mass));
-  PC_SCATTER_IF(a.inverse_mass > PC_REAL(0.0), motion, ia, 1u, pc_quad(a.l, a.phase));
-  PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 0u, pc_quad(b.v, b.inverse_mass));
-  PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 1u, pc_quad(b.l, b.phase));
-}
 PC_FN void pc_apply(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple) {
   Vec3 torque_a = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arms.b, impulse));
   precise Real minus_mass = -a.inverse_mass; precise Real minus_response = -a.response;
@@ -18,14 +10,6 @@ PC_FN void pc_apply(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(Bo
   a.l = pc_madd(a.l, torque_a, minus_response); b.l = pc_madd(b.l, torque_b, b.response);
   pc_store_states(PC_PASS ia, ib, a, b);
 }
-// The same on those of the two that stand in no tree; of the others only the phase is stored.
-PC_FN void pc_apply_free(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Mask tree_a, Mask tree_b, Vec3 impulse, Vec3 torque_a, Vec3 torque_b) {
-  Real zero = PC_REAL(0.0); Real mass_a = pc_select(tree_a, zero, -a.inverse_mass); Real mass_b = pc_select(tree_b, zero, b.inverse_mass);
-  a.v = pc_pushed(a.v, impulse, mass_a); b.v = pc_pushed(b.v, impulse, mass_b);
-  a.l = pc_madd(a.l, torque_a, pc_select(tree_a, zero, -a.response)); b.l = pc_madd(b.l, torque_b, pc_select(tree_b, zero, b.response));
-  pc_store_states(PC_PASS ia, ib, a, b);
-}
-
 // Sum of four normal impulses as an impulse along n and a couple in the contact plane.
 struct Push { Real n; Real m1; Real m2; };
 PC_FN Push pc_push(PC_IO Slot m, Real l0, Real l1, Real l2, Real l3) {

@@ -1,4 +1,5 @@
-// Start of a sub-step's joints: rows at the present pose, then the last sub-step's impulses act again.
+// Start of a sub-step's joints that stand in no tree: rows at the present pose, and what lasts of the last sub-step's impulses,
+// which joint_warm and tree_joint_warm let act again.
 //
 // Pin (section 9.3 of the original; errata v): K = (1/m_a + 1/m_b) 1 - [r_a] I_a^-1 [r_a] - [r_b] I_b^-1 [r_b].
 // Both arms end in the midpoint of the two pins, so impulses conserve angular momentum exactly.
@@ -25,9 +26,8 @@ PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
   Sym3 m; m.xx = xx; m.xy = xy; m.xz = xz; m.yy = yy; m.yz = yz; m.zz = zz; return m;
 }
 
-// One angle row at its nearer limit; writes it and returns its impulse and the couple of the warm start.
-struct RowStart { Real impulse; Vec3 couple; };
-PC_FN RowStart pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lower, Real upper, Mask exists, Real remembered, Sym3 inertia) {
+// One angle row at its nearer limit; writes it and returns its impulse.
+PC_FN Real pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lower, Real upper, Mask exists, Real remembered, Sym3 inertia) {
   NearerLimit limit = pc_nearer_limit(angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
   Vec3 j = pc_scale(axis, sign);
   Real mass = pc_select(exists, pc_inverse_or_zero(pc_dot(j, pc_sym_mul(inertia, j))), PC_REAL(0.0));
@@ -36,8 +36,7 @@ PC_FN RowStart pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real 
   PC_ST(joint_rows, m, JOINT_AXIS + row * 3u, j.x); PC_ST(joint_rows, m, JOINT_AXIS + row * 3u + 1u, j.y); PC_ST(joint_rows, m, JOINT_AXIS + row * 3u + 2u, j.z);
   PC_ST(joint_rows, m, JOINT_SLACK + row, slack); PC_ST(joint_rows, m, JOINT_MASS + row, mass);
   PC_ST(joint_rows, m, JOINT_SIGN + row, sign); PC_ST(joint_rows, m, JOINT_LOCKED + row, pc_select(locked, PC_REAL(1.0), PC_REAL(0.0)));
-  precise Real result = impulse * sign;
-  RowStart start; start.impulse = result; start.couple = pc_scale(j, impulse); return start;
+  precise Real result = impulse * sign; return result;
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -71,14 +70,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real xx = wa.xx * a.response + wb.xx * b.response; precise Real xy = wa.xy * a.response + wb.xy * b.response; precise Real xz = wa.xz * a.response + wb.xz * b.response;
   precise Real yy = wa.yy * a.response + wb.yy * b.response; precise Real yz = wa.yz * a.response + wb.yz * b.response; precise Real zz = wa.zz * a.response + wb.zz * b.response;
   both.xx = xx; both.xy = xy; both.xz = xz; both.yy = yy; both.yz = yz; both.zz = zz;
-  RowStart c0 = pc_angle_row(PC_PASS m, 0u, angles.roll_axis, angles.value.x, lower.v.x, upper.v.x, any, angle.v.x, both);
-  RowStart c1 = pc_angle_row(PC_PASS m, 1u, angles.second_axis, angles.value.y, lower.v.y, upper.v.y, any, angle.v.y, both);
-  RowStart c2 = pc_angle_row(PC_PASS m, 2u, angles.third_axis, angles.value.z, lower.v.z, upper.v.z, is_angles, angle.v.z, both);
+  Real c0 = pc_angle_row(PC_PASS m, 0u, angles.roll_axis, angles.value.x, lower.v.x, upper.v.x, any, angle.v.x, both);
+  Real c1 = pc_angle_row(PC_PASS m, 1u, angles.second_axis, angles.value.y, lower.v.y, upper.v.y, any, angle.v.y, both);
+  Real c2 = pc_angle_row(PC_PASS m, 2u, angles.third_axis, angles.value.z, lower.v.z, upper.v.z, is_angles, angle.v.z, both);
 
-  // warm start
-  precise Vec3 impulse = pin.v * PC_INFO(impulse_ratio);
-  precise Vec3 couple = c0.couple + c1.couple + c2.couple;
-  pin.v = impulse; angle.v = Vec3(c0.impulse, c1.impulse, c2.impulse);
+  precise Vec3 impulse = pin.v * PC_INFO(impulse_ratio); pin.v = impulse; angle.v = Vec3(c0, c1, c2);
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
-  pc_joint_apply(PC_PASS ia, ib, a, b, arm_a, arm_b, impulse, couple);
 }

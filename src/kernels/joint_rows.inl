@@ -8,17 +8,34 @@ const uint JOINT_SLACK = 24u;   // how far each row is inside its limit [rad]
 const uint JOINT_MASS = 27u;    // effective masses; 0 where there is no row
 const uint JOINT_SIGN = 30u;    // +1 at a lower limit, -1 at an upper one; axes are already turned by it
 const uint JOINT_LOCKED = 33u;  // 1 where lower = upper: the row pulls both ways
+const uint JOINT_GIVE = 36u;    // of rows inside trees: compliance of the pin
+const uint JOINT_TURN = 37u;    // and what answers a couple on b, its opposite on a: relative angular velocity, xx xy xz yy yz zz
+const uint JOINT_MOVE = 43u;    // and velocity of the pin, three rows
+const uint JOINT_NEAR_A = 52u;  // arms from the places of now to a common point
+const uint JOINT_NEAR_B = 55u;
 
 PC_FN Vec3 pc_ld3_joint(PC_IO Slot m, uint f) { return Vec3(PC_LD(joint_rows, m, f), PC_LD(joint_rows, m, f + 1u), PC_LD(joint_rows, m, f + 2u)); }
 
-// Impulse F at the pin and couple M act on b, their opposites on a.
-PC_FN void pc_joint_apply(PC_IO Index ia, Index ib, BodyState a, BodyState b, Vec3 arm_a, Vec3 arm_b, Vec3 impulse, Vec3 couple) {
-  Vec3 torque_a = pc_add(couple, pc_cross(arm_a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arm_b, impulse));
-  precise Real minus_mass = -a.inverse_mass; precise Real minus_response = -a.response;
-  Vec3 va = pc_madd(a.v, impulse, minus_mass); Vec3 vb = pc_madd(b.v, impulse, b.inverse_mass);
-  Vec3 la = pc_madd(a.l, torque_a, minus_response); Vec3 lb = pc_madd(b.l, torque_b, b.response);
-  PC_SCATTER_IF(a.inverse_mass > PC_REAL(0.0), motion, ia, 0u, pc_quad(va, a.inverse_mass));
-  PC_SCATTER_IF(a.inverse_mass > PC_REAL(0.0), motion, ia, 1u, pc_quad(la, a.phase));
-  PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 0u, pc_quad(vb, b.inverse_mass));
-  PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 1u, pc_quad(lb, b.phase));
+PC_FN Sym3 pc_lds_joint(PC_IO Slot m, uint f) {
+  Sym3 k; k.xx = PC_LD(joint_rows, m, f); k.xy = PC_LD(joint_rows, m, f + 1u); k.xz = PC_LD(joint_rows, m, f + 2u);
+  k.yy = PC_LD(joint_rows, m, f + 3u); k.yz = PC_LD(joint_rows, m, f + 4u); k.zz = PC_LD(joint_rows, m, f + 5u); return k;
+}
+// Both arms, drawn to one common point where the bodies have moved, or the pin's impulses would exert a couple
+// (not where they fly apart further than about a sixth of the arms: the block is of the frozen ones).
+struct PinArms { Vec3 a; Vec3 b; };
+PC_FN PinArms pc_common_arms(Vec3 frozen_a, Vec3 frozen_b, Vec3 apart) {
+  Vec3 moved_all = pc_sub(apart, pc_sub(frozen_a, frozen_b));
+  precise Real reach = pc_dot(frozen_a, frozen_a) + pc_dot(frozen_b, frozen_b); precise Real way = pc_dot(moved_all, moved_all) * PC_REAL(32.0);
+  Vec3 moved = pc_select3(way < reach, moved_all, pc_zero3());
+  PinArms arms; arms.a = pc_madd(frozen_a, moved, PC_REAL(0.5)); arms.b = pc_madd(frozen_b, moved, PC_REAL(-0.5)); return arms;
+}
+// What lasts of the last sub-step's impulses: of the pin, and of the angle rows as a couple.
+struct JointImpulse { Vec3 pin; Vec3 couple; };
+PC_FN Vec3 pc_row_couple(PC_IO Slot m, uint row, Real remembered) {
+  precise Real impulse = remembered * PC_LD(joint_rows, m, JOINT_SIGN + row);
+  return pc_scale(pc_ld3_joint(PC_PASS m, JOINT_AXIS + row * 3u), impulse);
+}
+PC_FN JointImpulse pc_joint_warm(PC_IO Slot m, Quad pin, Quad angle) {
+  Vec3 c0 = pc_row_couple(PC_PASS m, 0u, angle.v.x); Vec3 c1 = pc_row_couple(PC_PASS m, 1u, angle.v.y); Vec3 c2 = pc_row_couple(PC_PASS m, 2u, angle.v.z);
+  precise Vec3 couple = c0 + c1 + c2; JointImpulse j; j.pin = pin.v; j.couple = couple; return j;
 }

@@ -4,7 +4,7 @@
 //   PC_KERNEL(name, domain, stage, accesses)
 //
 // domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once; free_contact and
-// tree_contact are those without and with a body of a tree), tree (a joint tree a lane, blocks of trees of one shape).
+// tree_contact are those without and with a body of a tree, free_joint and tree_joint the same of joints that close loops), tree (a joint tree a lane, blocks of trees of one shape).
 // stage: whose backend runs it. accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in
 // GLSL; PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum).
 // Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
@@ -16,7 +16,7 @@
 PC_ROWS(contact, contact_rows, 64)
 PC_ROWS(contact, contact_impulses, 16)
 PC_ROWS(contact, rolling_impulses, 4)
-PC_ROWS(joint, joint_rows, 36)
+PC_ROWS(joint, joint_rows, 60)
 PC_ROWS(joint, tree_rows, 168)
 #endif
 
@@ -34,8 +34,13 @@ PC_KERNEL(advance_seed, body, integrate, PC_READ(bodies) PC_READ(mass) PC_WRITE(
 PC_KERNEL(synchronise, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_WRITE(velocity_parts))
 PC_KERNEL(synchronise_drag, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_READ(force) PC_WRITE(velocity_parts))
 PC_KERNEL(synchronise_seed, body, integrate, PC_READ(bodies) PC_WRITE(velocity_parts))
-PC_KERNEL(joint_prepare, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_frame) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(joint_rows))
-PC_KERNEL(joint_solve, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
+PC_KERNEL(joint_prepare, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_frame) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(joint_impulse) PC_WRITE(joint_rows))
+PC_KERNEL(joint_warm, free_joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(joint_impulse) PC_READ(inertia) PC_WRITE(motion))
+PC_KERNEL(joint_solve, free_joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
+PC_KERNEL(tree_joint_warm, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(joint_impulse) PC_READ(inertia) PC_WRITE(motion) PC_WRITE(node_pending))
+PC_KERNEL(tree_joint_mass, tree_joint, joints, PC_READ(joint_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_WRITE(joint_rows))
+PC_KERNEL(tree_joint_solve, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(node_operator) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(node_pending))
+PC_KERNEL(tree_joint_arms, tree_joint, joints, PC_READ(joint_paths) PC_READ(pose) PC_WRITE(joint_rows))
 PC_KERNEL(tree_prepare, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(joint_frame) PC_READ(joint_impulse) PC_WRITE(tree_rows))
 PC_KERNEL(tree_solve, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse))

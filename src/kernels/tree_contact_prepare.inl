@@ -2,8 +2,9 @@
 // answer. Within one tree an impulse on one body also moves the other: of that what the nearest common node passes on.
 #include "body_state.inl"
 #include "tree_math.inl"
-#include "tree_path.inl"
+#include "contact_way.inl"
 #include "node_operator.inl"
+#include "node_response.inl"
 #include "contact_rows.inl"
 #include "contact_arms.inl"
 #include "contact_masses.inl"
@@ -12,26 +13,9 @@ struct Frame { Vec3 t1; Vec3 t2; Vec3 n; };
 PC_FN Vec3 pc_in_frame(Frame f, Vec3 v) { return Vec3(pc_dot(f.t1, v), pc_dot(f.t2, v), pc_dot(f.n, v)); }
 PC_FN Sym3 pc_sym_in_frame(Frame f, Sym3 m) { Vec3 a = pc_sym_mul(m, f.t1); Vec3 b = pc_sym_mul(m, f.t2); Vec3 c = pc_sym_mul(m, f.n); return pc_products(f.t1, f.t2, f.n, a, b, c); }
 
-// Of one side, at its arm: as a body among joints, or a free one; a body of a tree answers nothing but with it.
-PC_FN Sym6 pc_side_response(PC_IO Way w, Slot m, uint side, Index body, Vec3 arm) {
-  Sym6 g = pc_response(PC_PASS PC_EACH(contact_paths, m, pc_entry(w, PATH_OWN + side))); BodyState b = pc_body_state(PC_PASS body);
-  Vec3 zero = pc_zero3(); Mask in_tree = pc_in_tree(PC_PASS w, m, side);
-  precise Real xx = b.inertia.xx * b.response; precise Real xy = b.inertia.xy * b.response; precise Real xz = b.inertia.xz * b.response;
-  precise Real yy = b.inertia.yy * b.response; precise Real yz = b.inertia.yz * b.response; precise Real zz = b.inertia.zz * b.response;
-  Sym6 r; r.l = pc_sym_select(in_tree, g.l, pc_diagonal(b.inverse_mass)); r.a = pc_sym_select(in_tree, g.a, pc_sym3(xx, xy, xz, yy, yz, zz));
-  r.c = pc_mat3(pc_select3(in_tree, g.c.a, zero), pc_select3(in_tree, g.c.b, zero), pc_select3(in_tree, g.c.c, zero));
-  return pc_response_at(r, arm);
-}
-
-// How body b of a tree moves, at its arm and in the contact frame, when body a of it feels the impulses f.
-PC_FN Six pc_across(PC_IO Way w, Slot m, Frame frame, Arms arms, Six f) {
-  uint levels_a = pc_levels_below(w, 0u); uint levels_b = pc_levels_below(w, 1u);
-  for (uint i = 0u; i < w.below_a; i++) {
-    Link link = pc_link(PC_PASS PC_EACH(contact_paths, m, pc_entry(w, levels_a + (w.below_a - 1u - i))));
-    f = pc_up(link, f, pc_on_joint(link, f));
-  }
-  Six x = pc_sym6_mul(pc_response(PC_PASS PC_EACH(contact_paths, m, pc_entry(w, PATH_COMMON))), f);
-  for (uint k = 0u; k < w.below_b; k++) x = pc_down(pc_link(PC_PASS PC_EACH(contact_paths, m, pc_entry(w, levels_b + k))), x, pc_zero3());
+// How body b of a tree moves, at its arm and in the contact frame, when body a of it feels the impulses f; a tenth is left out.
+PC_FN Six pc_across_in_frame(PC_IO Way w, Slot m, Frame frame, Arms arms, Six f) {
+  Six x = pc_across(PC_PASS w, m, f);
   precise Vec3 xl = pc_in_frame(frame, pc_add(x.l, pc_cross(x.a, arms.b))) * PC_REAL(0.9); precise Vec3 xa = pc_in_frame(frame, x.a) * PC_REAL(0.9);
   return pc_six(xl, xa);
 }
@@ -50,7 +34,7 @@ PC_FN void pc_take_across(PC_INOUT(Responses) r, Six x0, Six x1, Six x2, Six y0,
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m);
-  Index ia = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY)); Index ib = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY + 1u));
+  Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u); Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   Frame frame; frame.n = pc_ld3_rows(PC_PASS m, ROW_N); frame.t1 = pc_ld3_rows(PC_PASS m, ROW_T); frame.t2 = pc_cross(frame.n, frame.t1);
   Sym6 side_a = pc_side_response(PC_PASS w, m, 0u, ia, arms.a);
@@ -61,8 +45,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   r.w1 = Vec3(c1.x, c2.x, cn.x); r.w2 = Vec3(c1.y, c2.y, cn.y); r.wn = Vec3(c1.z, c2.z, cn.z);
   if (w.below_a + w.below_b > 0u) {  // lint: allow (the same for all lanes; where a contact is not within one tree it takes out zeros)
     Vec3 zero = pc_zero3();
-    Six x0 = pc_across(PC_PASS w, m, frame, arms, pc_six(frame.t1, pc_cross(arms.a, frame.t1))); Six x1 = pc_across(PC_PASS w, m, frame, arms, pc_six(frame.t2, pc_cross(arms.a, frame.t2))); Six x2 = pc_across(PC_PASS w, m, frame, arms, pc_six(frame.n, pc_cross(arms.a, frame.n)));
-    Six y0 = pc_across(PC_PASS w, m, frame, arms, pc_six(zero, frame.t1)); Six y1 = pc_across(PC_PASS w, m, frame, arms, pc_six(zero, frame.t2)); Six y2 = pc_across(PC_PASS w, m, frame, arms, pc_six(zero, frame.n));
+    Six x0 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(frame.t1, pc_cross(arms.a, frame.t1))); Six x1 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(frame.t2, pc_cross(arms.a, frame.t2))); Six x2 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(frame.n, pc_cross(arms.a, frame.n)));
+    Six y0 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(zero, frame.t1)); Six y1 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(zero, frame.t2)); Six y2 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(zero, frame.n));
     pc_take_across(r, x0, x1, x2, y0, y1, y2);
   }
   Real one = PC_REAL(1.0); Real none = PC_REAL(0.0);

@@ -3,40 +3,13 @@
 // velocities of trees follow with tree_flush.
 #define PC_MEAN
 #include "tree_math.inl"
-#include "tree_path.inl"
+#include "contact_way.inl"
 #include "node_operator.inl"
-#include "node_push.inl"
+#include "node_motion.inl"
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_visit.inl"
 
-PC_FN Six pc_pending(PC_IO Way w, Slot m, uint side) {
-  if (pc_any_in_tree(w, side) == 0u) return pc_six(pc_zero3(), pc_zero3());  // lint: allow (the same for all lanes; zeros otherwise)
-  Index root = PC_EACH(contact_paths, m, pc_entry(w, PATH_ROOT + side)); Quad l = PC_GATHER(node_pending, root, 0u); Quad a = PC_GATHER(node_pending, root, 1u);
-  Six x = pc_six(l.v, a.v);
-  uint depth = pc_depth(w, side); uint levels = pc_levels(w, side);
-  for (uint k = 0u; k < depth; k++) {
-    Index node = PC_EACH(contact_paths, m, pc_entry(w, levels + k)); Quad turned = PC_GATHER(node_pending, node, 0u);
-    x = pc_down(pc_link(PC_PASS node), x, turned.v);
-  }
-  return x;
-}
-// Impulses f on the side's body. `in_tree`: it stands in one.
-PC_FN void pc_push_tree(PC_IO Way w, Slot m, uint side, Mask in_tree, Six f) {
-  if (pc_any_in_tree(w, side) == 0u) return;  // lint: allow (the same for all lanes)
-  pc_note_push(PC_PASS w, m, side, in_tree, f);
-  uint depth = pc_depth(w, side); uint levels = pc_levels(w, side);
-  for (uint i = 0u; i < depth; i++) {
-    Index node = PC_EACH(contact_paths, m, pc_entry(w, levels + (depth - 1u - i))); Link link = pc_link(PC_PASS node);
-    Vec3 t = pc_on_joint(link, f); Quad turned = PC_GATHER(node_pending, node, 0u); turned.v = pc_snap3(pc_add(turned.v, pc_sym_mul(link.d_inverse, t)));
-    PC_SCATTER_IF(link.d_inverse.xx > PC_REAL(0.0), node_pending, node, 0u, turned);
-    f = pc_up(link, f, t);
-  }
-  Index root = PC_EACH(contact_paths, m, pc_entry(w, PATH_ROOT + side)); Six x = pc_sym6_mul(pc_response(PC_PASS root), f);
-  Quad l = PC_GATHER(node_pending, root, 0u); Quad a = PC_GATHER(node_pending, root, 1u);
-  l.v = pc_snap3(pc_add(l.v, x.l)); a.v = pc_snap3(pc_add(a.v, x.a));
-  PC_SCATTER_IF(in_tree, node_pending, root, 0u, l); PC_SCATTER_IF(in_tree, node_pending, root, 1u, a);
-}
 // What the pending motion of both sides adds to the twist.
 PC_FN Twist pc_twist_with(Twist v, Six xa, Six xb, Arms arms, Vec3 n, Vec3 t1, Vec3 t2) {
   Vec3 l = pc_sub(pc_add(xb.l, pc_cross(xb.a, arms.b)), pc_add(xa.l, pc_cross(xa.a, arms.a))); Vec3 a = pc_sub(xb.a, xa.a);
@@ -47,7 +20,7 @@ PC_FN Twist pc_twist_with(Twist v, Six xa, Six xb, Arms arms, Vec3 n, Vec3 t1, V
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m);
-  Index ia = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY)); Index ib = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY + 1u));
+  Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));

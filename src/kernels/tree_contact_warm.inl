@@ -1,6 +1,6 @@
 // contact_warm with bodies of trees: their impulses go into the solve of the tree (tree_collect), as it would answer them.
 #include "tree_math.inl"
-#include "tree_path.inl"
+#include "contact_way.inl"
 #include "node_push.inl"
 #include "contact_rows.inl"
 #include "contact_response.inl"
@@ -8,7 +8,7 @@
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m);
-  Index ia = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY)); Index ib = PC_EACH(contact_paths, m, pc_entry(w, PATH_BODY + 1u));
+  Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);

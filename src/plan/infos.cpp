@@ -47,6 +47,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.joint_mass_scale = Scalar(joint.mass_scale);
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
+  biased.loop_give = Scalar(constants::loop_give);
   biased.limit_stiffness = Scalar(joint.mass_scale / joint.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
   biased.spin_floor = Scalar(constants::tree_spin_floor);

@@ -70,8 +70,8 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   const bool seed = s.integrator == Integrator::seed;
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
-  if (!s.joints && !s.trees) out("joints", "the world has no joints");
-  if (!s.joints && s.trees) out("joint rows", "no joint closes a loop");
+  if (!s.joints() && !s.trees) out("joints", "the world has no joints");
+  if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
@@ -93,12 +93,15 @@ Motion motion(const PlanSignature& s) {
   return {Kernel::begin, Kernel::integrate, advance, Kernel::synchronise};
 }
 
-// contacts with trees first: the floor under what lies on them comes later (see Colouring)
+// what acts on trees first: the floor under what lies on them comes later (see Colouring)
+void solve_on_trees(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+  if (s.tree_joints && phase == Phase::relax) b.kernel(Kernel::tree_joint_arms, phase, substep);
+  if (s.tree_joints) b.kernel(Kernel::tree_joint_solve, phase, substep);
+  if (s.tree_contacts) b.kernel(Kernel::tree_contact_solve, phase, substep);
+  if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_flush, phase, substep);
+}
 void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
-  if (s.tree_contacts) {
-    b.kernel(Kernel::tree_contact_solve, phase, substep);
-    b.kernel(Kernel::tree_flush, phase, substep);
-  }
+  solve_on_trees(b, s, phase, substep);
   if (s.free_contacts) b.kernel(Kernel::contact_solve, phase, substep);
 }
 
@@ -119,27 +122,26 @@ StepPlan make_plan(const PlanSignature& s) {
     b.kernel(with.integrate, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
-    if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
     if (s.free_contacts && s.impacts)
       for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
     if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
-    if (s.tree_contacts) {
-      b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
-      b.kernel(Kernel::tree_collect, Phase::biased, k);
-    }
+    if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
+    if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
+    if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
     if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
-    if (s.joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
+    if (s.free_joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
-    if (s.tree_contacts) {
-      b.kernel(Kernel::tree_respond, Phase::biased, k);
-      b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
-    }
+    if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
+    if (s.tree_joints) b.kernel(Kernel::tree_joint_mass, Phase::biased, k);
+    if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
     solve_contacts(b, s, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
     b.kernel(with.advance, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
-    if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
+    if (s.free_joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
     if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
     solve_contacts(b, s, Phase::relax, k);
   }

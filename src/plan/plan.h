@@ -17,13 +17,15 @@ struct PlanSignature {
   bool drag = false;                        // of some body
   bool gyroscopic = false;                  // some body has unequal moments
   bool trees = false;                       // joints that stand in a tree
-  bool joints = false;                      // joints that close a loop
+  bool free_joints = false;                 // joints that close a loop, of bodies whose trees do not answer
+  bool tree_joints = false;                 // and of bodies whose trees do
   bool shapes = false;                      // some pair could ever touch
   bool free_contacts = false;               // some do in this step, of bodies that stand in no tree
   bool tree_contacts = false;               // and of bodies that do
   bool restitution = false;                 // some contact bounces
   bool impacts = false;                     // or is between shapes that meet in flight
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
+  bool joints() const { return free_joints || tree_joints; }
   bool contacts() const { return free_contacts || tree_contacts; }
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };

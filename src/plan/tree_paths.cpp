@@ -7,7 +7,7 @@
 
 namespace pcphys {
 
-void TreeNodes::build(const Forest& forest, std::span<const double> masses) {
+void TreeNodes::build(const Forest& forest, std::span<const double> masses, std::span<const std::uint32_t> closings) {
   node_.assign(masses.size(), 0);
   large_.assign(masses.size(), false);
   unit_.resize(masses.size());
@@ -17,13 +17,14 @@ void TreeNodes::build(const Forest& forest, std::span<const double> masses) {
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     const std::uint32_t root = rows();
+    const bool large = closings.empty() ? tree.size() > largest_tree : tree.size() * closings[i] > most_loop_visits;
     const std::uint32_t unit = tree[masses[tree[0].body] > 0 ? 0 : 1].body;
     for (std::uint32_t k = 0; k < tree.size(); k++) {
       parent_.push_back(k == 0 ? 0 : root + tree[k].parent);
       level_.push_back(k == 0 ? 0 : level_[root + tree[k].parent] + 1);
       if (masses[tree[k].body] == 0) continue;
-      large_[tree[k].body] = tree.size() > largest_tree;
-      if (tree.size() > largest_tree) continue;
+      large_[tree[k].body] = large;
+      if (large) continue;
       node_[tree[k].body] = root + k;
       unit_[tree[k].body] = unit;
     }

@@ -11,12 +11,15 @@ namespace pcphys {
 /// The nodes of a forest as rows of the table of nodes (row 0 pads), by body row and by node row.
 class TreeNodes {
  public:
-  /// Larger trees are left out: each of their contacts would wait for all others, and walk far. Their bodies answer
-  /// contacts alone, and their joints follow.
+  /// For contacts larger trees are left out: each of their contacts would wait for all others, and walk far. Their bodies
+  /// answer contacts alone, and their joints follow.
   static constexpr std::uint32_t largest_tree = 64;
+  /// For joints that close loops trees are left out where bodies times such joints are more than this, nets: every one of them waits for all others.
+  static constexpr std::size_t most_loop_visits = 2048;
 
-  /// `masses` by body row, 0 for bodies that nothing moves.
-  void build(const Forest& forest, std::span<const double> masses);
+  /// `masses` by body row, 0 for bodies that nothing moves. `closings`, by tree: how many joints close a loop on it. Without
+  /// them, as contacts see the forest. Rows are the same in both.
+  void build(const Forest& forest, std::span<const double> masses, std::span<const std::uint32_t> closings = {});
 
   std::uint32_t rows() const { return std::uint32_t(parent_.size()); }
   /// Row of a body's node; 0: it stands in no tree, or in one that is too large, or does not move.
@@ -35,10 +38,10 @@ class TreeNodes {
   std::vector<char> large_;  // by body row
 };
 
-/// Contacts of one kind have ways of about one length; 0 where neither body has a node.
+/// Contacts or joints of one kind have ways of about one length; 0 where neither body has a node.
 std::uint8_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b);
 
-/// The lists `contact_paths` of tree_path.inl for the first `blocks` blocks of slots. `ends` as in Slots.
+/// The lists `contact_paths` and `joint_paths` of tree_path.inl for the first `blocks` blocks of slots. `ends` as in Slots.
 void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
                 std::vector<std::uint32_t>& out);
 

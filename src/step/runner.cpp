@@ -31,6 +31,7 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::bodies: return &schedule.bodies;
     case Buffer::joint_ends: return &schedule.joints.ends();
     case Buffer::joint_order: return &schedule.joints.order();
+    case Buffer::joint_paths: return &schedule.joints.paths();
     case Buffer::tree_blocks: return &schedule.trees.lists().blocks;
     case Buffer::tree_parents: return &schedule.trees.lists().parents;
     case Buffer::tree_ends: return &schedule.trees.lists().ends;
@@ -50,8 +51,11 @@ bool needs_colours(const KernelSchema& k) {
 bool of_contacts(Domain domain) {
   return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
 }
+bool of_joints(Domain domain) { return domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint; }
 std::span<const Range> ranges_of(Domain domain, const Schedule& schedule) {
   if (domain == Domain::joint) return schedule.joints.ranges();
+  if (domain == Domain::free_joint) return schedule.joints.free_ranges();
+  if (domain == Domain::tree_joint) return schedule.joints.tree_ranges();
   if (domain == Domain::tree) return schedule.trees.ranges();
   if (domain == Domain::free_contact) return schedule.contacts.free_ranges();
   if (domain == Domain::tree_contact) return schedule.contacts.tree_ranges();
@@ -59,12 +63,13 @@ std::span<const Range> ranges_of(Domain domain, const Schedule& schedule) {
 }
 std::size_t slots_of(Domain domain, const Schedule& schedule) {
   if (domain == Domain::tree) return schedule.trees.slots();
-  return (domain == Domain::joint ? schedule.joints : schedule.contacts).slots();
+  return (of_joints(domain) ? schedule.joints : schedule.contacts).slots();
 }
 std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule& schedule) {
   if (buffer < Buffer::table_buffers) return state.tables.version(buffer) + 1;
   if (buffer == Buffer::bodies) return schedule.bodies_version + 1;
-  if (buffer == Buffer::joint_ends || buffer == Buffer::joint_order) return schedule.joints.version() + 1;
+  if (buffer == Buffer::joint_ends || buffer == Buffer::joint_order || buffer == Buffer::joint_paths)
+    return schedule.joints.version() + 1;
   if (buffer == Buffer::contact_ends || buffer == Buffer::contact_order || buffer == Buffer::contact_paths)
     return schedule.contacts.version() + 1;
   return schedule.trees.version() + 1;
@@ -134,7 +139,7 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
   for (const PlanEntry& entry : plan.entries) {
     if (entry.kind != PlanEntry::Kind::kernel) continue;
     const KernelSchema& k = schema(entry.kernel);
-    if (k.domain == Domain::joint) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
+    if (of_joints(k.domain)) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
     if (of_contacts(k.domain)) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
     if (k.domain == Domain::tree) schedule.trees.pack(at(place_of(settings, k.stage)).backend->width());
     for (const Access& a : k.accesses) {

@@ -9,18 +9,19 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
                            const TreeNodes& trees) {
   rows_.resize(ends.size() - 1);
   std::iota(rows_.begin(), rows_.end(), 1u);
-  colour_rows(state, ends, kind, &trees);
+  colour_rows(state, ends, kind, trees, {});
 }
 
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
-                           std::span<const std::uint32_t> rows, std::uint32_t kind) {
+                           std::span<const std::uint32_t> rows, std::uint32_t kind, const TreeNodes& trees,
+                           std::span<const char> alone) {
   rows_.assign(rows.begin(), rows.end());
-  colour_rows(state, ends, kind, nullptr);
+  colour_rows(state, ends, kind, trees, alone);
 }
 
 void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
-                                const TreeNodes* trees) {
-  trees_ = trees;
+                                const TreeNodes& trees, std::span<const char> alone) {
+  trees_ = &trees;
   kinds_.clear();
   beside_trees_ = 0;
   units_.clear();
@@ -31,14 +32,13 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
     for (int side = 0; side < 2; side++) {
       const std::uint32_t row_of_side = ends[row][side];
       ids[side] = state.bodies[row_of_side].index;
-      const std::uint32_t unit = trees ? trees->unit(row_of_side) : row_of_side;
+      const std::uint32_t unit = trees.unit(row_of_side);
       units_.push_back(state.responds(row_of_side) ? unit : Colouring::fixed_unit);
       ends_.push_back(ends[row][side]);
     }
-    if (trees) {
-      kinds_.push_back(path_kind(*trees, ends[row][0], ends[row][1]));
-      beside_trees_ += trees->is_large(ends[row][0]) || trees->is_large(ends[row][1]);
-    }
+    const bool within_trees = alone.empty() || !alone[row];
+    kinds_.push_back(within_trees ? path_kind(trees, ends[row][0], ends[row][1]) : std::uint8_t{0});
+    beside_trees_ += trees.is_large(ends[row][0]) || trees.is_large(ends[row][1]);
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
   }
   colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);
@@ -52,6 +52,26 @@ void ColouredSlots::pack(std::uint32_t width) {
   pack_slots(colouring_, width, ends_, rows_, slots_);
   if (any_with_trees()) pack_paths(*trees_, width, tree_ranges().back().end, slots_.ends, paths_);
 }
+
+namespace {
+
+/// By tree: how many joints that close a loop have a body of it that moves.
+std::vector<std::uint32_t> closings_of_trees(const Forest& forest, std::span<const JointLink> links,
+                                             std::span<const double> masses) {
+  std::vector<std::uint32_t> count(forest.trees(), 0), tree_of(masses.size(), 0);  // tree + 1
+  for (std::size_t i = 0; i < forest.trees(); i++)
+    for (const TreeNode& node : forest.tree(i))
+      if (masses[node.body] > 0) tree_of[node.body] = std::uint32_t(i + 1);
+  for (const std::uint32_t row : forest.closing()) {
+    const JointLink& link = links[row - 1];  // a link of each row from 1 on
+    const std::uint32_t a = tree_of[link.a], b = tree_of[link.b];
+    if (a > 0) count[a - 1]++;
+    if (b > 0 && b != a) count[b - 1]++;
+  }
+  return count;
+}
+
+}  // namespace
 
 void TreeSlots::build(const WorldState& state) {
   std::vector<JointLink> links;
@@ -67,7 +87,26 @@ void TreeSlots::build(const WorldState& state) {
   }
   forest_.build(links, masses, ids);
   nodes_.build(forest_, masses);
+  find_parallel(links);
+  loop_nodes_.build(forest_, masses, closings_of_trees(forest_, links, masses));
   width_ = 0;
+}
+
+void TreeSlots::find_parallel(std::span<const JointLink> links) {
+  std::vector<std::array<std::uint32_t, 2>> joined;
+  for (std::size_t i = 0; i < forest_.trees(); i++) {
+    const std::span<const TreeNode> tree = forest_.tree(i);
+    for (const TreeNode& node : tree.subspan(1)) {
+      const std::uint32_t a = node.body, b = tree[node.parent].body;
+      joined.push_back({std::min(a, b), std::max(a, b)});
+    }
+  }
+  std::ranges::sort(joined);
+  parallel_.assign(links.size() + 1, false);
+  for (const std::uint32_t row : forest_.closing()) {
+    const JointLink& link = links[row - 1];
+    parallel_[row] = std::ranges::binary_search(joined, std::array{std::min(link.a, link.b), std::max(link.a, link.b)});
+  }
 }
 
 void TreeSlots::pack(std::uint32_t width) {
@@ -95,7 +134,7 @@ void Schedule::update_structure(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     joint_ends_[row] = {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)};
   trees.build(state);
-  joints.colour(state, joint_ends_, trees.forest().closing(), 0);
+  joints.colour(state, joint_ends_, trees.forest().closing(), 0, trees.loop_nodes(), trees.parallel());
 }
 
 }  // namespace pcphys

@@ -18,11 +18,11 @@ class ColouredSlots {
  public:
   /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ. Of all
   /// rows but 0, or of those in `rows`.
-  /// Constraints with bodies of `trees` come first, and whole trees are what answers them.
+  /// Constraints with bodies of `trees` come first, and whole trees are what answers them; but not those that are set in `alone`.
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
               const TreeNodes& trees);
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::span<const std::uint32_t> rows,
-              std::uint32_t kind);
+              std::uint32_t kind, const TreeNodes& trees, std::span<const char> alone);
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
@@ -33,6 +33,8 @@ class ColouredSlots {
   /// Those of constraints with a body of a tree, and the others.
   std::span<const Range> tree_ranges() const { return ranges().first(colouring_.leading_colours()); }
   std::span<const Range> free_ranges() const { return ranges().subspan(colouring_.leading_colours()); }
+  /// How many of them have a body of a tree.
+  std::uint32_t with_trees() const { return colouring_.offsets()[colouring_.leading_colours()]; }
   bool any_with_trees() const { return colouring_.leading_colours() > 0; }
   bool any_without_trees() const { return colouring_.leading_colours() < colouring_.colours(); }
   /// Constraints with a body of a tree that is too large for them to be solved in it.
@@ -47,7 +49,7 @@ class ColouredSlots {
   Colouring colouring_;
   Slots slots_;
   void colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
-                   const TreeNodes* trees);
+                   const TreeNodes& trees, std::span<const char> alone);
 
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
   std::vector<std::uint8_t> kinds_;
@@ -64,7 +66,12 @@ class TreeSlots {
   void pack(std::uint32_t width);
 
   const Forest& forest() const { return forest_; }
+  /// As contacts see them, and as joints that close loops do.
   const TreeNodes& nodes() const { return nodes_; }
+  const TreeNodes& loop_nodes() const { return loop_nodes_; }
+  /// By joint row: whether it joins two bodies that a tree's joint joins already. What the tree leaves it to answer is
+  /// singular: such joints stay rows.
+  std::span<const char> parallel() const { return parallel_; }
   std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
   std::span<const Range> ranges() const { return {&all_, 1}; }
   TreeBlocks& lists() { return blocks_; }
@@ -72,7 +79,10 @@ class TreeSlots {
 
  private:
   Forest forest_;
-  TreeNodes nodes_;
+  void find_parallel(std::span<const JointLink> links);
+
+  TreeNodes nodes_, loop_nodes_;
+  std::vector<char> parallel_;
   TreeBlocks blocks_;
   Range all_{0, 0};
   std::uint32_t width_ = 0;

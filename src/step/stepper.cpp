@@ -103,7 +103,8 @@ struct Stepper::Inside {
     s.drag = from.drag;
     s.gyroscopic = from.gyroscopic;
     s.trees = from.trees.forest().trees() > 0;
-    s.joints = from.joints.constraints() > 0;
+    s.free_joints = from.joints.any_without_trees();
+    s.tree_joints = from.joints.any_with_trees();
     return s;
   }
 
@@ -212,7 +213,8 @@ struct Stepper::Inside {
     wanted.tree_contacts = schedule.contacts.any_with_trees();
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
-    if (const std::uint32_t rows = schedule.trees.nodes().rows(); wanted.tree_contacts && s.tables.rows(Table::node) != rows)
+    if (const std::uint32_t rows = schedule.trees.nodes().rows();
+        (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
     wanted.impacts = found.impacts;
@@ -228,7 +230,7 @@ struct Stepper::Inside {
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;
-    report.joints_as_rows = schedule.joints.constraints();
+    report.joints_as_rows = schedule.joints.constraints() - schedule.joints.with_trees();
     report.tree_contacts_as_rows = schedule.contacts.beside_trees();
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
     return {};

@@ -33,6 +33,7 @@ enum class Buffer : std::uint8_t {
   contact_order,
   joint_ends,
   joint_order,
+  joint_paths,
   tree_blocks,
   tree_parents,
   tree_ends,
@@ -51,8 +52,9 @@ enum class Kernel : std::uint8_t {
   count
 };
 
-/// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others.
-enum class Domain : std::uint8_t { body, contact, free_contact, tree_contact, joint, tree };
+/// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others. joint: all that stand in
+/// no tree; free_joint and tree_joint: the same of these.
+enum class Domain : std::uint8_t { body, contact, free_contact, tree_contact, joint, free_joint, tree_joint, tree };
 enum class Stage : std::uint8_t { integrate, joints, impulses };
 enum class PropertyType : std::uint8_t { real, vec3, quat, sym3 };
 enum class Role : std::uint8_t { input, state, derived, scratch };
