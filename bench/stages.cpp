@@ -67,6 +67,7 @@ class Bench {
     wanted.free_contacts = schedule_.contacts.any_without_trees();
     wanted.tree_contacts = schedule_.contacts.any_with_trees();
     wanted.restitution = found_.restitution;
+    if (wanted.trees) state().tables.resize(Table::node, schedule_.trees.nodes().rows());
     plan_ = make_plan(wanted);
     fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_f_);
     fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_d_);

@@ -62,7 +62,8 @@ std::string page() {
     std::string lists[2];
     for (const Access& a : s.accesses)
       lists[a.write] += (lists[a.write].empty() ? "" : ", ") + std::string(schema(a.buffer).name);
-    constexpr const char* domains[] = {"bodies", "contacts", "free contacts", "tree contacts", "joints", "trees"};
+    constexpr const char* domains[] = {"bodies", "contacts",    "free contacts", "tree contacts",
+                                       "joints", "free joints", "tree joints",   "trees"};
     out << "| `" << s.name << "` | " << name(s.stage) << " | " << domains[std::size_t(s.domain)] << " | " << lists[0] << " | "
         << lists[1] << " |\n";
   }
