@@ -103,6 +103,7 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
     if (s.free_contacts && s.impacts)
       for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
@@ -123,6 +124,7 @@ StepPlan make_plan(const PlanSignature& s) {
     b.kernel(s.gyroscopic ? Kernel::advance : Kernel::advance_round, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     if (s.joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
+    if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
     if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
     solve_contacts(b, s, Phase::relax, k);
   }
