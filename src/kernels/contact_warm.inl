@@ -4,6 +4,7 @@
 #include "contact_response.inl"
 #include "contact_warming.inl"
 #include "contact_turned.inl"
+#include "contact_calming.inl"
 
 // Where an arm has grown since the start of the step, the frozen effective masses are too large, by up to
 // (K + dK) / K with dK <= growth of arm^2 times trace I^-1; fast bodies would overshoot and gain energy.
@@ -17,15 +18,6 @@ PC_FN Real pc_mass_scale(PC_IO Slot m, Arms arms, BodyState a, BodyState b) {
   precise Real scale = k * pc_inverse_or_zero(now); return scale;
 }
 
-// The share of remembered impulses that takes most energy out: P.V + share P.K P / 2 is least there. Less than none would
-// be an impulse that pulls, more than all one that nobody asked for.
-PC_FN Real pc_calming_share(BodyState a, BodyState b, Arms arms, Vec3 impulse, Vec3 couple) {
-  Vec3 ta = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 tb = pc_add(couple, pc_cross(arms.b, impulse));
-  precise Real rate = pc_dot(impulse, pc_sub(b.v, a.v)) + pc_dot(tb, pc_angular_velocity(b)) - pc_dot(ta, pc_angular_velocity(a));
-  precise Real response = pc_dot(impulse, impulse) * (a.inverse_mass + b.inverse_mass) + pc_dot(ta, pc_sym_mul(a.inertia, ta)) * a.response + pc_dot(tb, pc_sym_mul(b.inertia, tb)) * b.response;
-  precise Real least = -rate * pc_inverse_or_zero(response); return pc_clamp(least, PC_REAL(0.0), PC_REAL(1.0));
-}
-
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
@@ -37,7 +29,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_SCALE, pc_select(far, exact, scale));
   Wrench w = pc_warm_start(PC_PASS m);
   if (PC_ANY(far)) {  // lint: allow (a share of one changes nothing)
-    Real share = pc_select(far, pc_calming_share(a, b, arms, w.impulse, w.couple), PC_REAL(1.0));
+    Real calming = pc_clamp(pc_calming_share(a, b, arms, w.impulse, w.couple), PC_REAL(0.0), PC_REAL(1.0)); Real share = pc_select(far, calming, PC_REAL(1.0));
     w.impulse = pc_scale(w.impulse, share); w.couple = pc_scale(w.couple, share);
     for (uint i = 0u; i < 7u; i++) { precise Real kept = PC_LD(contact_impulses, m, i) * share; PC_ST(contact_impulses, m, i, kept); }
   }
