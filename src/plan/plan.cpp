@@ -72,6 +72,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.joints && s.trees) out("joint rows", "no joint closes a loop");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
+  if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
   if (s.contacts() && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
