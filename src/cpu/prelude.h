@@ -86,6 +86,34 @@ PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) {
 #endif
   return q;
 }
+// Where row i of a buffer begins, for many quads of it: each lane's address is computed once.
+struct Row {
+  const Scalar* p[PC_LANES];
+};
+PC_INLINE Row pc_row(const Scalar* buffer, Index i, uint quads) {
+  Row r;
+#if PC_LANES == 1
+  r.p[0] = buffer + std::size_t(i.i) * quads * 4;
+#else
+  for (uint l = 0; l < PC_LANES; l++) r.p[l] = buffer + std::size_t(i.i[l]) * quads * 4;
+#endif
+  return r;
+}
+PC_INLINE Quad pc_row_quad(const Row& r, uint k) {
+  Quad q;
+#if PC_LANES == 1
+  q.v = Vec3(r.p[0][4 * k], r.p[0][4 * k + 1], r.p[0][4 * k + 2]);
+  q.s = r.p[0][4 * k + 3];
+#else
+  const Scalar* p[PC_LANES];
+  for (uint l = 0; l < PC_LANES; l++) p[l] = r.p[l] + 4 * k;
+  Real o[4];
+  pc_transpose_in(p, o);
+  q.v = Vec3(o[0], o[1], o[2]);
+  q.s = o[3];
+#endif
+  return q;
+}
 PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
 #if PC_LANES == 1
   Scalar* p = buffer + (std::size_t(i.i) * quads + k) * 4;
@@ -123,6 +151,8 @@ PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uin
 #define PC_PASS io,
 #define PC_INFO(field) Real(io.info->field)
 #define PC_GATHER(buffer, i, k) pc_gather(io.buffer, i, quads_##buffer, k)
+#define PC_ROW(buffer, i) pc_row(io.buffer, i, quads_##buffer)
+#define PC_ROW_QUAD(buffer, row, k) pc_row_quad(row, k)
 #define PC_SCATTER(buffer, i, k, q) pc_scatter(io.buffer, i, quads_##buffer, k, q)
 #define PC_SCATTER_IF(mask, buffer, i, k, q) pc_scatter_if(mask, io.buffer, i, quads_##buffer, k, q)
 #define PC_LD(buffer, slot, f) pc_load(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES)

@@ -13,6 +13,7 @@
 #endif
 #define Mask bool
 #define Index uint
+#define Row uint
 #define PC_FN
 #define PC_INOUT(T) inout T
 #define PC_IO
@@ -40,6 +41,8 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 // four reals of a lane side by side: 16 or 32 bytes an access, neighbouring lanes adjacent.
 #define PC_INFO(field) pc_info.field
 #define PC_GATHER(buffer, i, k) pc_quad_of(io_##buffer[(i) * quads_##buffer + (k)])
+#define PC_ROW(buffer, i) ((i) * quads_##buffer)
+#define PC_ROW_QUAD(buffer, row, k) pc_quad_of(io_##buffer[(row) + (k)])
 #define PC_SCATTER(buffer, i, k, q) io_##buffer[(i) * quads_##buffer + (k)] = pc_real4_of(q)
 #define PC_SCATTER_IF(mask, buffer, i, k, q) if (mask) io_##buffer[(i) * quads_##buffer + (k)] = pc_real4_of(q)
 #ifdef PC_DOUBLE  // as scalars: an H200's compiler (driver 580) cannot index a dvec4 by a variable

@@ -4,15 +4,17 @@
 // What of a node the ways need.
 struct Link { Vec3 w0; Vec3 w1; Vec3 w2; Vec3 w3; Vec3 w4; Vec3 w5; Sym3 d_inverse; Vec3 d; Vec3 rc; };
 PC_FN Link pc_link(PC_IO Index node) {
-  Quad q0 = PC_GATHER(node_operator, node, 0u); Quad q1 = PC_GATHER(node_operator, node, 1u); Quad q2 = PC_GATHER(node_operator, node, 2u);
-  Quad q3 = PC_GATHER(node_operator, node, 3u); Quad q4 = PC_GATHER(node_operator, node, 4u); Quad q5 = PC_GATHER(node_operator, node, 5u);
-  Quad q6 = PC_GATHER(node_operator, node, 6u); Quad q7 = PC_GATHER(node_operator, node, 7u);
+  Row row = PC_ROW(node_operator, node);
+  Quad q0 = PC_ROW_QUAD(node_operator, row, 0u); Quad q1 = PC_ROW_QUAD(node_operator, row, 1u); Quad q2 = PC_ROW_QUAD(node_operator, row, 2u);
+  Quad q3 = PC_ROW_QUAD(node_operator, row, 3u); Quad q4 = PC_ROW_QUAD(node_operator, row, 4u); Quad q5 = PC_ROW_QUAD(node_operator, row, 5u);
+  Quad q6 = PC_ROW_QUAD(node_operator, row, 6u); Quad q7 = PC_ROW_QUAD(node_operator, row, 7u);
   Link n; n.w0 = q0.v; n.w1 = q1.v; n.w2 = q2.v; n.w3 = q3.v; n.w4 = q4.v; n.w5 = q5.v;
   n.d_inverse = pc_sym3(q0.s, q1.s, q2.s, q3.s, q4.s, q5.s); n.d = q6.v; n.rc = q7.v; return n;
 }
 PC_FN Sym6 pc_response(PC_IO Index node) {
-  Quad q6 = PC_GATHER(node_operator, node, 6u); Quad q7 = PC_GATHER(node_operator, node, 7u); Quad q8 = PC_GATHER(node_operator, node, 8u);
-  Quad q9 = PC_GATHER(node_operator, node, 9u); Quad q10 = PC_GATHER(node_operator, node, 10u); Quad q11 = PC_GATHER(node_operator, node, 11u); Quad q12 = PC_GATHER(node_operator, node, 12u);
+  Row row = PC_ROW(node_operator, node);
+  Quad q6 = PC_ROW_QUAD(node_operator, row, 6u); Quad q7 = PC_ROW_QUAD(node_operator, row, 7u); Quad q8 = PC_ROW_QUAD(node_operator, row, 8u);
+  Quad q9 = PC_ROW_QUAD(node_operator, row, 9u); Quad q10 = PC_ROW_QUAD(node_operator, row, 10u); Quad q11 = PC_ROW_QUAD(node_operator, row, 11u); Quad q12 = PC_ROW_QUAD(node_operator, row, 12u);
   Sym6 g; g.l = pc_sym3(q6.s, q7.s, q8.v.x, q8.v.y, q8.v.z, q8.s); g.c = pc_mat3(q9.v, q10.v, q11.v); g.a = pc_sym3(q9.s, q10.s, q11.s, q12.v.x, q12.v.y, q12.v.z); return g;
 }
 // How the body moves when its parent moves by x and it turns by `turn` about the joint besides.

@@ -11,6 +11,7 @@
 #include "contact_visit.inl"
 
 PC_FN Six pc_pending(PC_IO Way w, Slot m, uint side) {
+  if (pc_any_in_tree(w, side) == 0u) return pc_six(pc_zero3(), pc_zero3());  // lint: allow (the same for all lanes; zeros otherwise)
   Index root = PC_EACH(contact_paths, m, pc_entry(w, PATH_ROOT + side)); Quad l = PC_GATHER(node_pending, root, 0u); Quad a = PC_GATHER(node_pending, root, 1u);
   Six x = pc_six(l.v, a.v);
   uint depth = pc_depth(w, side); uint levels = pc_levels(w, side);
@@ -22,6 +23,7 @@ PC_FN Six pc_pending(PC_IO Way w, Slot m, uint side) {
 }
 // Impulses f on the side's body. `in_tree`: it stands in one.
 PC_FN void pc_push_tree(PC_IO Way w, Slot m, uint side, Mask in_tree, Six f) {
+  if (pc_any_in_tree(w, side) == 0u) return;  // lint: allow (the same for all lanes)
   pc_note_push(PC_PASS w, m, side, in_tree, f);
   uint depth = pc_depth(w, side); uint levels = pc_levels(w, side);
   for (uint i = 0u; i < depth; i++) {

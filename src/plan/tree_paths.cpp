@@ -57,7 +57,7 @@ constexpr std::uint32_t fixed_entries = 7;  // PATH_LEVELS of tree_path.inl
 
 /// Levels of the ways of a block: the longest of its lanes.
 struct Levels {
-  std::array<std::uint32_t, 2> depth{}, below{};
+  std::array<std::uint32_t, 2> depth{}, below{}, any{};  // any: 1 where some lane's side stands in a tree
   std::uint32_t all() const { return depth[0] + depth[1] + below[0] + below[1]; }
 };
 
@@ -66,9 +66,10 @@ struct Levels {
 std::uint8_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b) {
   const std::uint32_t node_a = nodes.node(a), node_b = nodes.node(b);
   if (node_a == 0 && node_b == 0) return 0;
-  constexpr std::uint32_t most = 10;  // levels told apart
+  constexpr std::uint32_t most = 10;  // steps told apart: to no tree, to a root, one level below, ...
+  const auto steps = [&](std::uint32_t node) { return node == 0 ? 0 : std::min(nodes.level(node) + 1, most); };
   const bool within = nodes.unit(a) == nodes.unit(b);
-  const std::uint32_t kind = std::min(nodes.level(node_a), most) * (most + 1) + std::min(nodes.level(node_b), most);
+  const std::uint32_t kind = steps(node_a) * (most + 1) + steps(node_b);
   return std::uint8_t(1 + kind + (within ? (most + 1) * (most + 1) : 0));
 }
 
@@ -86,13 +87,18 @@ void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t block
       for (std::size_t side = 0; side < 2; side++) {
         levels.depth[side] = std::max(levels.depth[side], nodes.level(e.own[side]));
         levels.below[side] = std::max(levels.below[side], e.below[side]);
+        levels.any[side] |= e.own[side] != 0;
       }
     }
     const std::size_t at = out.size();
     out[block] = std::uint32_t(at);
-    out.resize(at + 4 + std::size_t{width} * (fixed_entries + levels.all()), 0);
-    for (std::size_t side = 0; side < 2; side++) out[at + side] = levels.depth[side], out[at + 2 + side] = levels.below[side];
-    std::uint32_t* entries = out.data() + at + 4;
+    out.resize(at + 6 + std::size_t{width} * (fixed_entries + levels.all()), 0);
+    for (std::size_t side = 0; side < 2; side++) {
+      out[at + side] = levels.depth[side];
+      out[at + 2 + side] = levels.below[side];
+      out[at + 4 + side] = levels.any[side];
+    }
+    std::uint32_t* entries = out.data() + at + 6;
     for (std::uint32_t lane = 0; lane < width; lane++) {
       const Ends e = ends_of(nodes, end(block, lane, 0), end(block, lane, 1));
       const auto put = [&](std::uint32_t entry, std::uint32_t value) { entries[entry * width + lane] = value; };

@@ -1,7 +1,7 @@
 """Rules of kernel text: call, division, precise, literal, unread."""
 import re
 
-INTEGER_TYPES = {"uint", "int", "Index", "Slot", "bool", "uint32_t", "size_t"}
+INTEGER_TYPES = {"uint", "int", "Index", "Row", "Slot", "bool", "uint32_t", "size_t"}
 KEYWORDS = {"if", "for", "while", "switch", "return", "else", "do", "case"}
 BANNED = set("""abs sign floor ceil trunc round roundEven fract mod modf min max clamp mix step smoothstep isnan isinf fma ldexp
     frexp sqrt inversesqrt pow exp exp2 log log2 sin cos tan asin acos atan atan2 sinh cosh tanh radians degrees length distance
