@@ -159,7 +159,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   BodyState before_a = a; BodyState before_b = b;
   Vec3 impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); Vec3 couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
   // a body that turns far answers otherwise there than the rows think: the impulse leaves no more energy than e allows
-  Mask far = pc_or(pc_turns_far(PC_PASS a, turned_a), pc_turns_far(PC_PASS b, turned_b));
+  Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
   precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, impulse, couple);
   Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(impulse, share), pc_scale(couple, share));

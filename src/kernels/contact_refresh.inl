@@ -17,11 +17,11 @@ PC_FN void pc_drop(PC_IO Slot m, uint i, Mask far) { PC_ST(contact_impulses, m, 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
-  Mask far = pc_or(pc_turns_far(PC_PASS a, PC_GATHER(delta, ia, 1u)), pc_turns_far(PC_PASS b, PC_GATHER(delta, ib, 1u)));
+  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
+  Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
   if (!PC_ANY(far)) return;  // lint: allow (nothing to do otherwise)
   Real zero = PC_REAL(0.0); Real k = PC_LD(contact_rows, m, ROW_K);
   Mask flight = PC_LD(contact_rows, m, ROW_IMPACT) > zero;
-  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Vec3 none = pc_zero3(); Vec3 path = pc_ld3_rows(PC_PASS m, ROW_PATH);
   Arms arms = pc_arms(PC_PASS m, pc_select3(flight, none, moved_a.v), pc_select3(flight, path, moved_b.v));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);

@@ -23,7 +23,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  Mask far = pc_or(pc_turns_far(PC_PASS a, PC_GATHER(delta, ia, 1u)), pc_turns_far(PC_PASS b, PC_GATHER(delta, ib, 1u)));
+  Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
   Real scale = pc_mass_scale(PC_PASS m, arms, a, b);
   Real exact = pc_select(PC_LD(contact_rows, m, ROW_K) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   PC_ST(contact_rows, m, ROW_SCALE, pc_select(far, exact, scale));
