@@ -224,6 +224,7 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
       CHECK(runs(plan, kernel) == (s.bodies && s.trees ? int(s.substeps) : 0));
     if (!s.contacts()) CHECK(runs(plan, "contact_prepare") + runs(plan, "contact_store") == 0);
     for (const char* kernel : {"contact_warm", "contact_solve"}) CHECK((runs(plan, kernel) > 0) == (s.bodies && s.free_contacts));
+    CHECK(runs(plan, "contact_refresh") == (s.bodies && s.free_contacts && s.gyroscopic ? 2 * int(s.substeps) : 0));
     for (const char* kernel : {"tree_contact_warm", "tree_contact_prepare"})
       CHECK(runs(plan, kernel) == (s.bodies && s.tree_contacts ? int(s.substeps) : 0));
     CHECK(runs(plan, "tree_contact_solve") == (s.bodies && s.tree_contacts ? 2 * int(s.substeps) : 0));

@@ -1,5 +1,7 @@
 // Pins what holds of the stiff and extreme cases (docs/stability.md) and is cheap: chains under loads, a tower, bodies
 // in one place, degenerate shapes, bad input, crowds on lines and planes.
+#include <algorithm>
+
 #include "support_cases.h"
 
 using namespace physics;
@@ -45,4 +47,48 @@ TEST_CASE("C11, C12: bad input is refused or stays with its body") {
 TEST_CASE("C14: 100,000 bodies on a line and a plane, pairs as by brute force") {
   for (const char* variant : {"line, sorted", "plane"})
     check_rows(rows_of("C14", Mode{Precision::f32}, {}, variant), without("broad phase"));  // no times on a shared machine
+}
+
+TEST_CASE("C3, C5: thin and fast bodies that land make no energy") {
+  for (const Mode& mode : precisions()) {
+    for (const char* variant : {"needle, dropped", "disc, dropped", "moments 1:1e4, dropped"})
+      check_rows(rows_of("C3", mode, {}, variant), metric("energy gained"));
+    check_rows(rows_of("C5", mode, {}, "box, 100 rad/s, floor"));
+    check_rows(rows_of("C5", mode, 1e-4, "box, 10000 rad/s, floor"));
+  }
+}
+
+TEST_CASE("C3: a needle that tumbles and falls from many heights never gains energy") {
+  for (const Mode& mode : precisions())
+    for (int height = 0; height < 20; ++height) {
+      World world({mode.precision, {}});
+      Stepper stepper;
+      StepSettings settings;
+      settings.substeps = 4;
+      REQUIRE(stepper.configure(settings));
+      REQUIRE(world.set_gravity({0, 0, -9.81}));
+      BodyDef floor;
+      floor.kind = BodyKind::fixed;
+      floor.shapes = {ShapeDef::box({50, 50, 0.5})};
+      floor.pose.position = {0, 0, -0.5};
+      REQUIRE(world.create_body(floor));
+      BodyDef def;
+      def.shapes = {ShapeDef::box({0.5, 0.005, 0.005})};
+      def.mass = 1;
+      def.angular_velocity = {30, 30, 26.46};
+      def.pose.position = {0, 0, 1 + 0.003 * height};
+      const BodyId needle = *world.create_body(def);
+      const auto energy = [&] { return world.kinetic_energy() + 9.81 * world.pose(needle)->position.z; };
+      const double start = energy();
+      double gained = 0;
+      for (int k = 0; k < 300; ++k) {
+        REQUIRE(stepper.step(world, 1.0 / 60));
+        gained = std::max(gained, energy() / start - 1);
+      }
+      CHECK(gained < 1e-5);
+    }
+}
+
+TEST_CASE("B10: a ragdoll dragged through a gap stays finite") {
+  for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "dragged"), metric("not finite"));
 }

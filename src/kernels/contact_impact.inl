@@ -10,6 +10,8 @@
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_coulomb.inl"
+#include "contact_turned.inl"
+#include "contact_calming.inl"
 
 // u_aim: the velocity u that the row is to leave with; closes: 1 or 0
 struct Closing { Real t; Real u_aim; Real closes; };
@@ -155,6 +157,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
   Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
   BodyState before_a = a; BodyState before_b = b;
-  pc_apply(PC_PASS ia, ib, a, b, struck, pc_combine(t1, f.change1, t2, f.change2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist));
+  Vec3 impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); Vec3 couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
+  // a body that turns far answers otherwise there than the rows think: the impulse leaves no more energy than e allows
+  Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
+  precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, impulse, couple);
+  Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
+  pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(impulse, share), pc_scale(couple, share));
   pc_set_back(PC_PASS ia, before_a, a, t, hits); pc_set_back(PC_PASS ib, before_b, b, t, hits);
 }

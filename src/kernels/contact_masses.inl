@@ -3,7 +3,15 @@
 PC_FN void pc_st3_rows(PC_IO Slot m, uint f, Vec3 v) {
   PC_ST(contact_rows, m, f, v.x); PC_ST(contact_rows, m, f + 1u, v.y); PC_ST(contact_rows, m, f + 2u, v.z);
 }
+#ifdef PC_SOME_ROWS
+#define pc_st_mass(f, x) PC_ST(contact_rows, m, f, pc_select(r.these, x, PC_LD(contact_rows, m, f)))
+#else
+#define pc_st_mass(f, x) PC_ST(contact_rows, m, f, x)
+#endif
 struct Responses {
+#ifdef PC_SOME_ROWS
+  Mask these;                // others keep theirs
+#endif
   Sym3 l;                    // of (v1, v2, vn) to impulses along t1, t2, n
   Vec3 w1; Vec3 w2; Vec3 wn; // of the turning about t1, t2 and n to the same impulses; and of (v1, v2, vn) to couples
   Sym3 a;                    // of the turning to couples
@@ -14,13 +22,13 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
   // friction block and twist
   precise Real det = r.l.xx * r.l.yy - r.l.xy * r.l.xy; Real inverse_det = pc_inverse_or_zero(det);
   precise Real t11 = r.l.yy * inverse_det; precise Real t12 = -(r.l.xy * inverse_det); precise Real t22 = r.l.xx * inverse_det;
-  PC_ST(contact_rows, m, ROW_TT, t11); PC_ST(contact_rows, m, ROW_TT + 1u, t12); PC_ST(contact_rows, m, ROW_TT + 2u, t22);
-  PC_ST(contact_rows, m, ROW_KW, r.wn.x); PC_ST(contact_rows, m, ROW_KW + 1u, r.wn.y);
-  PC_ST(contact_rows, m, ROW_TWIST, pc_inverse_or_zero(r.a.zz));
-  PC_ST(contact_rows, m, ROW_C, r.l.xz); PC_ST(contact_rows, m, ROW_C + 1u, r.l.yz); PC_ST(contact_rows, m, ROW_C + 2u, r.wn.z);
-  PC_ST(contact_rows, m, ROW_C + 3u, r.w1.x); PC_ST(contact_rows, m, ROW_C + 4u, r.w1.y); PC_ST(contact_rows, m, ROW_C + 5u, r.a.xz);
-  PC_ST(contact_rows, m, ROW_C + 6u, r.w2.x); PC_ST(contact_rows, m, ROW_C + 7u, r.w2.y); PC_ST(contact_rows, m, ROW_C + 8u, r.a.yz);
-  PC_ST(contact_rows, m, ROW_K, pc_min(r.l.zz, pc_min(r.l.xx, r.l.yy)));
+  pc_st_mass(ROW_TT, t11); pc_st_mass(ROW_TT + 1u, t12); pc_st_mass(ROW_TT + 2u, t22);
+  pc_st_mass(ROW_KW, r.wn.x); pc_st_mass(ROW_KW + 1u, r.wn.y);
+  pc_st_mass(ROW_TWIST, pc_inverse_or_zero(r.a.zz));
+  pc_st_mass(ROW_C, r.l.xz); pc_st_mass(ROW_C + 1u, r.l.yz); pc_st_mass(ROW_C + 2u, r.wn.z);
+  pc_st_mass(ROW_C + 3u, r.w1.x); pc_st_mass(ROW_C + 4u, r.w1.y); pc_st_mass(ROW_C + 5u, r.a.xz);
+  pc_st_mass(ROW_C + 6u, r.w2.x); pc_st_mass(ROW_C + 7u, r.w2.y); pc_st_mass(ROW_C + 8u, r.a.yz);
+  pc_st_mass(ROW_K, pc_min(r.l.zz, pc_min(r.l.xx, r.l.yy)));
 
   // normal rows: u_i = K [1, b_i, -a_i] and their products
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
@@ -34,8 +42,9 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
   precise Real e1 = u1 + b1 * v1 - a1 * x1; precise Real q1 = pc_inverse_or_zero(e1) * w1;
   precise Real e2 = u2 + b2 * v2 - a2 * x2; precise Real q2 = pc_inverse_or_zero(e2) * w2;
   precise Real e3 = u3 + b3 * v3 - a3 * x3; precise Real q3 = pc_inverse_or_zero(e3) * w3;
-  PC_ST(contact_rows, m, ROW_MASS, q0); PC_ST(contact_rows, m, ROW_MASS + 1u, q1); PC_ST(contact_rows, m, ROW_MASS + 2u, q2); PC_ST(contact_rows, m, ROW_MASS + 3u, q3);
+  pc_st_mass(ROW_MASS, q0); pc_st_mass(ROW_MASS + 1u, q1); pc_st_mass(ROW_MASS + 2u, q2); pc_st_mass(ROW_MASS + 3u, q3);
   precise Real d01 = u0 + b1 * v0 - a1 * x0; precise Real d02 = u0 + b2 * v0 - a2 * x0; precise Real d03 = u0 + b3 * v0 - a3 * x0;
   precise Real d12 = u1 + b2 * v1 - a2 * x1; precise Real d13 = u1 + b3 * v1 - a3 * x1; precise Real d23 = u2 + b3 * v2 - a3 * x2;
-  PC_ST(contact_rows, m, ROW_D, d01); PC_ST(contact_rows, m, ROW_D + 1u, d02); PC_ST(contact_rows, m, ROW_D + 2u, d03); PC_ST(contact_rows, m, ROW_D + 3u, d12); PC_ST(contact_rows, m, ROW_D + 4u, d13); PC_ST(contact_rows, m, ROW_D + 5u, d23);
+  pc_st_mass(ROW_D, d01); pc_st_mass(ROW_D + 1u, d02); pc_st_mass(ROW_D + 2u, d03); pc_st_mass(ROW_D + 3u, d12); pc_st_mass(ROW_D + 4u, d13); pc_st_mass(ROW_D + 5u, d23);
 }
+#undef pc_st_mass

@@ -1,6 +1,7 @@
 // One visit of a manifold's rows: friction at the centre, then the normal rows one after the other (Gauss-Seidel with
 // accumulated impulses), from the relative twist at its centre to the change of its impulses.
 #include "contact_friction.inl"
+#include "contact_shift.inl"
 
 // New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint, whose leak acts on what deviates
@@ -21,15 +22,6 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real me
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));
-}
-
-// How the separations changed since the start of the step: of the centre, and by how the bodies turned.
-struct Shift { Real n; Real turn1; Real turn2; };
-PC_FN Shift pc_shift_of(PC_IO Slot m, Vec3 n, Vec3 t1, Vec3 t2, Quad moved_a, Quad moved_b, Quad turned_a, Quad turned_b) {
-  Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, pc_ld3_rows(PC_PASS m, ROW_ARM_A)));
-  Vec3 shift_b = pc_add(moved_b.v, pc_cross(turned_b.v, pc_ld3_rows(PC_PASS m, ROW_ARM_B)));
-  Vec3 turn = pc_sub(turned_b.v, turned_a.v);
-  Shift s; s.n = pc_dot(n, pc_sub(shift_b, shift_a)); s.turn1 = pc_dot(t1, turn); s.turn2 = pc_dot(t2, turn); return s;
 }
 
 // Impulse and couple on b at the centre, and the load before or after, whichever is larger.

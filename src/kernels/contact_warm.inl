@@ -3,6 +3,8 @@
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_warming.inl"
+#include "contact_turned.inl"
+#include "contact_calming.inl"
 
 // Where an arm has grown since the start of the step, the frozen effective masses are too large, by up to
 // (K + dK) / K with dK <= growth of arm^2 times trace I^-1; fast bodies would overshoot and gain energy.
@@ -21,7 +23,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  PC_ST(contact_rows, m, ROW_SCALE, pc_mass_scale(PC_PASS m, arms, a, b));
+  Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
+  Real scale = pc_mass_scale(PC_PASS m, arms, a, b);
+  Real exact = pc_select(PC_LD(contact_rows, m, ROW_K) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
+  PC_ST(contact_rows, m, ROW_SCALE, pc_select(far, exact, scale));
   Wrench w = pc_warm_start(PC_PASS m);
+  if (PC_ANY(far)) {  // lint: allow (a share of one changes nothing)
+    Real calming = pc_clamp(pc_calming_share(a, b, arms, w.impulse, w.couple), PC_REAL(0.0), PC_REAL(1.0)); Real share = pc_select(far, calming, PC_REAL(1.0));
+    w.impulse = pc_scale(w.impulse, share); w.couple = pc_scale(w.couple, share);
+    for (uint i = 0u; i < 7u; i++) { precise Real kept = PC_LD(contact_impulses, m, i) * share; PC_ST(contact_impulses, m, i, kept); }
+  }
   pc_apply(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple);
 }

@@ -53,6 +53,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
   Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
+  precise Real light = pc_body_state(PC_PASS ia).inverse_mass + pc_body_state(PC_PASS ib).inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_REAL(1000.0);
+  for (uint i = 0u; i < 4u; i++) PC_ST(contact_rows, m, ROW_MASS + i, pc_min(PC_LD(contact_rows, m, ROW_MASS + i), most));
+  precise Real trace = PC_LD(contact_rows, m, ROW_TT) + PC_LD(contact_rows, m, ROW_TT + 2u); Real less = pc_select(trace > most, pc_div(most, pc_max(trace, most)), one);
+  for (uint i = 0u; i < 3u; i++) { precise Real block = PC_LD(contact_rows, m, ROW_TT + i) * less; PC_ST(contact_rows, m, ROW_TT + i, block); }
   PC_ST(contact_rows, m, ROW_SCALE, one);
   for (uint i = 0u; i < 4u; i++) {  // the slow means
     Real mean = PC_LD(contact_impulses, m, IMPULSE_MEAN + i); precise Real next = mean + (PC_LD(contact_impulses, m, i) - mean) * PC_INFO(mean_share); PC_ST(contact_impulses, m, IMPULSE_MEAN + i, next);

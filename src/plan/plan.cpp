@@ -74,6 +74,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
+  if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
   if (s.contacts() && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
@@ -124,6 +125,7 @@ StepPlan make_plan(const PlanSignature& s) {
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
+    if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
     if (s.free_contacts && s.impacts)
       for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
@@ -142,6 +144,7 @@ StepPlan make_plan(const PlanSignature& s) {
     b.kernel(with.advance, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     if (s.free_joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
+    if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
     if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
     solve_contacts(b, s, Phase::relax, k);
   }
