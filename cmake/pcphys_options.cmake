@@ -10,6 +10,9 @@ option(PCPHYS_WITH_PEERS "Other engines to compare with, those that are found" O
 set(PCPHYS_WITH_FCL AUTO CACHE STRING "FCL as a selectable narrow phase: AUTO, ON or OFF")
 set_property(CACHE PCPHYS_WITH_FCL PROPERTY STRINGS AUTO ON OFF)
 
+set(PCPHYS_WITH_TBB AUTO CACHE STRING "Threads by oneTBB: AUTO, ON or OFF")
+set_property(CACHE PCPHYS_WITH_TBB PROPERTY STRINGS AUTO ON OFF)
+
 if(PROJECT_IS_TOP_LEVEL)
   get_property(multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
   if(NOT CMAKE_BUILD_TYPE AND NOT multi_config)

@@ -111,7 +111,7 @@ Status Contest::run(double budget, const std::function<void(std::uint64_t)>& pro
 
 bool Contest::processor_time() const {
   const StepSettings& s = setup_.settings;
-  return s.integrate == Place::cpu && s.joints == Place::cpu && s.impulses == Place::cpu;
+  return s.integrate == Place::cpu && s.joints == Place::cpu && s.impulses == Place::cpu && s.threads == 1;
 }
 
 Status Contest::turn(std::size_t entrant, std::uint64_t count, double budget) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <thread>
 
 #include "peers/peer.h"
 
@@ -83,8 +84,6 @@ namespace {
 Status check_later(const RunOptions& options) {
   if (auto status = check_choice("sleep", options.sleep, {"on", "off"}); !status) return status;
   if (options.sleep == "on") return bad("--sleep on comes with a later version; until then nothing sleeps, so leave it off.");
-  if (options.threads != 1)
-    return bad("--threads is " + std::to_string(options.threads) + "; threads come with a later version, so give 1.");
   return {};
 }
 
@@ -97,6 +96,7 @@ Status check_numbers(const RunOptions& options) {
   if (options.steps)
     if (auto status = check_range("steps", *options.steps, 1, many); !status) return status;
   if (auto status = check_range("substeps", options.substeps, 1, 1000); !status) return status;
+  if (auto status = check_range("threads", options.threads, 0, 256); !status) return status;
   if (auto status = check_range("device", options.device, -1, 1000); !status) return status;
   if (!(options.ratio > 0 && std::isfinite(options.ratio)))
     return bad("--ratio is " + std::to_string(options.ratio) + "; give a finite mass ratio above 0.");
@@ -157,7 +157,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--substeps", options.substeps, "sub-steps a step")->capture_default_str();
   app.add_option("--precision", options.precision, "float or double")->capture_default_str();
   app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
-  app.add_option("--threads", options.threads, "1; more come with a later version")->capture_default_str();
+  app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
   app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
   app.add_option("--sleep", options.sleep, "off; on comes with a later version")->capture_default_str();
   app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")
@@ -192,6 +192,8 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.settings.narrow = options.narrow == "fcl" ? NarrowPhase::fcl : NarrowPhase::native;
   setup.settings.integrator = options.integrator == "seed" ? Integrator::seed : Integrator::verlet;
   setup.settings.substeps = std::uint32_t(options.substeps);
+  setup.settings.threads =
+      options.threads > 0 ? std::uint32_t(options.threads) : std::clamp(std::thread::hardware_concurrency(), 1u, 256u);
   setup.settings.device = int(options.device);
   setup.settings.timings = options.timings == "on";
   setup.dt = *dt;

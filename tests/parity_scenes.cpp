@@ -1,6 +1,6 @@
-// Pins pcphys's signature: the same scene has the same hash in scalar C++, in 4 and 8 lanes, on GL, in all eight
-// mixes of places, and when they change from step to step; in float and in double. It is run again for every
-// change of a kernel, and has to hold on every device that promises parity (see `pcphys doctor`).
+// Pins pcphys's signature: the same scene has the same hash in scalar C++, in 4 and 8 lanes, in any number of threads,
+// on GL, in all eight mixes of places, and when they change from step to step; in float and in double. It is run again
+// for every change of a kernel, and has to hold on every device that promises parity (see `pcphys doctor`).
 #include <algorithm>
 #include <random>
 
@@ -94,6 +94,20 @@ TEST_CASE("lanes: 1 and 4 in double have equal hashes over 600 steps") {
     INFO(text(c, Precision::f64));
     CHECK(hashes(c, Precision::f64, lanes(4), cpu_steps) == hashes(c, Precision::f64, lanes(1), cpu_steps));
   }
+}
+
+TEST_CASE("threads: 2, 3, 5 and all there are have the hashes of one") {
+  constexpr Case large[] = {{"balls", 300, 0}, {"ragdolls", 40, 0}, {"pyramid", 20, 0}, {"hulls", 60, 0}};
+  for (const Case& c : large)
+    for (const Precision precision : {Precision::f32, Precision::f64}) {
+      const auto wanted = hashes(c, precision, lanes(1), 120);
+      for (const std::uint32_t threads : {2u, 3u, 5u, 0u}) {
+        StepSettings settings = lanes(1);  // short lanes make many pieces
+        settings.threads = threads;
+        INFO(text(c, precision) << ", threads " << threads);
+        CHECK(hashes(c, precision, settings, 120) == wanted);
+      }
+    }
 }
 
 TEST_CASE("run to run: the same hashes, and every step changes them") {

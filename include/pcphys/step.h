@@ -21,7 +21,7 @@ struct StepSettings {
   Integrator integrator = Integrator::verlet;
   std::uint32_t substeps = 4;
   std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is
-  std::uint32_t threads = 1;  // more is refused until threads exist
+  std::uint32_t threads = 1;  // of the CPU, up to 256; 0: as many as the processor runs at a time
   NarrowPhase narrow = NarrowPhase::native;
   int device = -1;            // EGL device; -1: the first that works
   bool host_context = false;  // use the GL context that is current on this thread

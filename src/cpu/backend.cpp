@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "cpu/kernels.h"
+#include "cpu/workers.h"
 #include "step/backend.h"
 #include "world/memory.h"
 
@@ -11,7 +12,7 @@ namespace {
 
 class CpuBackend final : public Backend {
  public:
-  explicit CpuBackend(const CpuKernels& kernels) : kernels_(kernels) {}
+  CpuBackend(const CpuKernels& kernels, const Workers* workers) : kernels_(kernels), workers_(workers) {}
 
   std::string device() const override {
     return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes";
@@ -36,18 +37,24 @@ class CpuBackend final : public Backend {
   }
   Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool) override {
     const std::size_t stride = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
-    KernelCall call{buffers_.data(), infos_ + info * stride, 0, 0};
+    const std::uint32_t unit = schema(kernel).domain == Domain::body ? kernels_.lanes : 1;  // what no piece may cut
     for (const Range& range : ranges) {
-      call.begin = range.begin;
-      call.end = range.end;
-      kernels_.run[std::size_t(kernel)](call);
+      const auto part = [&](std::uint32_t begin, std::uint32_t end) {
+        kernels_.run[std::size_t(kernel)](
+            {buffers_.data(), infos_ + info * stride, range.begin + begin * unit, range.begin + end * unit});
+      };
+      const std::uint32_t count = (range.end - range.begin) / unit;
+      workers_ ? workers_->run(count, grain, part) : part(0, count);
     }
     return {};
   }
   Status finish() override { return {}; }
 
  private:
+  static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
+
   const CpuKernels& kernels_;
+  const Workers* workers_;
   std::array<void*, buffer_count> buffers_{};
   std::array<AlignedBytes, buffer_count> scratch_;
   const std::byte* infos_ = nullptr;
@@ -67,7 +74,7 @@ const CpuKernels* find_kernels(Precision precision, std::uint32_t lanes) {
 
 }  // namespace
 
-Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint32_t lanes) {
+Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint32_t lanes, const Workers* workers) {
   const CpuKernels* kernels = nullptr;
   if (lanes == 0)
     for (std::uint32_t l : {8u, 4u, 1u}) kernels = kernels ? kernels : find_kernels(precision, l);
@@ -78,7 +85,7 @@ Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint
                                              (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)"
                                                                           : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
                                              " for this processor; use lanes 0 for the widest it has."};
-  return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels));
+  return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels, workers));
 }
 
 }  // namespace pcphys

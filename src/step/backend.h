@@ -12,6 +12,8 @@
 
 namespace pcphys {
 
+class Workers;
+
 /// Positions in `bodies` for the body domain (multiples of `width()`, the list is padded with row 0),
 /// blocks of `width()` slots for joints and contacts.
 struct Range {
@@ -46,8 +48,9 @@ class Backend {
   virtual Status finish() = 0;
 };
 
-/// lanes: 1, 4 or 8 (f32), 1 or 4 (f64); 0 picks the widest that the processor has.
-Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint32_t lanes);
+/// lanes: 1, 4 or 8 (f32), 1 or 4 (f64); 0 picks the widest that the processor has. `workers`: to share loops among; they
+/// outlive the backend.
+Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint32_t lanes, const Workers* workers = nullptr);
 
 /// device: index into the EGL devices, -1 for the first that works. `host_context`: use the context that is
 /// current on the calling thread instead of a headless one of our own.

@@ -89,14 +89,19 @@ std::string Runner::device(Place place) const {
 
 Status Runner::prepare(const StepSettings& s, Precision precision) {
   gl_ = takes_part(Place::gl, s);
+  if (!workers_ || threads_ != s.threads) {
+    at(Place::cpu) = {};
+    workers_ = std::make_unique<Workers>(s.threads);
+    threads_ = s.threads;
+  }
   for (Place place : {Place::cpu, Place::gl}) {
     Device& d = at(place);
     if (!takes_part(place, s)) continue;
     const bool fits = d.backend && d.precision == precision &&
                       (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
     if (fits) continue;
-    auto made =
-        place == Place::cpu ? make_cpu_backend(precision, s.lanes) : gl_backend_maker()(precision, s.device, s.host_context);
+    auto made = place == Place::cpu ? make_cpu_backend(precision, s.lanes, workers_.get())
+                                    : gl_backend_maker()(precision, s.device, s.host_context);
     if (!made) return made.error();
     d = {};
     d.backend = std::move(*made);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "cpu/workers.h"
 #include "pcphys/step.h"
 #include "plan/plan.h"
 #include "step/backend.h"
@@ -32,6 +33,8 @@ class Runner {
   /// What the devices hold is not the data of the world that comes.
   void forget();
   std::string device(Place place) const;
+  /// After `prepare`.
+  const Workers& workers() const { return *workers_; }
 
  private:
   struct Copy {
@@ -54,7 +57,9 @@ class Runner {
   Status kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report);
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
-  std::array<Device, 2> devices_;  // by Place
+  std::unique_ptr<Workers> workers_;  // outlives the backends
+  std::uint32_t threads_ = 0;         // that were asked for
+  std::array<Device, 2> devices_;     // by Place
   Rollback rollback_;
   bool gl_ = false;  // takes part
 };

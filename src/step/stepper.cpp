@@ -27,7 +27,7 @@ Status check_settings(const StepSettings& s) {
   if (s.substeps < 1 || s.substeps > 1000)
     return Error{ErrorCode::bad_time_step,
                  "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
-  if (s.threads != 1) return Error{ErrorCode::unavailable, "More than one thread is not there yet; set threads to 1."};
+  if (Status ok = Workers::check(s.threads); !ok) return ok;
   for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
     if (!std::isfinite(x) || x < 0)
       return Error{ErrorCode::bad_argument,
