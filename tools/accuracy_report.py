@@ -95,6 +95,53 @@ def misses(rows):
     return lines
 
 
+# ---- beside peers ----------------------------------------------------------------------------------
+def drawn(rows):
+    """Of a variant's rows, those of the metric that its diagram shows."""
+    rows = [r for r in rows if not r["metric"].startswith("2 - order of") and r["total_ms"] > 0]
+    return [r for r in rows if r["metric"] == rows[0]["metric"]]
+
+
+def beaten(row, own):
+    """Whether one of our runs took no longer and erred no more."""
+    return row["error"] is None or any(
+        r["error"] is not None and r["total_ms"] <= row["total_ms"] and r["error"] <= row["error"] for r in own)
+
+
+def contest(rows):
+    """Case by case, how many runs of each peer have one of ours beneath and left of them in the diagrams."""
+    peers = list(dict.fromkeys(r["peer"] for r in rows if r["peer"]))
+    if not peers:
+        return []
+    lines, under, cases, lost = [], 0, 0, []
+    for (case,), of_case in group(rows, "case").items():
+        tally = {peer: [0, 0] for peer in peers}
+        for (variant,), of_variant in group(of_case, "variant").items():
+            shown = drawn(of_variant)
+            own = [r for r in shown if not r["peer"]]
+            for (peer,), series in group([r for r in shown if r["peer"]], "peer").items():
+                won = sum(beaten(r, own) for r in series)
+                tally[peer][0] += won
+                tally[peer][1] += len(series)
+                if won < len(series):
+                    lost.append((case, variant, peer, len(series) - won, len(series)))
+        if not any(total for _, total in tally.values()):
+            continue
+        cases += 1
+        under += all(won == total for won, total in tally.values())
+        lines.append(f"| {case} | " + " | ".join(f"{won} of {total}" if total else "-" for won, total in tally.values()) + " |")
+    head = ["", "## Beside other engines", "",
+            "Runs of each engine that have one of pcphys's beneath them or to their left in the diagram: no longer, and no "
+            "larger an error; a run that failed counts as beneath.", "",
+            f"**In {under} of {cases} cases pcphys's curve lies under every peer's at every run time.**", "",
+            "| case | " + " | ".join(peers) + " |", "|---" * (len(peers) + 1) + "|"]
+    tail = ["", "Where a peer has a run that none of ours is under:", ""]
+    for (case,), of_case in group([dict(zip(("case", "variant", "peer", "runs", "of"), l)) for l in lost], "case").items():
+        named = "; ".join(f"{l['variant']}: {l['peer']} {l['runs']} of {l['of']}" for l in of_case)
+        tail.append(f"* {case}: {cell(named)}")
+    return head + lines + (tail if lost else [])
+
+
 # ---- diagrams --------------------------------------------------------------------------------------
 COLOURS = {"double": "#0b6e99", "float": "#d9822b"}
 PEERS = {"Bullet": "#4d4d4d", "ODE": "#8c564b", "MuJoCo": "#9467bd", "RaiSim": "#2ca02c", "DART": "#e377c2"}
@@ -121,8 +168,8 @@ def widen(limits):
 
 def draw_variant(axes, variant, rows, published):
     """The first metric of a variant, over run time: one line a precision and number of sub-steps, one a peer."""
+    rows = drawn(rows)
     metric = rows[0]["metric"]
-    rows = [r for r in rows if r["metric"] == metric]
     own = [r for r in rows if not r["peer"]]
     for (precision, substeps), series in group(own, "precision", "substeps").items():
         draw_series(axes, series, color=COLOURS[precision], marker="o" if substeps == 1 else "s",
@@ -147,8 +194,9 @@ def draw_variant(axes, variant, rows, published):
 
 
 def draw_case(plt, case, title, rows, published, path):
-    rows = [r for r in rows if not r["metric"].startswith("2 - order of") and r["total_ms"] > 0]
-    variants = group(rows, "variant")
+    variants = {name: of for name, of in group(rows, "variant").items() if drawn(of)}
+    if not variants:
+        return False
     columns = min(4, len(variants))
     lines = math.ceil(len(variants) / columns)
     figure, axes = plt.subplots(lines, columns, figsize=(max(4.2, 2.7 * columns + 0.3), 2.3 * lines + 0.9), squeeze=False)
@@ -168,6 +216,7 @@ def draw_case(plt, case, title, rows, published, path):
     figure.tight_layout(rect=(0, legend_height / figure.get_figheight(), 1, 1))
     figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None, dpi=110)
     plt.close(figure)
+    return True
 
 
 def read_published():
@@ -186,8 +235,8 @@ def draw_all(rows, titles, folder, kind):
     plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "pcphys", "font.size": 7})
     folder.mkdir(parents=True, exist_ok=True)
     published = read_published()
-    for (case,), of_case in group(rows, "case").items():
-        draw_case(plt, case, titles.get(case, ""), of_case, published, folder / f"{case}.{kind}")
+    return [case for (case,), of_case in group(rows, "case").items()
+            if draw_case(plt, case, titles.get(case, ""), of_case, published, folder / f"{case}.{kind}")]
 
 
 def add_hashes(rows, others):
@@ -199,15 +248,16 @@ def add_hashes(rows, others):
 
 
 # ---- the page --------------------------------------------------------------------------------------
-def generated_part(rows, titles, pictures=None):
+def generated_part(rows, titles, pictures):
     own = [r for r in rows if not r["peer"]]
     lines = [BEGIN, "## Passes and failures", ""]
     lines += [f"{len(own)} rows; of those that have a bound, {passed(own)} pass.", ""]
     lines += summary(own, titles)
     lines += ["", "## Rows that miss", ""] + misses(own)
+    lines += contest(rows)
     if pictures:
         lines += ["", "## Work-precision diagrams", ""]
-        lines += [f"![{case}]({pictures}/{case}.svg)" for (case,) in group(rows, "case")]
+        lines += [f"![{name}](img/accuracy/{name}.svg)" for name in pictures]
     return "\n".join(lines + [END])
 
 
@@ -229,15 +279,16 @@ def main():
         rows = add_hashes(rows, json.loads(arguments.hashes.read_text()))
     titles = {row["case"]: row["title"] for row in rows}
     arguments.out.mkdir(parents=True, exist_ok=True)
-    stiff = [row for row in rows if row["case"][0] in "BC"]
-    if stiff:
-        write_page(arguments.out / "stability.md", generated_part(stiff, titles))
-    rows = [row for row in rows if row["case"][0] == "A"]
-    if not rows:
-        return
-    draw_all(rows, titles, arguments.out / "img/accuracy", "png" if arguments.png else "svg")
-    if not arguments.png:
-        write_page(arguments.out / "accuracy.md", generated_part(rows, titles, "img/accuracy"))
+    for page, groups in (("stability", "BC"), ("accuracy", "A")):
+        of_page = [row for row in rows if row["case"][0] in groups]
+        if not of_page:
+            continue
+        # of the stiff and extreme cases, those that peers ran too
+        peers = {row["case"] for row in of_page if row["peer"] or page == "accuracy"}
+        pictures = draw_all([row for row in of_page if row["case"] in peers], titles, arguments.out / "img/accuracy",
+                            "png" if arguments.png else "svg")
+        if not arguments.png:
+            write_page(arguments.out / f"{page}.md", generated_part(of_page, titles, pictures))
 
 
 if __name__ == "__main__":
