@@ -85,8 +85,7 @@ Result<Description> Description::of(const World& world, std::span<const BodyId> 
     index[id] = int(result.bodies.size());
     result.bodies.push_back(std::move(*body));
   }
-  if (!world.springs().empty())
-    return Error{ErrorCode::unavailable, "Peers are given no springs: leave them or the peers out."};
+  if (!world.springs().empty()) return Error{ErrorCode::unavailable, "Peers are given no springs: leave them or the peers out."};
   for (JointId id : world.joints()) {
     const JointDef def = *world.joint(id);
     if (def.motor.torque > 0 || def.spring.stiffness > 0 || def.spring.damping > 0)

@@ -4,6 +4,9 @@
 
 PC_FN Mask pc_has_drive(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_DRIVE) > PC_REAL(0.5); }
 
+// A joint with a motor or a spring, not in its first sub-step: what it turns would be slowed by a floor for pins of unknown stiffness.
+PC_FN Mask pc_drive_lasts(PC_IO Slot n) { return pc_and(pc_has_drive(PC_PASS n), PC_LD(tree_rows, n, TREE_DRIVE_FRESH) < PC_REAL(0.5)); }
+
 // Before the first round: rates at the prediction. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_drive_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_drive(PC_PASS n))) return;  // lint: allow (nothing reads them otherwise)

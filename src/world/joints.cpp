@@ -85,7 +85,8 @@ std::vector<JointId> World::joints() const { return all_alive<JointId>(*state_, 
 std::vector<SpringId> World::springs() const { return all_alive<SpringId>(*state_, true); }
 
 std::size_t World::joint_count() const {
-  return std::size_t(std::count_if(state_->joints.begin() + 1, state_->joints.end(), [](const JointRecord& j) { return !j.spring; }));
+  return std::size_t(
+      std::count_if(state_->joints.begin() + 1, state_->joints.end(), [](const JointRecord& j) { return !j.spring; }));
 }
 
 namespace {

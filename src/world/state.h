@@ -23,8 +23,8 @@ struct BodyRecord {
 struct JointRecord {
   std::uint32_t index = 0;
   std::uint32_t body_a = 0, body_b = 0;  // id indices
-  JointDef def;                     // of a spring: bodies and anchors
-  std::optional<SpringDef> spring;  // between two points, in place of a joint
+  JointDef def;                          // of a spring: bodies and anchors
+  std::optional<SpringDef> spring;       // between two points, in place of a joint
   /// Whether it has a motor or a spring.
   bool driven() const { return spring || def.motor.torque > 0 || def.spring.stiffness > 0 || def.spring.damping > 0; }
 };
