@@ -138,7 +138,7 @@ void add_drives(std::vector<Case>& cases) {
   Case& motors = cases.emplace_back(Case{"B8", "motors", {}});
   for (const auto& [name, load] : {std::pair{"reaches 20 rad/s", 0.0}, {"holds under load", 0.4}, {"overloaded", 0.6}})
     motors.variants.push_back(
-        {.name = name, .run = [load = load](Trial& t) { rotor(t, load); }, .steps = fine, .substeps = {1, 4}, .own = true});
+        {.name = name, .run = [load = load](Trial& t) { rotor(t, load); }, .steps = fine, .substeps = {4}, .own = true});
   motors.variants.push_back({.name = "door of A9b", .run = door_with_motor, .own = true, .second_order = "angle [rad]"});
 
   const std::vector<double> coarse{0.01};

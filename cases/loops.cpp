@@ -157,11 +157,11 @@ void ring(Trial& trial) {
     for (int i = 0; i < links; ++i)
       add_pin(builder, builder.id(i), {0.5 * link_length, 0, 0}, builder.id((i + 1) % links), {-0.5 * link_length, 0, 0});
   });
-  const Vec3 before = angular_momentum(run);
+  const Vec3 before = run.kept_angular_momentum();
   Worst out, turn, gap;
   for (long k = 0; k < trial.steps(20); ++k) {
     run.step(trial.dt());
-    turn.add(length(angular_momentum(run) - before) / length(before));
+    turn.add(length(run.kept_angular_momentum() - before) / length(before));
     for (int i = 0; i < links; ++i) out.add(std::fabs(length(run.pose(i).position) / middle - 1));
     gap.add(joint_gap(run));
   }
