@@ -42,7 +42,7 @@ int main() {
     if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 1;
     if (full_speed == 0 && world.angular_velocity(*wheel_id)->y > 9.99) full_speed = step / 60.0;
     if (step == 180)
-      if (const Status braked = world.set_motor(*axle_id, {0, 2}); !braked) return 1;  // a brake now, twice as strong
+      if (const Status braked = world.set_motor(*axle_id, {0, 50}); !braked) return 1;  // a brake now
   }
   const double expected = 10 * world.mass_properties(*wheel_id)->moments.y / 1, sag = 1 - world.pose(*weight_id)->position.y;
   std::printf("The wheel ran at 10 rad/s after %.2f s (%.2f expected), stands now at %.4f rad/s; the weight hangs %.1f um low.\n",

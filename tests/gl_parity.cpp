@@ -68,6 +68,8 @@ Kernel driven(Kernel kernel) {
   return kernel == Kernel::joint_solve ? Kernel::joint_solve_driven : kernel;
 }
 
+bool closes_loops(Kernel kernel) { return schema(kernel).domain == Domain::tree_joint; }
+
 /// The sub-steps but the last with motors and springs.
 std::vector<Call> calls(int sub_steps) {
   std::vector<Call> all;
@@ -84,6 +86,7 @@ template <class Scalar, class Other> void compare(const CpuKernels& reference, c
   for (const Mood& mood : moods) {
     State<Scalar> state = Maker<Scalar>(7, mood).make();
     for (const Call& call : calls(3)) {
+      if (!mood.loops && closes_loops(call.kernel)) continue;
       State<Scalar> theirs = state;
       run_cpu(reference, call.kernel, call.info, state);
       other(call.kernel, call.info, theirs);
@@ -134,6 +137,7 @@ TEST_CASE("the contents that parity is checked on move, and stay numbers") {
     State<float> state = Maker<float>(7, mood).make();
     std::string first;
     for (const Call& call : calls(3)) {
+      if (!mood.loops && closes_loops(call.kernel)) continue;
       const State<float> before = state;
       run_cpu(cpu_kernels_f1, call.kernel, call.info, state);
       const std::string where = std::string(schema(call.kernel).name) + ", " + mood.name;

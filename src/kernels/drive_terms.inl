@@ -7,9 +7,9 @@
 // `kick` is h; h / 2 in the first sub-step after a velocity was set, since stored velocities lag half a sub-step.
 struct DriveRow { Real gamma; Real push; };
 
-// x^2 / (1 + x^2) for x >= 0
+// x^2 / (1 + x^2) for x >= 0; nothing where it would be subnormal
 PC_FN Real pc_unresolved(Real x) {
-  Real most = pc_min(x, PC_REAL(1e9)); precise Real square = most * most; precise Real all = square + PC_REAL(1.0); return pc_div(square, all);
+  Real most = pc_select(x < PC_REAL(1e-9), PC_REAL(0.0), pc_min(x, PC_REAL(1e9))); precise Real square = most * most; precise Real all = square + PC_REAL(1.0); return pc_div(square, all);
 }
 // `answer`: 1 / m.
 PC_FN DriveRow pc_drive_row(Real h, Real kick, Real stiffness, Real damping, Real away, Real last, Real answer) {
@@ -17,7 +17,7 @@ PC_FN DriveRow pc_drive_row(Real h, Real kick, Real stiffness, Real damping, Rea
   precise Real s = khh * answer; precise Real y = ch * answer; Real beta = pc_unresolved(s); Real sigma = pc_unresolved(y);
   precise Real late = PC_REAL(0.5) + PC_REAL(0.5) * sigma; precise Real early = PC_REAL(0.5) - PC_REAL(0.5) * sigma;
   precise Real gamma = khh * beta + ch * late; precise Real push = kh * away + ch * early * last;
-  DriveRow r; r.gamma = gamma; r.push = push; return r;
+  DriveRow r; r.gamma = pc_snap(gamma); r.push = pc_snap(push); return r;
 }
 
 // The axes of a's joint frame in the world, and the rotation vector from the orientation of rest to b's, along them.

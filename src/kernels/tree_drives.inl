@@ -10,20 +10,21 @@ PC_FN void pc_tree_drive(PC_IO Slot n, Slot up, uint b, Index joint, Quad power)
   Quad rest = PC_GATHER(joint_drive, joint, 0u); Quad drive = PC_GATHER(joint_drive, joint, 1u);
   Quaternion fc = pc_quaternion_mul(pc_quaternion(turn_c.v, turn_c.s), pc_quaternion(axes_c.v, axes_c.s));
   Quaternion fp = pc_quaternion_mul(pc_quaternion(turn_p.v, turn_p.s), pc_quaternion(axes_p.v, axes_p.s));
-  Mask flipped = PC_IS(b); Real flip = pc_select(flipped, PC_REAL(-1.0), PC_REAL(1.0)); Real one = PC_REAL(1.0);
+  // (zeros in lanes without)
+  Mask driven = power.v.x > PC_REAL(0.5); Mask flipped = PC_IS(b); Real one = PC_REAL(1.0); Real zero = PC_REAL(0.0); Real flip = pc_select(driven, pc_select(flipped, -one, one), zero);
   Quaternion fa; fa.v = pc_select3(flipped, fc.v, fp.v); fa.w = pc_select(flipped, fc.w, fp.w);
   Quaternion fb; fb.v = pc_select3(flipped, fp.v, fc.v); fb.w = pc_select(flipped, fp.w, fc.w);
   DriveFrame f = pc_drive_frame(fa, fb, pc_quaternion(rest.v, rest.s));
   // velocities of b against a are those of the child against the parent, or their opposites: so are the axes
   pc_st3_tree(PC_PASS n, TREE_DRIVE_AXIS, pc_scale(f.x, flip)); pc_st3_tree(PC_PASS n, TREE_DRIVE_AXIS + 3u, pc_scale(f.y, flip)); pc_st3_tree(PC_PASS n, TREE_DRIVE_AXIS + 6u, pc_scale(f.z, flip));
-  pc_st3_tree(PC_PASS n, TREE_DRIVE_AWAY, f.away);
+  pc_st3_tree(PC_PASS n, TREE_DRIVE_AWAY, pc_select3(driven, f.away, pc_zero3()));
   Vec3 last = pc_sub(pc_ld3_tree(PC_PASS n, TREE_DRIVE_SPIN), pc_ld3_tree(PC_PASS up, TREE_DRIVE_SPIN));
   precise Real l0 = pc_dot(f.x, last) * flip; precise Real l1 = pc_dot(f.y, last) * flip; precise Real l2 = pc_dot(f.z, last) * flip;
   pc_st3_tree(PC_PASS n, TREE_DRIVE_LAST, Vec3(l0, l1, l2));
   Real fresh = pc_max(PC_LD(tree_rows, n, TREE_DRIVE_FRESH), PC_LD(tree_rows, up, TREE_DRIVE_FRESH)); precise Real kick = PC_INFO(h) * (one - fresh * PC_REAL(0.5));
-  Real share = pc_select(power.v.x > PC_REAL(0.5), pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)), PC_REAL(0.0));
+  Real share = pc_select(driven, pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)), zero);
   precise Real most = drive.v.y * kick * share; precise Real stiffness = drive.v.z * share; precise Real damping = drive.s * share;
-  PC_ST(tree_rows, n, TREE_DRIVE_KICK, kick); PC_ST(tree_rows, n, TREE_MOTOR_SPEED, drive.v.x); PC_ST(tree_rows, n, TREE_MOTOR_MOST, most);
+  PC_ST(tree_rows, n, TREE_DRIVE_KICK, pc_select(driven, kick, zero)); PC_ST(tree_rows, n, TREE_MOTOR_SPEED, pc_select(driven, drive.v.x, zero)); PC_ST(tree_rows, n, TREE_MOTOR_MOST, most);
   PC_ST(tree_rows, n, TREE_DRIVE_STIFFNESS, stiffness); PC_ST(tree_rows, n, TREE_DRIVE_DAMPING, damping);
 }
 
