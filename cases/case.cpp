@@ -86,9 +86,10 @@ void Trial::finish() {
 const std::vector<Case>& list() {
   static const std::vector<Case> all = [] {
     std::vector<Case> cases;
-    for (const auto add : {add_free_motion, add_rotation, add_pendulums, add_hinges, add_bounces, add_impacts, add_friction,
-                           add_rolling, add_simbenchmark, add_chains, add_loops, add_stacks, add_ragdolls, add_scales,
-                           add_extreme_motion, add_overlaps, add_bad_input, add_crowds, add_repeats})
+    for (const auto add :
+         {add_free_motion, add_rotation,       add_pendulums, add_hinges,    add_bounces, add_impacts, add_friction,
+          add_rolling,     add_simbenchmark,   add_chains,    add_loops,     add_drives,  add_stacks,  add_ragdolls,
+          add_scales,      add_extreme_motion, add_overlaps,  add_bad_input, add_crowds,  add_repeats})
       add(cases);
     // a group's letter, then its number
     std::stable_sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) {

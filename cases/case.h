@@ -108,6 +108,7 @@ void add_rolling(std::vector<Case>& cases);
 void add_simbenchmark(std::vector<Case>& cases);
 void add_chains(std::vector<Case>& cases);
 void add_loops(std::vector<Case>& cases);
+void add_drives(std::vector<Case>& cases);
 void add_stacks(std::vector<Case>& cases);
 void add_ragdolls(std::vector<Case>& cases);
 void add_scales(std::vector<Case>& cases);

@@ -51,6 +51,8 @@ struct Moved {
   double across = 0, down = 0;
 };
 Moved moved(const Simulated& run);
+/// The door of A9b, driven and braked by its joint.
+void door_with_motor(Trial& trial);
 /// Bodies with a pose or velocity that is not finite.
 double nonfinite(const Simulated& run);
 /// The largest speed of a point of the bodies, half a metre from their centres [m/s].

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "clock.h"
+#include "measures.h"
 
 namespace pcphys::cases {
 namespace {
@@ -17,6 +18,7 @@ class Own final : public Simulated {
   Vec3 velocity(int body) const override { return *world().velocity(id(body)); }
   Vec3 angular_velocity(int body) const override { return *world().angular_velocity(id(body)); }
   std::uint64_t hash() const override { return world().hash(); }
+  Vec3 kept_angular_momentum() const override { return world().angular_momentum(); }
 
   void set_wrench(int body, const Wrench& wrench) override {
     ForceId& force = wrenches_[std::size_t(body)];
@@ -75,6 +77,8 @@ class OwnEngine final : public Engine {
 };
 
 }  // namespace
+
+Vec3 Simulated::kept_angular_momentum() const { return angular_momentum(*this); }
 
 Simulated::Simulated(Problem problem) : problem_(std::move(problem)) {
   for (const scenes::SceneBody& body : problem_.scene.bodies) {

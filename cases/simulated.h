@@ -48,6 +48,8 @@ class Simulated {
   virtual void set_wrench(int body, const Wrench& wrench);
   virtual void set_gravity(Vec3 gravity);
   virtual void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity);
+  /// About the origin, as the engine keeps it: what is read in phase with the positions swings about that [kg m^2/s].
+  virtual Vec3 kept_angular_momentum() const;
   /// Of the whole state, where the engine has one.
   virtual std::uint64_t hash() const { return 0; }
 

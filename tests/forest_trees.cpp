@@ -60,10 +60,11 @@ TEST_CASE("forest: a loop leaves one joint over") {
     g.join(0, left), g.join(left, bar), g.join(bar, right), g.join(0, right);
     const Forest f = g.forest();
     check_forest(g, f);
-    // two trees grow from the ground's joints only if nothing reached the second arm first
-    REQUIRE(f.trees() == 1);
-    CHECK(bodies(f, 0) == List{0, left, bar, right});
-    CHECK(closing(f) == List{4});
+    // from both of the ground's joints at once
+    REQUIRE(f.trees() == 2);
+    CHECK(bodies(f, 0) == List{0, left, bar});
+    CHECK(bodies(f, 1) == List{0, right});
+    CHECK(closing(f) == List{3});
   }
   SUBCASE("a ring of six") {
     Graph g;
@@ -104,7 +105,7 @@ TEST_CASE("forest: a body on two pins") {
   CHECK(f.trees() == 1);
 }
 
-TEST_CASE("forest: a chain between two fixed bodies is one tree and one joint over") {
+TEST_CASE("forest: a chain between two fixed bodies is two halves and one joint over") {
   Graph g;
   const auto post = g.body(0);
   std::uint32_t above = 0;
@@ -113,11 +114,36 @@ TEST_CASE("forest: a chain between two fixed bodies is one tree and one joint ov
     g.join(above, link);
     above = link;
   }
-  const auto last = g.join(above, post);
+  g.join(above, post);
   const Forest f = g.forest();
   check_forest(g, f);
-  CHECK(f.trees() == 1);
-  CHECK(closing(f) == List{last});
+  CHECK(f.trees() == 2);
+  CHECK(bodies(f, 0).size() == 3);
+  CHECK(bodies(f, 1).size() == 3);
+  CHECK(closing(f) == List{3});
+}
+
+TEST_CASE("forest: a net hangs from each of its anchors, row by row") {
+  Graph g;
+  const std::uint32_t columns = 5, rows = 6;
+  List column_of{0}, above(columns, 0);
+  for (std::uint32_t row = 0; row < rows; row++) {
+    std::uint32_t left = 0;
+    for (std::uint32_t column = 0; column < columns; column++) {
+      const auto knot = g.body(1);
+      column_of.push_back(column);
+      g.join(above[column], knot);
+      if (left) g.join(left, knot);
+      above[column] = left = knot;
+    }
+  }
+  const Forest f = g.forest();
+  check_forest(g, f);
+  REQUIRE(f.trees() == columns);
+  for (std::uint32_t column = 0; column < columns; column++) {
+    REQUIRE(f.tree(column).size() == rows + 1);
+    for (std::size_t k = 1; k <= rows; k++) CHECK(column_of[f.tree(column)[k].body] == column);
+  }
 }
 
 TEST_CASE("forest: one fixed body is the root of several trees, and joints between fixed bodies are in none") {

@@ -35,11 +35,13 @@ inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || bu
 struct Mood {
   const char* name;
   double speed, spin, distance, mass, impulse;
-  double tree_spin;  // of bodies in trees
+  double tree_spin;   // of bodies in trees
+  bool loops = true;  // whether joints close loops among them
 };
 inline constexpr Mood moods[] = {
     {"plausible", 3, 2, 5, 1, 0.5, 2},
-    {"many turns and far away", 50, 4000, 5000, 0.05, 1, 100},  // at 4000 rad/s loops of trees leave the range of numbers
+    {"many turns and far away", 50, 4000, 5000, 0.05, 1, 100},
+    {"whirling trees", 50, 4000, 5, 0.05, 1, 4000, false},  // loops leave the range of numbers: a world freezes them
     {"small", 1e-6, 1e-7, 0.01, 1e-3, 1e-8, 1e-7},
     {"heavy", 20, 300, 50, 1e6, 1e5, 30},  // at 300 rad/s tree_again ends at 1e9 m/s, see analytic_tree_limits.cpp
 };
@@ -83,6 +85,7 @@ template <class Scalar> class Maker {
   void body(std::uint32_t row);
   void contact(std::uint32_t row);
   void joint(std::uint32_t row);
+  void drive(std::uint32_t row);
   void slots(Buffer ends, Buffer order, std::vector<Range>& colours, std::uint32_t colour_count, std::uint32_t blocks);
   void trees();
   void tree_slots(Buffer ends, Buffer order, std::vector<Range>& colours);
@@ -157,8 +160,10 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
 template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
   if (row == 0) {
     put(Buffer::joint_frame, row, {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1});
+    put(Buffer::joint_drive, row, {0, 0, 0, 1});
     return;
   }
+  drive(row);
   const auto p = turn(4), q = turn(4);
   // a world keeps free angles as 1e9: trees multiply slacks by 0 where a row does not act
   const double infinity = row > coloured_joints ? constants::free_angle : std::numeric_limits<double>::infinity();
@@ -176,6 +181,16 @@ template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
                                  upper[0],    upper[1],    upper[2],    0});
   const double push = rarely() ? 0 : mood_.impulse;
   put(Buffer::joint_impulse, row, {either(push), either(push), either(push), 0, either(push), either(push), either(push), 0});
+}
+
+/// Motors and springs, strong and weak, on every second joint; some coloured ones are springs between two points.
+template <class Scalar> void Maker<Scalar>::drive(std::uint32_t row) {
+  const std::uint32_t kind = below(2) == 0 ? 0 : row <= coloured_joints && below(3) == 0 ? 2 : 1;
+  const auto rest = rarely() ? std::array<double, 4>{0, 0, 0, 1} : turn(4);
+  const double strength = mood_.impulse * std::pow(10, either(4)), turning = kind == 1 && !rarely() ? 10 * mood_.impulse : 0;
+  put(Buffer::joint_drive, row,
+      {rest[0], rest[1], rest[2], rest[3], either(mood_.tree_spin), turning * real(0, 1), rarely() ? 0 : strength,
+       rarely() ? 0 : strength * real(0, 0.1), double(kind), rarely() ? 0 : real(0, 1), 0, 0});
 }
 
 /// Colours: within one, no dynamic body stands in two slots. The last slots of each are padding.

@@ -91,7 +91,8 @@ inline void check_forest(const Graph& graph, const Forest& f) {
     CHECK(joints.insert(row).second);
     const JointLink& l = *by_row.at(row);
     const bool moves_a = graph.masses[l.a] > 0, moves_b = graph.masses[l.b] > 0;
-    if (moves_a && moves_b) CHECK(tree_of.at(l.a) == tree_of.at(l.b));
+    if (moves_a && moves_b && tree_of.at(l.a) != tree_of.at(l.b))  // two that hang, each from the anchor that is nearer
+      for (std::uint32_t body : {l.a, l.b}) CHECK(graph.masses[f.tree(tree_of.at(body))[0].body] == 0);
     // what else holds a body to something fixed: its tree has such a root already
     if (moves_a != moves_b) CHECK(graph.masses[f.tree(tree_of.at(moves_a ? l.a : l.b))[0].body] == 0);
   }

@@ -18,5 +18,6 @@ template <class Tag> struct Id {
 using BodyId = Id<struct BodyTag>;
 using ShapeId = Id<struct ShapeTag>;
 using JointId = Id<struct JointTag>;
+using SpringId = Id<struct SpringTag>;
 
 }  // namespace pcphys

@@ -112,11 +112,38 @@ struct AngleFreedom {
   static AngleFreedom locked() { return between({}, {}); }
 };
 
+/// Turns b against a about the x axis of the joint's frame in a, at `speed`, with at most `torque`: a motor with a gear that does not
+/// turn back, which holds its speed (0: a brake) as long as its torque suffices. What the pins leave free may move beside it.
+struct Motor {
+  double speed = 0;   // [rad/s]
+  double torque = 0;  // [N m]; 0: no motor
+};
+
+/// Pulls b's frame back to `rest` in a's frame: torque = -stiffness * (rotation vector from rest) - damping * (relative angular
+/// velocity). Turns of more than half a circle are taken the short way.
+struct AngularSpring {
+  double stiffness = 0;  // [N m/rad]
+  double damping = 0;    // [N m s/rad]
+  Quat rest;
+};
+
+/// A spring and damper along the line between a point of a and one of b: tension = stiffness * (distance - rest_length) +
+/// damping * (rate of the distance). It pulls and pushes, at any stiffness: what a sub-step is too long to resolve is damped.
+struct SpringDef {
+  BodyId a, b;              // a may be `World::ground()`
+  Vec3 anchor_a, anchor_b;  // in each body's frame [m]
+  double rest_length = 0;   // [m]
+  double stiffness = 0;     // [N/m]
+  double damping = 0;       // [N s/m]
+};
+
 /// A pin between two bodies, with an optional angle constraint about the default relative orientation.
 struct JointDef {
   BodyId a, b;            // a may be `World::ground()`
   Pose frame_a, frame_b;  // the pin and the joint axes in each body; they coincide in the default pose
   AngleFreedom freedom;
+  Motor motor;
+  AngularSpring spring;
   bool collide = false;  // whether a and b may collide; adjacent bones do not
 };
 

@@ -56,17 +56,22 @@ class World {
   BodyId ground() const;
   Result<BodyId> create_body(const BodyDef& def);
   Result<JointId> create_joint(const JointDef& def);
+  /// The two bodies may collide. Stiffness, damping and rest length below zero are ErrorCode::bad_joint.
+  Result<SpringId> create_spring(const SpringDef& def);
   /// Bones and joints of a ragdoll whose frame stands at `pose`; all bones move with `velocity`.
   Result<Ragdoll> create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity = {});
-  /// Takes the body's shapes, joints and forces with it.
+  /// Takes the body's shapes, joints, springs and forces with it.
   Status destroy(BodyId body);
   Status destroy(JointId joint);
+  Status destroy(SpringId spring);
 
   bool valid(BodyId body) const;
   bool valid(JointId joint) const;
+  bool valid(SpringId spring) const;
   /// All bodies in ascending id order, the ground excluded.
   std::vector<BodyId> bodies() const;
   std::vector<JointId> joints() const;
+  std::vector<SpringId> springs() const;
   std::size_t body_count() const;  // the ground excluded
   std::size_t joint_count() const;
   std::size_t contact_count() const;  // manifolds with points, of the last step
@@ -115,12 +120,20 @@ class World {
   /// Whether two bodies may never collide, besides what joints and filters say.
   Status set_collide(BodyId a, BodyId b, bool collide);
   Result<JointDef> joint(JointId joint) const;
+  /// From the next step on. Speed in [rad/s], torque in [N m]; a torque below zero is ErrorCode::bad_joint.
+  Status set_motor(JointId joint, const Motor& motor);
+  Status set_spring(JointId joint, const AngularSpring& spring);
+  Result<SpringDef> spring(SpringId spring) const;
+  /// Rest length [m], stiffness [N/m] and damping [N s/m] from the next step on.
+  Status set_spring(SpringId spring, double rest_length, double stiffness, double damping);
 
   // ---- measures --------------------------------------------------------------------------------------
   /// Kinetic energy, velocities in phase with positions [J].
   double kinetic_energy() const;
   /// In the uniform gravity field, zero at the origin [J].
   double potential_energy() const;
+  /// Stored in the springs of joints and between points [J].
+  double spring_energy() const;
   /// Of the velocities as they are stored, half a sub-step behind the positions: what impulses between bodies
   /// leave unchanged to rounding. Gravity's share of that half sub-step is not in it [kg m/s].
   Vec3 momentum() const;

@@ -13,6 +13,21 @@ const uint JOINT_TURN = 37u;    // and what answers a couple on b, its opposite 
 const uint JOINT_MOVE = 43u;    // and velocity of the pin, three rows
 const uint JOINT_NEAR_A = 52u;  // arms from the places of now to a common point
 const uint JOINT_NEAR_B = 55u;
+// motor and spring (joint_drive_rows.inl), where some joint has any
+const uint JOINT_DRIVE = 60u;         // 0 none, 1 of the joint, 2 a spring between two points
+const uint JOINT_DRIVE_AXIS = 61u;    // of a's joint frame; or the first along the line
+const uint JOINT_DRIVE_AWAY = 70u;    // from rest along them
+const uint JOINT_DRIVE_LAST = 73u;    // velocities along them, of the last sub-step
+const uint JOINT_DRIVE_KICK = 76u;    // time over which it acts
+const uint JOINT_DRIVE_STIFFNESS = 77u;
+const uint JOINT_DRIVE_DAMPING = 78u;
+const uint JOINT_MOTOR_SPEED = 79u;
+const uint JOINT_MOTOR_MOST = 80u;    // its largest impulse
+const uint JOINT_DRIVE_GAMMA = 81u;   // impulse -(push + gamma u')
+const uint JOINT_DRIVE_PUSH = 84u;
+const uint JOINT_DRIVE_ANSWER = 87u;  // velocity per impulse
+const uint JOINT_DRIVE_TOTAL = 90u;   // impulses in this sub-step
+const uint JOINT_MOTOR_TOTAL = 93u;
 
 PC_FN Vec3 pc_ld3_joint(PC_IO Slot m, uint f) { return Vec3(PC_LD(joint_rows, m, f), PC_LD(joint_rows, m, f + 1u), PC_LD(joint_rows, m, f + 2u)); }
 

@@ -5,6 +5,10 @@
 #include "joint_rows.inl"
 #include "joint_apply.inl"
 #include "joint_limits.inl"
+#ifdef PC_DRIVES
+#include "drive_terms.inl"
+#include "joint_drive_rows.inl"
+#endif
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(joint_ends, m, 0u); Index ib = PC_ENDS(joint_ends, m, 1u); Index joint = PC_ORDER(joint_order, m);
@@ -20,6 +24,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b);
   Vec3 couple = pc_angle_steps(PC_PASS m, pc_sub(wb, wa), both, angle);
 
+#ifdef PC_DRIVES
+  couple = pc_add(couple, pc_drive_steps(PC_PASS m, pc_add(pc_sub(wb, wa), pc_sym_mul(both, couple)), both));
+#endif
+
   // pin, with the angles' couple already acting
   precise Real minus_response = -a.response;
   Vec3 la = pc_madd(a.l, couple, minus_response); Vec3 lb = pc_madd(b.l, couple, b.response);
@@ -31,6 +39,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 answer = pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted);
   precise Real minus_scale = -PC_INFO(joint_mass_scale);
   precise Vec3 change = answer * minus_scale - pin.v * PC_INFO(joint_impulse_scale);
+#ifdef PC_DRIVES
+  change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, pc_sub(vb, va), pin.v), change);
+#endif
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
   pc_joint_apply(PC_PASS ia, ib, a, b, arm_a, arm_b, change, couple);

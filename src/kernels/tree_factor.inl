@@ -24,9 +24,16 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
   // a light body's spin between heavy ones is lost in the rounding of their inertia: a little is added (docs/joints.md)
   // (pins that remember no impulse may be of any stiffness)
-  Real rounding = PC_INFO(rounding); precise Real unknown = rounding * PC_REAL(256.0); precise Real known = rounding + fast * PC_INFO(spin_floor); Real share = pc_select(fast > PC_REAL(0.0), known, unknown); precise Real floor = (xx + yy + zz) * share; precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
+  Real rounding = PC_INFO(rounding); precise Real unknown = rounding * PC_REAL(256.0);
+#ifdef PC_DRIVES
+  unknown = pc_select(pc_drive_lasts(PC_PASS n), rounding, unknown);
+#endif
+  precise Real known = rounding + fast * PC_INFO(spin_floor); Real share = pc_select(fast > PC_REAL(0.0), known, unknown); precise Real floor = (xx + yy + zz) * share; precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
   Sym3 inverse = loose;
+#ifdef PC_DRIVES
+  if (PC_ANY(pc_has_drive(PC_PASS n))) { freedom = pc_with_drives(PC_PASS n, up, freedom, loose); loose = pc_sym_inverse(freedom); inverse = loose; }  // lint: allow (zeros otherwise)
+#endif
   if (PC_ANY(pc_has_rows(PC_PASS n))) inverse = pc_with_springs(PC_PASS n, freedom, loose);  // lint: allow (zeros otherwise)
   Vec3 w0 = pc_sym_mul(inverse, u0); Vec3 w1 = pc_sym_mul(inverse, u1); Vec3 w2 = pc_sym_mul(inverse, u2); Vec3 w3 = pc_sym_mul(inverse, u3); Vec3 w4 = pc_sym_mul(inverse, u4); Vec3 w5 = pc_sym_mul(inverse, u5);
   pc_sts_tree(PC_PASS n, TREE_D, inverse);

@@ -10,6 +10,14 @@
 #include "node_operator.inl"
 #include "node_response.inl"
 #include "joint_rows.inl"
+#ifdef PC_DRIVES
+#include "drive_terms.inl"
+#include "joint_drive_rows.inl"
+
+PC_FN Real pc_answer_along(PC_IO Slot m, uint i, Sym3 answer) {
+  Vec3 axis = pc_ld3_joint(PC_PASS m, JOINT_DRIVE_AXIS + i * 3u); return pc_max(pc_dot(axis, pc_sym_mul(answer, axis)), PC_REAL(0.0));
+}
+#endif
 
 // Of a bare body: the sum of its answers at the arm, along three axes.
 PC_FN Real pc_bare_answer(BodyState b, Vec3 arm) {
@@ -54,4 +62,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     precise Real answer = pc_dot(axis, pc_sym_mul(g.a, axis)) + pc_inverse_or_zero(bare) * PC_REAL(0.01);
     PC_ST(joint_rows, m, JOINT_MASS + i, pc_select(bare > PC_REAL(0.0), pc_inverse_or_zero(answer), PC_REAL(0.0)));
   }
+#ifdef PC_DRIVES
+  Sym3 along = pc_sym_select(pc_is_spring(PC_PASS m), g.l, g.a);
+  pc_drive_coefficients(PC_PASS m, Vec3(pc_answer_along(PC_PASS m, 0u, along), pc_answer_along(PC_PASS m, 1u, along), pc_answer_along(PC_PASS m, 2u, along)));
+#endif
 }

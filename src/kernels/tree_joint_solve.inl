@@ -11,6 +11,10 @@
 #include "body_push.inl"
 #include "joint_rows.inl"
 #include "joint_limits.inl"
+#ifdef PC_DRIVES
+#include "drive_terms.inl"
+#include "joint_drive_rows.inl"
+#endif
 
 // Mean velocity of a pin over the sub-step, the body turning freely from the arm with momentum l (and w, its velocity now):
 // the middle's angular velocity is w + h / 2 I^-1 (L x w). Where it turns by more than half a radian the tangent, w x arm: what the
@@ -39,12 +43,20 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 va = pc_add(a.v, xa.l); Vec3 vb = pc_add(b.v, xb.l);
   Vec3 couple = pc_angle_steps(PC_PASS m, pc_sub(wb, wa), pc_lds_joint(PC_PASS m, JOINT_TURN), angle);
 
+#ifdef PC_DRIVES
+  Sym3 both = pc_lds_joint(PC_PASS m, JOINT_TURN); couple = pc_add(couple, pc_drive_steps(PC_PASS m, pc_add(pc_sub(wb, wa), pc_sym_mul(both, couple)), both));
+#endif
+
   // pin, with the angles' couple already acting
   Vec3 arm_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A); Vec3 arm_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B);
   Mat3 move = pc_mat3(pc_ld3_joint(PC_PASS m, JOINT_MOVE), pc_ld3_joint(PC_PASS m, JOINT_MOVE + 3u), pc_ld3_joint(PC_PASS m, JOINT_MOVE + 6u));
   precise Vec3 rate = pc_mean_velocity(PC_PASS b, vb, wb, arm_b, b.l) - pc_mean_velocity(PC_PASS a, va, wa, arm_a, a.l) + pc_mat_mul(move, couple);
   precise Vec3 wanted = rate + pc_pin_bias(PC_PASS pc_ld3_joint(PC_PASS m, JOINT_GAP)) + pin.v * PC_LD(joint_rows, m, JOINT_GIVE);
   Vec3 change = pc_negate(pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted));
+#ifdef PC_DRIVES
+  precise Vec3 tangent = (vb + pc_cross(wb, arm_b)) - (va + pc_cross(wa, arm_a));
+  change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, tangent, pin.v), change);
+#endif
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
 

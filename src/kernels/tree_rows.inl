@@ -35,6 +35,22 @@ const uint TREE_TOTAL = 152u;   // mass of the whole tree, the unit of all masse
 const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
+// motor and spring of the joint (tree_drive.inl); written where a tree has any
+const uint TREE_DRIVE = 168u;   // 1 where there is one
+const uint TREE_DRIVE_KICK = 169u;  // time over which it acts
+const uint TREE_DRIVE_FRESH = 170u; // 1 where the body's velocity was just set
+const uint TREE_MOTOR_ON = 171u;    // 0: it holds its speed; 1 and -1: it gives its torque; 2: not known yet
+const uint TREE_DRIVE_SPIN = 172u;  // angular velocity before the sub-step's forces
+const uint TREE_MOTOR_STIFFNESS = 175u;
+const uint TREE_DRIVE_AXIS = 176u;  // of a's joint frame, turned like TREE_AXIS
+const uint TREE_DRIVE_AWAY = 185u;  // rotation vector from rest along them
+const uint TREE_DRIVE_LAST = 188u;  // rates along them: of the last sub-step
+const uint TREE_DRIVE_STIFFNESS = 191u;
+const uint TREE_DRIVE_DAMPING = 192u;
+const uint TREE_MOTOR_SPEED = 193u;
+const uint TREE_MOTOR_MOST = 194u;  // its largest impulse
+const uint TREE_DRIVE_RATE = 195u;  // and at the prediction
+const uint TREE_DRIVE_PUSH = 198u;
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }

@@ -5,6 +5,9 @@
 #include "tree_rows.inl"
 #include "tree_store.inl"
 #include "angle_rows.inl"
+#ifdef PC_DRIVES
+#include "tree_drive.inl"
+#endif
 #include "tree_factor.inl"
 #include "tree_sweep.inl"
 
@@ -64,12 +67,18 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l); turn = moment;
   }
   for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+#ifdef PC_DRIVES
+  for (uint k = 1u; k < t.count; k++) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+#endif
   pc_tree_damping(PC_PASS m, t);
   for (uint round = 0u; round < 4u; round++) {
     pc_factor(PC_PASS m, t);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
     Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one);
     for (uint k = 1u; k < t.count; k++) changed = pc_max(changed, pc_tree_revise(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), may_enter));
+#ifdef PC_DRIVES
+    for (uint k = 1u; k < t.count; k++) changed = pc_max(changed, pc_drive_revise(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), may_enter));
+#endif
     if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
   }
   for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }

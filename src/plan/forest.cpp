@@ -21,21 +21,18 @@ void Forest::build(std::span<const JointLink> links, std::span<const double> mas
   used_.assign(links_.size(), 0);
   nodes_.clear();
   first_.assign(1, 0);
-  constexpr std::uint32_t none = 0xffffffffu;
-  // trees that hang on something fixed, by the lowest joint that holds them
-  for (std::uint32_t i = 0; i < links_.size(); i++) {
-    const JointLink& l = links_[i];
-    const bool fixed_a = masses[l.a] == 0, fixed_b = masses[l.b] == 0;
-    if (fixed_a == fixed_b || reached_[fixed_a ? l.b : l.a]) continue;
-    grow(fixed_a ? l.a : l.b, i);
-  }
+  grow_hanging();
   // free ones, from their heaviest body; of equal ones from the lowest id
   std::vector<std::uint32_t> rows(masses.size());
   std::iota(rows.begin(), rows.end(), 0u);
   std::ranges::sort(
       rows, [&](std::uint32_t x, std::uint32_t y) { return masses[x] != masses[y] ? masses[x] > masses[y] : ids[x] < ids[y]; });
   for (const std::uint32_t row : rows)
-    if (masses[row] > 0 && !reached_[row] && begin_[row] != begin_[row + 1]) grow(row, none);
+    if (masses[row] > 0 && !reached_[row] && begin_[row] != begin_[row + 1]) {
+      reached_[row] = 1;
+      trees_.assign(1, {{row, 0, 0, false}});
+      grow();
+    }
 
   closing_.clear();
   for (std::uint32_t i = 0; i < links_.size(); i++)
@@ -43,24 +40,42 @@ void Forest::build(std::span<const JointLink> links, std::span<const double> mas
   std::ranges::sort(closing_);
 }
 
-void Forest::grow(std::uint32_t root, std::uint32_t anchor) {
-  const std::size_t start = nodes_.size();
-  const auto visit = [&](std::uint32_t link, std::uint32_t from, std::uint32_t parent) {
+void Forest::grow_hanging() {
+  trees_.clear();
+  for (std::uint32_t i = 0; i < links_.size(); i++) {
+    const JointLink& l = links_[i];
+    const bool fixed_a = masses_[l.a] == 0, fixed_b = masses_[l.b] == 0;
+    const std::uint32_t anchor = fixed_a ? l.a : l.b, child = fixed_a ? l.b : l.a;
+    if (fixed_a == fixed_b || reached_[child]) continue;
+    used_[i] = reached_[child] = 1;
+    trees_.push_back({{anchor, 0, 0, false}, {child, l.row, 0, l.a == child}});
+  }
+  grow();
+}
+
+void Forest::grow() {
+  const auto visit = [&](std::vector<TreeNode>& tree, std::size_t at, std::uint32_t link) {
     const JointLink& l = links_[link];
-    const std::uint32_t child = l.a == from ? l.b : l.a;
+    const std::uint32_t child = l.a == tree[at].body ? l.b : l.a;
     if (used_[link] || masses_[child] == 0 || reached_[child]) return;
     used_[link] = reached_[child] = 1;
-    nodes_.push_back({child, l.row, parent, l.a == child});
+    tree.push_back({child, l.row, std::uint32_t(at), l.a == child});
   };
-  nodes_.push_back({root, 0, 0, false});
-  if (masses_[root] > 0)
-    reached_[root] = 1;
-  else
-    visit(anchor, root, 0);
-  for (std::size_t k = start + (masses_[root] == 0); k < nodes_.size(); k++)
-    for (std::uint32_t at = begin_[nodes_[k].body]; at < begin_[nodes_[k].body + 1]; at++)
-      visit(links_of_[at], nodes_[k].body, std::uint32_t(k - start));
-  first_.push_back(std::uint32_t(nodes_.size()));
+  std::vector<std::size_t> done(trees_.size(), 0);
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (std::size_t i = 0; i < trees_.size(); i++)
+      for (std::size_t level = trees_[i].size(); done[i] < level; done[i]++) {
+        grows = true;
+        const std::uint32_t body = trees_[i][done[i]].body;
+        if (masses_[body] == 0) continue;  // what hangs there beside is a tree of its own
+        for (std::uint32_t at = begin_[body]; at < begin_[body + 1]; at++) visit(trees_[i], done[i], links_of_[at]);
+      }
+  }
+  for (const std::vector<TreeNode>& tree : trees_) {
+    nodes_.insert(nodes_.end(), tree.begin(), tree.end());
+    first_.push_back(std::uint32_t(nodes_.size()));
+  }
 }
 
 void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {

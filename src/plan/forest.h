@@ -1,8 +1,9 @@
 // Joint trees: a spanning forest of the joint graph. Each tree is solved directly (docs/joints.md); joints that close a
 // loop, or tie a tree to a second fixed body, are left over for rows.
 //
-// A tree with a joint to a fixed or kinematic body has that body as its root; any other has its heaviest body. From
-// there breadth first, joints in the order of their ids: trees that were made alike come out alike.
+// A joint to a fixed or kinematic body begins a tree with that body as its root, unless a lower one holds the same body already; all
+// of them grow at once, so that a net or a bridge hangs from each of its anchors by the shortest way. A tree without such a joint has its
+// heaviest body as its root. Breadth first, joints in the order of their ids: trees that were made alike come out alike.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -35,12 +36,16 @@ class Forest {
   std::span<const std::uint32_t> closing() const { return closing_; }
 
  private:
-  void grow(std::uint32_t root, std::uint32_t anchor);
+  /// All trees that hang on something fixed.
+  void grow_hanging();
+  /// Those in `trees_`, level by level and all at once: each body goes to the root that is nearest.
+  void grow();
 
   std::vector<JointLink> links_;                 // by id
   std::vector<std::uint32_t> begin_, links_of_;  // of each body row, its links by id
   std::vector<char> reached_, used_;             // by body row; by link
   std::vector<double> masses_;
+  std::vector<std::vector<TreeNode>> trees_;  // that grow
   std::vector<TreeNode> nodes_;
   std::vector<std::uint32_t> first_, closing_;
 };

@@ -72,6 +72,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
   if (!s.joints() && !s.trees) out("joints", "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
+  if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
@@ -97,9 +98,17 @@ Motion motion(const PlanSignature& s) {
 // what acts on trees first: the floor under what lies on them comes later (see Colouring)
 void solve_on_trees(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.tree_joints && phase == Phase::relax) b.kernel(Kernel::tree_joint_arms, phase, substep);
-  if (s.tree_joints) b.kernel(Kernel::tree_joint_solve, phase, substep);
+  if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_solve_driven : Kernel::tree_joint_solve, phase, substep);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_solve, phase, substep);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_flush, phase, substep);
+}
+// before the forces, and before the first sub-step brings velocities out of phase
+void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+  if (s.tree_drives) b.kernel(Kernel::tree_drive_rates, phase, substep);
+  if (s.joint_drives) b.kernel(Kernel::joint_drives, phase, substep);
+}
+void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+  if (s.free_joints) b.kernel(s.joint_drives ? Kernel::joint_solve_driven : Kernel::joint_solve, phase, substep);
 }
 void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   solve_on_trees(b, s, phase, substep);
@@ -116,12 +125,15 @@ StepPlan make_plan(const PlanSignature& s) {
 
   Builder b(s, plan);
   const Motion with = motion(s);
+  look_at_drives(b, s, Phase::first, 0);
   b.kernel(with.begin, Phase::first, 0);
   if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < s.substeps; k++) {
     if (k + 1 == s.substeps && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
+    if (k > 0) look_at_drives(b, s, Phase::biased, k);
     b.kernel(with.integrate, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
+    if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
     // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
     if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
     if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
@@ -134,16 +146,16 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
     if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
     if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
-    if (s.free_joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
-    if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
+    solve_free_joints(b, s, Phase::biased, k);
+    if (s.trees) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
     if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
-    if (s.tree_joints) b.kernel(Kernel::tree_joint_mass, Phase::biased, k);
+    if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
     if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
     solve_contacts(b, s, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
     b.kernel(with.advance, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
-    if (s.free_joints) b.kernel(Kernel::joint_solve, Phase::relax, k);
+    solve_free_joints(b, s, Phase::relax, k);
     if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
     if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
     solve_contacts(b, s, Phase::relax, k);

@@ -19,6 +19,8 @@ struct PlanSignature {
   bool trees = false;                       // joints that stand in a tree
   bool free_joints = false;                 // joints that close a loop, of bodies whose trees do not answer
   bool tree_joints = false;                 // and of bodies whose trees do
+  bool tree_drives = false;                 // motors or springs of joints that stand in a tree
+  bool joint_drives = false;                // of others, or springs between two points
   bool shapes = false;                      // some pair could ever touch
   bool free_contacts = false;               // some do in this step, of bodies that stand in no tree
   bool tree_contacts = false;               // and of bodies that do

@@ -56,13 +56,13 @@ void ColouredSlots::pack(std::uint32_t width) {
 namespace {
 
 /// By tree: how many joints that close a loop have a body of it that moves.
-std::vector<std::uint32_t> closings_of_trees(const Forest& forest, std::span<const JointLink> links,
-                                             std::span<const double> masses) {
+std::vector<std::uint32_t> closings_of_trees(const Forest& forest, std::span<const std::uint32_t> closing,
+                                             std::span<const JointLink> links, std::span<const double> masses) {
   std::vector<std::uint32_t> count(forest.trees(), 0), tree_of(masses.size(), 0);  // tree + 1
   for (std::size_t i = 0; i < forest.trees(); i++)
     for (const TreeNode& node : forest.tree(i))
       if (masses[node.body] > 0) tree_of[node.body] = std::uint32_t(i + 1);
-  for (const std::uint32_t row : forest.closing()) {
+  for (const std::uint32_t row : closing) {
     const JointLink& link = links[row - 1];  // a link of each row from 1 on
     const std::uint32_t a = tree_of[link.a], b = tree_of[link.b];
     if (a > 0) count[a - 1]++;
@@ -74,10 +74,11 @@ std::vector<std::uint32_t> closings_of_trees(const Forest& forest, std::span<con
 }  // namespace
 
 void TreeSlots::build(const WorldState& state) {
-  std::vector<JointLink> links;
+  std::vector<JointLink> links, joints;  // joints: without springs between two points, which hold nothing together
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];
     links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index});
+    if (!joint.spring) joints.push_back(links.back());
   }
   std::vector<double> masses(state.bodies.size());
   std::vector<std::uint32_t> ids(state.bodies.size());
@@ -85,11 +86,32 @@ void TreeSlots::build(const WorldState& state) {
     masses[row] = state.responds(row) ? state.tables.get(Buffer::mass, row, 3) : 0;
     ids[row] = state.bodies[row].index;
   }
-  forest_.build(links, masses, ids);
+  forest_.build(joints, masses, ids);
   nodes_.build(forest_, masses);
   find_parallel(links);
-  loop_nodes_.build(forest_, masses, closings_of_trees(forest_, links, masses));
+  closing_.assign(forest_.closing().begin(), forest_.closing().end());
+  for (std::uint32_t row = 1; row < state.joints.size(); row++)
+    if (state.joints[row].spring) closing_.push_back(row);
+  std::ranges::sort(closing_);
+  loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
+  find_drives(state, links);
   width_ = 0;
+}
+
+void TreeSlots::find_drives(const WorldState& state, std::span<const JointLink> links) {
+  closing_drives_ = false;
+  free_springs_ = 0;
+  std::size_t driven = 0;
+  for (const JointRecord& joint : state.joints) driven += joint.driven();
+  for (const std::uint32_t row : closing_) {
+    const JointRecord& joint = state.joints[row];
+    if (!joint.driven()) continue;
+    closing_drives_ = true;
+    driven--;
+    const JointLink& link = links[row - 1];
+    free_springs_ += joint.spring && loop_nodes_.node(link.a) == 0 && loop_nodes_.node(link.b) == 0;
+  }
+  drives_ = driven > 0;
 }
 
 void TreeSlots::find_parallel(std::span<const JointLink> links) {
@@ -134,7 +156,7 @@ void Schedule::update_structure(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     joint_ends_[row] = {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)};
   trees.build(state);
-  joints.colour(state, joint_ends_, trees.forest().closing(), 0, trees.loop_nodes(), trees.parallel());
+  joints.colour(state, joint_ends_, trees.closing(), 0, trees.loop_nodes(), trees.parallel());
 }
 
 }  // namespace pcphys

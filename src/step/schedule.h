@@ -72,6 +72,13 @@ class TreeSlots {
   /// By joint row: whether it joins two bodies that a tree's joint joins already. What the tree leaves it to answer is
   /// singular: such joints stay rows.
   std::span<const char> parallel() const { return parallel_; }
+  /// Rows of the joints that stand in no tree, and of springs between two points; ascending.
+  std::span<const std::uint32_t> closing() const { return closing_; }
+  /// Whether some joint has a motor or a spring: of those in trees, and of the others.
+  bool drives() const { return drives_; }
+  bool closing_drives() const { return closing_drives_; }
+  /// Springs between two points of which neither stands in a tree that answers them.
+  std::uint32_t free_springs() const { return free_springs_; }
   std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
   std::span<const Range> ranges() const { return {&all_, 1}; }
   TreeBlocks& lists() { return blocks_; }
@@ -80,9 +87,13 @@ class TreeSlots {
  private:
   Forest forest_;
   void find_parallel(std::span<const JointLink> links);
+  void find_drives(const WorldState& state, std::span<const JointLink> links);
 
   TreeNodes nodes_, loop_nodes_;
   std::vector<char> parallel_;
+  std::vector<std::uint32_t> closing_;
+  bool drives_ = false, closing_drives_ = false;
+  std::uint32_t free_springs_ = 0;
   TreeBlocks blocks_;
   Range all_{0, 0};
   std::uint32_t width_ = 0;

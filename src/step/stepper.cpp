@@ -105,6 +105,8 @@ struct Stepper::Inside {
     s.trees = from.trees.forest().trees() > 0;
     s.free_joints = from.joints.any_without_trees();
     s.tree_joints = from.joints.any_with_trees();
+    s.tree_drives = from.trees.drives();
+    s.joint_drives = from.trees.closing_drives();
     return s;
   }
 
@@ -230,7 +232,7 @@ struct Stepper::Inside {
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;
-    report.joints_as_rows = schedule.joints.constraints() - schedule.joints.with_trees();
+    report.joints_as_rows = schedule.joints.constraints() - schedule.joints.with_trees() - schedule.trees.free_springs();
     report.tree_contacts_as_rows = schedule.contacts.beside_trees();
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
     return {};

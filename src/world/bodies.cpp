@@ -135,7 +135,7 @@ Status World::destroy(BodyId body) {
   if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
   for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
     if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index)
-      (void)destroy(s.joint_ids.id<JointId>(s.joints[row].index));
+      s.remove_joint(row);
   const std::uint32_t row = s.body_ids.row(body.index), last = std::uint32_t(s.bodies.size()) - 1;
   for (std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
   for (std::uint32_t shape : s.bodies[row].shapes) {

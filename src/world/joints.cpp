@@ -29,6 +29,29 @@ void write_joint(Tables& t, std::uint32_t row, const JointDef& d) {
   t.set3(Buffer::joint_frame, row, 20, {bounded(upper.x), bounded(upper.y), bounded(upper.z)});
 }
 
+enum class Drive { none, of_joint, between_points };
+
+void write_drive(Tables& t, std::uint32_t row, const JointRecord& joint) {
+  const JointDef& d = joint.def;
+  t.set4(Buffer::joint_drive, row, 0, d.spring.rest);
+  t.set(Buffer::joint_drive, row, 4, d.motor.speed);
+  t.set(Buffer::joint_drive, row, 5, d.motor.torque);
+  t.set(Buffer::joint_drive, row, 6, joint.spring ? joint.spring->stiffness : d.spring.stiffness);
+  t.set(Buffer::joint_drive, row, 7, joint.spring ? joint.spring->damping : d.spring.damping);
+  const Drive kind = joint.spring ? Drive::between_points : joint.driven() ? Drive::of_joint : Drive::none;
+  t.set(Buffer::joint_drive, row, 8, double(kind));
+  t.set(Buffer::joint_drive, row, 9, joint.spring ? joint.spring->rest_length : 0);
+}
+
+/// Also what the plan needs may change: whether there is anything to drive at all.
+template <class Change> void change_drive(WorldState& s, std::uint32_t row, Change change) {
+  JointRecord& joint = s.joints[row];
+  const bool before = joint.driven();
+  change(joint);
+  write_drive(s.tables, row, joint);
+  if (joint.driven() != before) s.structure_version++;
+}
+
 }  // namespace
 
 Status check(JointDef& def) {
@@ -37,50 +60,151 @@ Status check(JointDef& def) {
   if (ok) ok = check_unit(def.frame_a.orientation, "frame of a joint in body a");
   if (ok) ok = check_unit(def.frame_b.orientation, "frame of a joint in body b");
   if (ok) ok = check(def.freedom);
+  if (ok) ok = check(def.motor);
+  if (ok) ok = check(def.spring);
   return ok;
 }
 
-bool World::valid(JointId joint) const { return state_->joint_ids.valid(joint); }
-std::size_t World::joint_count() const { return state_->joint_ids.count(); }
-
-std::vector<JointId> World::joints() const {
-  std::vector<JointId> ids;
-  for (std::uint32_t i = 0; i < state_->joint_ids.size(); i++)
-    if (state_->joint_ids.alive(i)) ids.push_back(state_->joint_ids.id<JointId>(i));
+namespace {
+// joints and springs share rows and indices
+template <class AnyId> bool is_alive(const WorldState& s, AnyId id, bool spring) {
+  return s.joint_ids.valid(id) && s.joints[s.joint_ids.row(id.index)].spring.has_value() == spring;
+}
+template <class AnyId> std::vector<AnyId> all_alive(const WorldState& s, bool spring) {
+  std::vector<AnyId> ids;
+  for (std::uint32_t i = 0; i < s.joint_ids.size(); i++)
+    if (s.joint_ids.alive(i) && s.joints[s.joint_ids.row(i)].spring.has_value() == spring)
+      ids.push_back(s.joint_ids.id<AnyId>(i));
   return ids;
 }
+}  // namespace
 
-Result<JointId> World::create_joint(const JointDef& given) {
-  WorldState& s = *state_;
-  JointDef def = given;
-  if (!valid(def.a) || !valid(def.b)) return stale("body");
-  if (def.a == def.b)
-    return Error{ErrorCode::bad_joint, "A joint needs two different bodies; use the world's ground() to hold a body in place."};
-  const std::uint32_t row_a = s.body_ids.row(def.a.index), row_b = s.body_ids.row(def.b.index);
-  if (s.bodies[row_a].kind != BodyKind::dynamic && s.bodies[row_b].kind != BodyKind::dynamic)
-    return Error{ErrorCode::bad_joint, "Neither body of the joint is dynamic, so it can do nothing; at least one must be."};
-  if (Status ok = check(def); !ok) return ok.error();
+bool World::valid(JointId joint) const { return is_alive(*state_, joint, false); }
+bool World::valid(SpringId spring) const { return is_alive(*state_, spring, true); }
+std::vector<JointId> World::joints() const { return all_alive<JointId>(*state_, false); }
+std::vector<SpringId> World::springs() const { return all_alive<SpringId>(*state_, true); }
 
+std::size_t World::joint_count() const {
+  return std::size_t(
+      std::count_if(state_->joints.begin() + 1, state_->joints.end(), [](const JointRecord& j) { return !j.spring; }));
+}
+
+namespace {
+Status check_ends(const World& world, BodyId a, BodyId b, const char* what) {
+  const WorldState& s = world.state();
+  if (!world.valid(a) || !world.valid(b)) return stale("body");
+  if (a == b)
+    return Error{ErrorCode::bad_joint,
+                 std::string("A ") + what + " needs two different bodies; use the world's ground() to hold a body in place."};
+  if (s.bodies[s.body_ids.row(a.index)].kind != BodyKind::dynamic && s.bodies[s.body_ids.row(b.index)].kind != BodyKind::dynamic)
+    return Error{ErrorCode::bad_joint,
+                 std::string("Neither body of the ") + what + " is dynamic, so it can do nothing; at least one must be."};
+  return {};
+}
+
+std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<SpringDef>& spring) {
   const std::uint32_t row = std::uint32_t(s.joints.size()), index = s.joint_ids.allocate(row);
-  s.joints.push_back({index, def.a.index, def.b.index, def});
+  s.joints.push_back({index, def.a.index, def.b.index, def, spring});
   s.tables.resize(Table::joint, row + 1);
   write_joint(s.tables, row, def);
+  write_drive(s.tables, row, s.joints[row]);
   if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
   s.structure_version++;
-  return s.joint_ids.id<JointId>(index);
+  return index;
+}
+}  // namespace
+
+Result<JointId> World::create_joint(const JointDef& given) {
+  JointDef def = given;
+  Status ok = check_ends(*this, def.a, def.b, "joint");
+  if (ok) ok = check(def);
+  if (!ok) return ok.error();
+  return state_->joint_ids.id<JointId>(new_row(*state_, def, {}));
+}
+
+Result<SpringId> World::create_spring(const SpringDef& def) {
+  Status ok = check_ends(*this, def.a, def.b, "spring");
+  if (ok) ok = check(def);
+  if (!ok) return ok.error();
+  JointDef ends;
+  ends.a = def.a;
+  ends.b = def.b;
+  ends.frame_a.position = def.anchor_a;
+  ends.frame_b.position = def.anchor_b;
+  ends.collide = true;
+  return state_->joint_ids.id<SpringId>(new_row(*state_, ends, def));
+}
+
+void WorldState::remove_joint(std::uint32_t row) {
+  if (!joints[row].def.collide) {
+    const auto pair = no_collide.find(pair_key(joints[row].body_a, joints[row].body_b));
+    pair->second.joints--;
+    if (!pair->second.any()) no_collide.erase(pair);
+  }
+  remove_row(Table::joint, joints, joint_ids, row);
 }
 
 Status World::destroy(JointId joint) {
-  WorldState& s = *state_;
   if (!valid(joint)) return stale("joint");
-  const std::uint32_t row = s.joint_ids.row(joint.index);
-  if (!s.joints[row].def.collide) {
-    const auto pair = s.no_collide.find(WorldState::pair_key(s.joints[row].body_a, s.joints[row].body_b));
-    pair->second.joints--;
-    if (!pair->second.any()) s.no_collide.erase(pair);
-  }
-  s.remove_row(Table::joint, s.joints, s.joint_ids, row);
+  state_->remove_joint(state_->joint_ids.row(joint.index));
   return {};
+}
+
+Status World::destroy(SpringId spring) {
+  if (!valid(spring)) return stale("spring");
+  state_->remove_joint(state_->joint_ids.row(spring.index));
+  return {};
+}
+
+Status World::set_motor(JointId joint, const Motor& motor) {
+  if (!valid(joint)) return stale("joint");
+  if (Status ok = check(motor); !ok) return ok;
+  change_drive(*state_, state_->joint_ids.row(joint.index), [&](JointRecord& r) { r.def.motor = motor; });
+  return {};
+}
+
+Status World::set_spring(JointId joint, const AngularSpring& given) {
+  if (!valid(joint)) return stale("joint");
+  AngularSpring spring = given;
+  if (Status ok = check(spring); !ok) return ok;
+  change_drive(*state_, state_->joint_ids.row(joint.index), [&](JointRecord& r) { r.def.spring = spring; });
+  return {};
+}
+
+Status World::set_spring(SpringId spring, double rest_length, double stiffness, double damping) {
+  if (!valid(spring)) return stale("spring");
+  const std::uint32_t row = state_->joint_ids.row(spring.index);
+  SpringDef def = *state_->joints[row].spring;
+  def.rest_length = rest_length;
+  def.stiffness = stiffness;
+  def.damping = damping;
+  if (Status ok = check(def); !ok) return ok;
+  change_drive(*state_, row, [&](JointRecord& r) { r.spring = def; });
+  return {};
+}
+
+Result<SpringDef> World::spring(SpringId spring) const {
+  if (!valid(spring)) return stale("spring");
+  return *state_->joints[state_->joint_ids.row(spring.index)].spring;
+}
+
+double World::spring_energy() const {
+  const WorldState& s = *state_;
+  double sum = 0;
+  for (const JointRecord& r : s.joints) {
+    if (!r.driven()) continue;
+    const Pose a = s.pose(s.body_ids.row(r.body_a)), b = s.pose(s.body_ids.row(r.body_b));
+    if (r.spring) {
+      const double x = length(transform(a, r.spring->anchor_a) - transform(b, r.spring->anchor_b)) - r.spring->rest_length;
+      sum += 0.5 * r.spring->stiffness * x * x;
+      continue;
+    }
+    const Quat q = conjugate(a.orientation * r.def.frame_a.orientation) * b.orientation * r.def.frame_b.orientation *
+                   conjugate(r.def.spring.rest);
+    const double angle = 2 * std::atan2(std::hypot(q.x, q.y, q.z), std::fabs(q.w));
+    sum += 0.5 * r.def.spring.stiffness * angle * angle;
+  }
+  return sum;
 }
 
 Result<JointDef> World::joint(JointId joint) const {

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -22,7 +23,10 @@ struct BodyRecord {
 struct JointRecord {
   std::uint32_t index = 0;
   std::uint32_t body_a = 0, body_b = 0;  // id indices
-  JointDef def;
+  JointDef def;                          // of a spring: bodies and anchors
+  std::optional<SpringDef> spring;       // between two points, in place of a joint
+  /// Whether it has a motor or a spring.
+  bool driven() const { return spring || def.motor.torque > 0 || def.spring.stiffness > 0 || def.spring.damping > 0; }
 };
 /// Host columns of a shape; the shape table's row is index + 1 (row 0 pads).
 struct ShapeRecord {
@@ -94,6 +98,8 @@ struct WorldState {
     ids.release(index);
     structure_version++;
   }
+  /// Removes a joint or spring.
+  void remove_joint(std::uint32_t row);
   /// Removes the contacts of a body and follows the row of another that took its place.
   void drop_contacts(std::uint32_t row, std::uint32_t last_row);
 

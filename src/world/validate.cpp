@@ -146,4 +146,36 @@ Status check(AngleFreedom& f) {
   return {};
 }
 
+namespace {
+Status check_not_negative(double value, const char* what, const char* unit) {
+  if (Status ok = check_finite(value, what); !ok) return ok;
+  if (value < 0)
+    return Error{ErrorCode::bad_joint,
+                 std::string("The ") + what + " is " + number(value) + " " + unit + "; it must be zero (none) or above."};
+  return {};
+}
+}  // namespace
+
+Status check(const Motor& motor) {
+  Status ok = check_finite(motor.speed, "speed of a motor");
+  if (ok) ok = check_not_negative(motor.torque, "torque of a motor", "N m");
+  return ok;
+}
+
+Status check(AngularSpring& spring) {
+  Status ok = check_not_negative(spring.stiffness, "stiffness of an angular spring", "N m/rad");
+  if (ok) ok = check_not_negative(spring.damping, "damping of an angular spring", "N m s/rad");
+  if (ok) ok = check_unit(spring.rest, "rest orientation of an angular spring");
+  return ok;
+}
+
+Status check(const SpringDef& def) {
+  Status ok = check_finite(def.anchor_a, "anchor of a spring in body a");
+  if (ok) ok = check_finite(def.anchor_b, "anchor of a spring in body b");
+  if (ok) ok = check_not_negative(def.rest_length, "rest length of a spring", "m");
+  if (ok) ok = check_not_negative(def.stiffness, "stiffness of a spring", "N/m");
+  if (ok) ok = check_not_negative(def.damping, "damping of a spring", "N s/m");
+  return ok;
+}
+
 }  // namespace pcphys

@@ -19,5 +19,9 @@ Status check(AngleFreedom& freedom);
 Result<MassProperties> check(const BodyDef& def, Quat& orientation);
 /// Frames, which are then normalised, and freedom of a joint; not its bodies.
 Status check(JointDef& def);
+/// Torque of a motor; stiffness, damping and orientation of a spring, which is then normalised.
+Status check(const Motor& motor);
+Status check(AngularSpring& spring);
+Status check(const SpringDef& def);
 
 }  // namespace pcphys

@@ -1,0 +1,4 @@
+// joint_solve where some joint has a motor or a spring.
+#define PC_DRIVES
+#include "joint_solve.inl"
+#undef PC_DRIVES
