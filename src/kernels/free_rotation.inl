@@ -39,14 +39,14 @@ PC_FN Spin pc_spin_select(Mask m, Spin a, Spin b) {
   Spin r; r.turn.q.v = pc_select3(m, a.turn.q.v, b.turn.q.v); r.turn.q.w = pc_select(m, a.turn.q.w, b.turn.q.w);
   r.turn.fall = pc_select(m, a.turn.fall, b.turn.fall); r.pi = pc_select3(m, a.pi, b.pi); return r;
 }
-PC_FN Vec3 pc_each(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
+PC_FN Vec3 pc_times(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
 // Turns the body by what brings its energy back to that of the momentum `before`, the shortest way: along Pi x w, of which
 // the energy falls by its square. Newton's method, by half a radian at most at a time. In units of the momentum and the sub-step.
 PC_FN Spin pc_keep_energy(Spin spin, Vec3 inverse, Vec3 before, Real h) {
   Real size = pc_length(before); Real share = pc_inverse_or_zero(size); precise Real unit = size * h; Vec3 rates = pc_scale(inverse, unit);
-  Spin s = spin; s.pi = pc_scale(s.pi, share); Vec3 start = pc_scale(before, share); Vec3 w0 = pc_each(start, rates); Real wanted = pc_dot(start, w0);
+  Spin s = spin; s.pi = pc_scale(s.pi, share); Vec3 start = pc_scale(before, share); Vec3 w0 = pc_times(start, rates); Real wanted = pc_dot(start, w0);
   for (uint i = 0u; i < 5u; i++) {
-    Vec3 w = pc_each(s.pi, rates); precise Real excess = (pc_dot(s.pi, w) - wanted) * PC_REAL(0.5);
+    Vec3 w = pc_times(s.pi, rates); precise Real excess = (pc_dot(s.pi, w) - wanted) * PC_REAL(0.5);
     Vec3 way = pc_cross(s.pi, w); Real square = pc_dot(way, way); Real step = pc_div(excess, pc_max(square, PC_REAL(1e-12)));
     precise Real length = pc_sqrt(square) * step; Real most = pc_max(pc_abs(length), PC_REAL(0.5)); precise Real part = step * PC_REAL(0.5);
     Turn r = pc_turn(pc_scale(way, pc_div(part, most)));
@@ -84,7 +84,7 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   Spin start; start.turn.q = pc_quaternion(pc_zero3(), PC_REAL(1.0)); start.turn.fall = PC_REAL(0.0); start.pi = pc_rotate(pc_conjugate(q), l);
   Spin s = pc_strang(start, a, c, rate_a, rate_c, half_h, h);
   // (twice the energy bounds each momentum: Pi_c^2 <= 2 E I_c)
-  precise Real twice = pc_dot(start.pi, pc_each(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
+  precise Real twice = pc_dot(start.pi, pc_times(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
   Real inverse_a = pc_dot(a, inverse); Real inverse_c = pc_dot(c, inverse);
   Mask fast = pc_and(pc_or(square_a > inverse_a, square_c > inverse_c), pc_and(pc_abs(rate_a) > PC_REAL(0.0), pc_abs(rate_c) > PC_REAL(0.0)));
   if (PC_ANY(fast)) {  // lint: allow (other lanes keep what they have)

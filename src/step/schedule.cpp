@@ -88,6 +88,8 @@ void TreeSlots::build(const WorldState& state) {
   forest_.build(links, masses, ids);
   nodes_.build(forest_, masses);
   find_parallel(links);
+  pivots_ = find_pivots(forest_, state);
+  for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, links, masses));
   width_ = 0;
 }
