@@ -54,12 +54,28 @@ PC_FN Motion pc_swing_on(Pivot p, Motion start, Real h) {
   return pc_kick(m, pc_torque(p, pc_from_pin(p, pc_facing(m))), kick);
 }
 
+// Share of a gap that is closed in a sub-step, at joint_push_speed at most.
+PC_FN Real pc_share_closed(PC_IO Vec3 gap) {
+  Real size = pc_length(gap); precise Real most = PC_INFO(joint_push_speed) * PC_INFO(h);
+  return pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0));
+}
 PC_FN Pivot pc_pivot(PC_IO Slot n, Index body, Index joint, Real inverse_mass) {
   Quad about = PC_GATHER(joint_pivot, joint, 0u); Quad axes = PC_GATHER(joint_pivot, joint, 1u); Quad arm = PC_GATHER(joint_pivot, joint, 2u);
   Quad push = PC_GATHER(force, body, 0u); Quad twist = PC_GATHER(force, body, 1u);
   Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z)); Vec3 acceleration = pc_madd(gravity, push.v, inverse_mass);
   Pivot p; p.inverse = about.v; p.middle = about.s; p.axes = pc_quaternion(axes.v, axes.s); p.moments = pc_inverse3(pc_ld3_tree(PC_PASS n, TREE_MOMENTS));
   p.arm = arm.v; p.mass = arm.s; p.weight = pc_scale(acceleration, arm.s); p.torque = twist.v; return p;
+}
+
+// How far a hinge is turned out of its locked angles, as a rotation vector that turns it back; of it what may be closed now.
+PC_FN Vec3 pc_straightening(PC_IO Slot n) {
+  Vec3 tilt = pc_zero3();
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return tilt;  // lint: allow (zeros otherwise)
+  for (uint i = 0u; i < 3u; i++) {
+    Real slack = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0));
+    tilt = pc_madd(tilt, pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), slack);
+  }
+  return pc_negate(pc_scale(tilt, pc_share_closed(PC_PASS tilt)));
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -73,15 +89,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Pivot p = pc_pivot(PC_PASS n, body, joint, linear.s);
 
   Quaternion q = pc_quaternion(turned.v, turned.s); Vec3 r = pc_from_pin(p, q); Vec3 torque = pc_torque(p, r);
-  Motion start; start.at.q = turned; start.at.low = turned_low; start.l = pc_about_pin(p, r, linear.v, angular.v); start.low = pc_about_pin(p, r, u_low.v, l_low.v);
+  Motion start; start.l = pc_about_pin(p, r, linear.v, angular.v); start.low = pc_about_pin(p, r, u_low.v, l_low.v);
+  Turn straight = pc_turn(pc_straightening(PC_PASS n)); start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
   precise Real back = -half_h; start = pc_kick(start, torque, back);  // in phase with the pose: it has had a whole kick and was half a one behind
   Motion next = pc_swing_on(p, start, h);
   Quaternion q_next = pc_facing(next); Vec3 r_next = pc_from_pin(p, q_next); Vec3 torque_next = pc_torque(p, r_next);
   next = pc_kick(next, torque_next, back);
 
   // the way about the pin, and of a gap what may be closed
-  Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real size = pc_length(gap); precise Real most = PC_INFO(joint_push_speed) * h;
-  Real closed = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0));
+  Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real closed = pc_share_closed(PC_PASS gap);
   precise Vec3 step = (r_next - r) - gap * closed;
   TwoSum there = pc_two_sum(place.v, pc_add(place_low.v, step));
   Quaternion rotation = pc_quaternion_mul(q_next, pc_conjugate(q));

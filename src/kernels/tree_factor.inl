@@ -24,7 +24,9 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
   // a light body's spin between heavy ones is lost in the rounding of their inertia: a little is added (docs/joints.md)
   // (pins that remember no impulse may be of any stiffness)
-  Real rounding = PC_INFO(rounding); precise Real unknown = rounding * PC_REAL(256.0); precise Real known = rounding + fast * PC_INFO(spin_floor); Real share = pc_select(fast > PC_REAL(0.0), known, unknown); precise Real floor = (xx + yy + zz) * share; precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
+  // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
+  Real rounding = PC_INFO(rounding); precise Real unknown = rounding * PC_REAL(256.0); precise Real known = rounding + fast * PC_INFO(spin_floor); precise Real least = rounding * PC_REAL(0.03125);
+  Real share = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, pc_select(fast > PC_REAL(0.0), known, unknown)); precise Real floor = (xx + yy + zz) * share; precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
   Sym3 inverse = loose;
   if (PC_ANY(pc_has_rows(PC_PASS n))) inverse = pc_with_springs(PC_PASS n, freedom, loose);  // lint: allow (zeros otherwise)

@@ -76,7 +76,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     PC_ST(tree_rows, n, TREE_MASS, own); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   }
   pc_tree_stiffness(PC_PASS m, t);
-  Mask pivot = PC_IS(pc_is_pivot(PC_PASS t)); Slot top = PC_NODE(m, t.first + 1u);
-  PC_ST(tree_rows, top, TREE_PIVOT, pc_select(pivot, PC_REAL(1.0), PC_REAL(0.0)));
-  PC_ST(tree_rows, top, TREE_FAST, pc_select(pivot, PC_TINY, PC_LD(tree_rows, top, TREE_FAST)));  // known to be none
+  Real pivot = pc_select(PC_IS(pc_is_pivot(PC_PASS t)), PC_REAL(1.0), PC_REAL(0.0));
+  for (uint k = 1u; k < t.count; k++) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_PIVOT, pivot);
 }

@@ -35,7 +35,7 @@ const uint TREE_TOTAL = 152u;   // mass of the whole tree, the unit of all masse
 const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
-const uint TREE_PIVOT = 165u;   // of the first node below a root: 1 where it turns about its pin (pivot_turn.inl)
+const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }

@@ -7,9 +7,9 @@
 
 #include "plan/coloring.h"
 #include "plan/forest.h"
+#include "plan/pivots.h"
 #include "plan/tree_paths.h"
 #include "step/backend.h"
-#include "step/pivots.h"
 #include "world/state.h"
 
 namespace pcphys {
