@@ -105,10 +105,11 @@ void swing(Trial& trial, const Amplitude& amplitude, const Csv& reference) {
   });
   trial.report("position [m]", position, trial.at(twice(amplitude.shake)), trial.at(amplitude.shake, 0));
   trial.report("joint gap [m]", gap, trial.either(1e-12, 2e-6));
-  // with more sub-steps the differences of whole steps are coarser than the motion
+  // of velocities in phase with the position: by central differences the exact motion has 1.7e-3 at 1/60 s, which is
+  // more than the bound
   const bool level = amplitude.degrees == 90 && trial.substeps() == 1;
-  trial.report("energy / (2 m g l)", gained, level ? trial.at({1.36e-3, 8.4e-5, 3.4e-6, 4.8e-8}) : std::nullopt);
-  trial.report("energy of velocities read / (2 m g l)", read);
+  trial.report("energy / (2 m g l)", read, level ? trial.at({1.36e-3, 8.4e-5, 3.4e-6, 4.8e-8}) : std::nullopt);
+  trial.report("energy by central differences / (2 m g l)", gained);
   trial.report("pivot force / the largest", force / largest_force, trial.at({infinite, infinite, 1e-2, 1e-2}, 0));
 }
 
@@ -119,22 +120,16 @@ void long_swing(Trial& trial) {
   const long steps = trial.steps(1000);
   Worst worst;
   Trend trend(steps);
-  Neighbours n;
-  n.dt = trial.dt();
-  n.now = run.pose(0);
-  run.step(trial.dt());
-  n.after = run.pose(0);
+  constexpr double rounding = 1e-9;  // an energy that is kept to this has no oscillation to compare a trend with
   for (long k = 0; k < steps; ++k) {
-    n.before = n.now;
-    n.now = n.after;
     run.step(trial.dt());
-    n.after = run.pose(0);
-    const double error = (n.energy(run.mass(0), down) - e0) / gravity;
+    const double error = (energy(run) - e0) / gravity;
     worst.add(std::fabs(error));
     trend.add(error);
   }
   trial.report("energy / (2 m g l)", worst, trial.at({1.36e-3, 8.4e-5, infinite, infinite}));
-  trial.report("trend of the energy / its oscillation", trend / worst, trial.is_double() ? std::optional(0.1) : std::nullopt);
+  trial.report("trend of the energy / its oscillation", trend / std::max<double>(worst, rounding),
+               trial.is_double() ? std::optional(0.1) : std::nullopt);
 }
 
 // ---- A8 ------------------------------------------------------------------------------------------------

@@ -41,7 +41,9 @@ constexpr Call step_calls[] = {
     {Kernel::contact_solve, 0},
     {Kernel::tree_again, 0},
     {Kernel::remember, 0},
+    {Kernel::pivot_turn, 0},
     {Kernel::advance, 0},
+    {Kernel::pivot_settle, 0},
     {Kernel::tree_relax, 1},
     {Kernel::contact_refresh, 1},
     {Kernel::joint_solve, 1},
@@ -84,7 +86,7 @@ std::vector<Call> calls(int sub_steps) {
 /// Each kernel starts from the scalar reference's state, so a difference names the kernel that made it.
 template <class Scalar, class Other> void compare(const CpuKernels& reference, const char* what, Other other) {
   for (const Mood& mood : moods) {
-    State<Scalar> state = Maker<Scalar>(7, mood).make();
+    State<Scalar> state = Maker<Scalar>(8, mood).make();
     for (const Call& call : calls(3)) {
       if (!mood.loops && closes_loops(call.kernel)) continue;
       State<Scalar> theirs = state;
@@ -134,7 +136,7 @@ TEST_CASE("four lanes of double equal scalar") {
 /// has left the numbers (not-a-number spreads, and compares as equal).
 TEST_CASE("the contents that parity is checked on move, and stay numbers") {
   for (const Mood& mood : moods) {
-    State<float> state = Maker<float>(7, mood).make();
+    State<float> state = Maker<float>(8, mood).make();
     std::string first;
     for (const Call& call : calls(3)) {
       if (!mood.loops && closes_loops(call.kernel)) continue;

@@ -180,6 +180,12 @@ template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
                                  lower[0],    lower[1],    lower[2],    0,
                                  upper[0],    upper[1],    upper[2],    0});
   const double push = rarely() ? 0 : mood_.impulse;
+  const auto axes = turn(4);
+  const double light = 1 / mood_.mass;  // principal moments about the pin, the middle one in the middle; a hinge has one alone
+  const bool hinge = rarely();
+  put(Buffer::joint_pivot, row,
+      {light * real(3, 5), hinge ? 0 : light * real(2, 3), hinge ? 0 : light * real(1, 2), 1, axes[0], axes[1], axes[2], axes[3],
+       either(0.5), either(0.5), either(0.5), mood_.mass * real(0.1, 3)});
   put(Buffer::joint_impulse, row, {either(push), either(push), either(push), 0, either(push), either(push), either(push), 0});
 }
 
@@ -282,6 +288,8 @@ template <class Scalar> void Maker<Scalar>::trees() {
     masses[row] = double(state_.reals[std::size_t(Buffer::mass)][row * schema(Buffer::mass).reals + 3]);
   }
   state_.trees.build(tree_links(1 + coloured_joints, 1 + loose_bodies, anchors, random_), masses, ids);
+  for (std::size_t tree = 0; tree < state_.trees.trees(); tree++)
+    if (state_.trees.tree(tree).size() == 2 && masses[state_.trees.tree(tree)[0].body] == 0) state_.trees.set_pivot(tree);
   state_.nodes.build(state_.trees, masses);
   for (const Buffer buffer : {Buffer::node_operator, Buffer::node_pending})
     state_.reals[std::size_t(buffer)].resize(state_.nodes.rows() * schema(buffer).reals);

@@ -19,9 +19,13 @@ struct TreeShape {
 /// More trees than 32 lanes, fewer than 4, and numbers between, so that some lanes of each width are padding.
 inline const std::vector<TreeShape>& tree_shapes() {
   static const std::vector<TreeShape> shapes = {
-      {40, false, {0}},           {35, true, {0, 1, 2}},
-      {20, false, {0, 0, 0}},     {9, false, {0, 0, 1, 1, 3}},
-      {6, true, {0, 1, 1, 2, 0}}, {1, true, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}},
+      {40, false, {0}},
+      {35, true, {0, 1, 2}},
+      {20, false, {0, 0, 0}},
+      {9, false, {0, 0, 1, 1, 3}},
+      {6, true, {0, 1, 1, 2, 0}},
+      {37, true, {0}},
+      {1, true, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}},
   };
   return shapes;
 }

@@ -49,13 +49,15 @@ TEST_CASE("C14: 100,000 bodies on a line and a plane, pairs as by brute force") 
     check_rows(rows_of("C14", Mode{Precision::f32}, {}, variant), without("broad phase"));  // no times on a shared machine
 }
 
-TEST_CASE("C3, C5: thin and fast bodies that land make no energy") {
+TEST_CASE("C3: thin bodies that land make no energy") {
   for (const Mode& mode : precisions()) {
     for (const char* variant : {"needle, dropped", "disc, dropped", "moments 1:1e4, dropped"})
       check_rows(rows_of("C3", mode, {}, variant), metric("energy gained"));
-    check_rows(rows_of("C5", mode, {}, "box, 100 rad/s, floor"));
-    check_rows(rows_of("C5", mode, 1e-4, "box, 10000 rad/s, floor"));
   }
+}
+
+TEST_CASE("C5: a box that turns by up to 200 rad a sub-step keeps its energy") {
+  for (const Mode& mode : precisions()) check_rows(rows_of("C5", mode, {}, "box"));
 }
 
 TEST_CASE("C3: a needle that tumbles and falls from many heights never gains energy") {

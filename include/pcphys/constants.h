@@ -24,6 +24,8 @@ inline constexpr double shortest_step = 1e-15, longest_step = 1e3;
 inline constexpr double unit_tolerance = 1e-3;
 /// An angle limit further out than this does not exist [rad].
 inline constexpr double free_angle = 1e9;
+/// An angle with a narrower interval is locked (angle_rows.inl) [rad].
+inline constexpr double locked_interval = 1e-6;
 /// Moments may violate the triangle inequality by this share, for rounding.
 inline constexpr double moment_tolerance = 1e-6;
 

@@ -52,6 +52,8 @@ PC_KERNEL(tree_solve, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) P
 PC_KERNEL(tree_solve_driven, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse))
 PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_WRITE(tree_rows) PC_WRITE(motion))
+PC_KERNEL(pivot_turn, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_READ(joint_pivot) PC_READ(force) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(tree_rows) PC_WRITE(motion))
+PC_KERNEL(pivot_settle, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_READ(tree_rows) PC_WRITE(motion) PC_WRITE(delta))
 PC_KERNEL(tree_collect, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(node_pending) PC_WRITE(tree_rows))
 PC_KERNEL(tree_respond, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(tree_rows) PC_WRITE(node_operator) PC_WRITE(node_pending))
 PC_KERNEL(tree_flush, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(tree_order) PC_WRITE(tree_rows) PC_WRITE(node_pending) PC_WRITE(motion))

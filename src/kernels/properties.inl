@@ -65,6 +65,12 @@ PC_PROPERTY(joint, joint_frame, 20, vec3, upper, input, 0, "rad", "of roll, pitc
 PC_BUFFER(joint, joint_impulse, 2, "what warm starting remembers")
 PC_PROPERTY(joint, joint_impulse, 0, vec3, pin_impulse, state, 0, "N s", "on b, world axes, of the last sub-step")
 PC_PROPERTY(joint, joint_impulse, 4, vec3, angle_impulse, state, 0, "N m s", "on b about the joint's roll, pitch and yaw axes")
+PC_BUFFER(joint, joint_pivot, 3, "of a pin that alone holds one body to a fixed one: that body about the pin; made by the step (docs/joint-trees.md)")
+PC_PROPERTY(joint, joint_pivot, 0, vec3, pivot_inverse_moments, scratch, 0, "1/(kg m^2)", "principal, about the pin")
+PC_PROPERTY(joint, joint_pivot, 3, real, pivot_middle_axis, scratch, 0, "1", "0, 1 or 2: the axis of the middle moment")
+PC_PROPERTY(joint, joint_pivot, 4, quat, pivot_axes, scratch, 1, "1", "principal axes about the pin, in the body")
+PC_PROPERTY(joint, joint_pivot, 8, vec3, pivot_arm, scratch, 0, "m", "from the body's centre of mass to the pin, in the body")
+PC_PROPERTY(joint, joint_pivot, 11, real, pivot_mass, scratch, 0, "kg", "of the body")
 
 PC_BUFFER(joint, joint_drive, 3, "motor and spring of a joint; or a spring that stands for itself")
 PC_PROPERTY(joint, joint_drive, 0, quat, rest_orientation, input, 1, "1", "of b's joint frame in a's, where the angular spring is at rest")

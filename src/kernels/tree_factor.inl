@@ -28,7 +28,9 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
 #ifdef PC_DRIVES
   unknown = pc_select(pc_drive_lasts(PC_PASS n), rounding, unknown);
 #endif
-  precise Real known = rounding + fast * PC_INFO(spin_floor); Real share = pc_select(fast > PC_REAL(0.0), known, unknown); precise Real floor = (xx + yy + zz) * share; precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
+  // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
+  precise Real known = rounding + fast * PC_INFO(spin_floor); precise Real least = rounding * PC_REAL(0.03125);
+  Real share = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, pc_select(fast > PC_REAL(0.0), known, unknown)); precise Real floor = (xx + yy + zz) * share; precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
   Sym3 inverse = loose;
 #ifdef PC_DRIVES

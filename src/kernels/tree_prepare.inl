@@ -53,7 +53,8 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
   Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));
 
-  precise Vec3 f = pin.v * flip * PC_INFO(impulse_ratio) * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)); pc_st3_tree(PC_PASS n, TREE_PIN, f);
+  precise Vec3 f = pin.v * flip * PC_INFO(impulse_ratio) * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL));
+  pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(PC_IS(pc_is_pivot(PC_PASS t)), pc_zero3(), f));  // what turns about the pin needs no stiffness of it
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -75,4 +76,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     PC_ST(tree_rows, n, TREE_MASS, own); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   }
   pc_tree_stiffness(PC_PASS m, t);
+  Real pivot = pc_select(PC_IS(pc_is_pivot(PC_PASS t)), PC_REAL(1.0), PC_REAL(0.0));
+  for (uint k = 1u; k < t.count; k++) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_PIVOT, pivot);
 }

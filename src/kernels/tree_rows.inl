@@ -51,6 +51,7 @@ const uint TREE_MOTOR_SPEED = 193u;
 const uint TREE_MOTOR_MOST = 194u;  // its largest impulse
 const uint TREE_DRIVE_RATE = 195u;  // and at the prediction
 const uint TREE_DRIVE_PUSH = 198u;
+const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }
@@ -70,6 +71,10 @@ PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS)
 // where a tree's nodes stand, and its topology
 struct Tree { uint first; uint count; };
 PC_FN Tree pc_tree(PC_IO Slot m) { uint block = PC_BLOCK(m); uint at = block * 2u; Tree t; t.first = PC_UINT(tree_blocks, at); t.count = PC_UINT(tree_blocks, at + 1u); return t; }
+#ifndef PC_NO_PARENTS
 PC_FN uint pc_parent(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) >> 1u; }
+// whether the tree is one body that a pin holds to a fixed one: it turns about the pin (pivot_turn.inl)
+PC_FN uint pc_is_pivot(PC_IO Tree t) { return PC_UINT(tree_parents, t.first) & 1u; }
 // whether the joint's body a is the child
 PC_FN uint pc_is_flipped(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) & 1u; }
+#endif

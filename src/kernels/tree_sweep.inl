@@ -97,7 +97,17 @@ PC_FN Vec3 pc_swing(PC_IO Slot n, Vec3 r) {
   Vec3 q = pc_ld3_tree(PC_PASS n, TREE_TURN); precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(1.0);
   precise Vec3 s = pc_cross(q, r) * PC_REAL(2.0); precise Vec3 d = s * w + pc_cross(q, s); return d;
 }
+// Of a body that turns about its pin the gap's rate of now: it keeps none over the sub-step. What is rounding stays: undoing
+// it would round the velocities once more.
+PC_FN void pc_pivot_residual(PC_IO Slot m, Tree t) {
+  Slot n = PC_NODE(m, t.first + 1u); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u)); Vec3 w = pc_angular_velocity(b);
+  Slot up = PC_NODE(m, t.first); pc_st6_tree(PC_PASS up, TREE_X, pc_six(pc_zero3(), pc_zero3()));
+  pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, w)); 
+  Vec3 c = pc_add(b.v, pc_cross(w, pc_ld3_tree(PC_PASS n, TREE_RC))); precise Real noise = pc_length(b.v) * PC_INFO(rounding);
+  pc_st3_tree(PC_PASS n, TREE_C, pc_select3(pc_length(c) > noise, c, pc_zero3()));
+}
 PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted) {
+  if (pc_is_pivot(PC_PASS t) == 1u) { pc_pivot_residual(PC_PASS m, t); return; }
   pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5));
   for (uint k = 1u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));

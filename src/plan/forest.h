@@ -19,7 +19,7 @@ struct JointLink {
 struct TreeNode {
   std::uint32_t body, joint;  // rows; of the root the joint is 0
   std::uint32_t parent;       // position in the tree, before this node's
-  bool flipped;               // the joint's body a is the child
+  bool flipped;               // the joint's body a is the child; of a root: set_pivot
 };
 
 class Forest {
@@ -32,6 +32,8 @@ class Forest {
   std::uint32_t first(std::size_t i) const { return first_[i]; }
   /// Parents before children; the first is the root.
   std::span<const TreeNode> tree(std::size_t i) const { return std::span(nodes_).subspan(first_[i], first_[i + 1] - first_[i]); }
+  /// Marks a tree's root: its one other body turns about their joint.
+  void set_pivot(std::size_t tree) { nodes_[first_[tree]].flipped = true; }
   /// Rows of the joints that stand in no tree, ascending.
   std::span<const std::uint32_t> closing() const { return closing_; }
 

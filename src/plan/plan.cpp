@@ -73,6 +73,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.joints() && !s.trees) out("joints", "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
+  if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
@@ -153,7 +154,9 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
     solve_contacts(b, s, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
+    if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
     b.kernel(with.advance, Phase::biased, k);
+    if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
     solve_free_joints(b, s, Phase::relax, k);
     if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);

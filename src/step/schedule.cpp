@@ -93,6 +93,8 @@ void TreeSlots::build(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     if (state.joints[row].spring) closing_.push_back(row);
   std::ranges::sort(closing_);
+  pivots_ = find_pivots(forest_, state);
+  for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
   find_drives(state, links);
   width_ = 0;

@@ -7,6 +7,7 @@
 
 #include "plan/coloring.h"
 #include "plan/forest.h"
+#include "plan/pivots.h"
 #include "plan/tree_paths.h"
 #include "step/backend.h"
 #include "world/state.h"
@@ -69,6 +70,7 @@ class TreeSlots {
   /// As contacts see them, and as joints that close loops do.
   const TreeNodes& nodes() const { return nodes_; }
   const TreeNodes& loop_nodes() const { return loop_nodes_; }
+  std::span<const Pivot> pivots() const { return pivots_; }
   /// By joint row: whether it joins two bodies that a tree's joint joins already. What the tree leaves it to answer is
   /// singular: such joints stay rows.
   std::span<const char> parallel() const { return parallel_; }
@@ -94,6 +96,7 @@ class TreeSlots {
   std::vector<std::uint32_t> closing_;
   bool drives_ = false, closing_drives_ = false;
   std::uint32_t free_springs_ = 0;
+  std::vector<Pivot> pivots_;
   TreeBlocks blocks_;
   Range all_{0, 0};
   std::uint32_t width_ = 0;

@@ -103,6 +103,7 @@ struct Stepper::Inside {
     s.drag = from.drag;
     s.gyroscopic = from.gyroscopic;
     s.trees = from.trees.forest().trees() > 0;
+    s.pivots = !from.trees.pivots().empty();
     s.free_joints = from.joints.any_without_trees();
     s.tree_joints = from.joints.any_with_trees();
     s.tree_drives = from.trees.drives();
@@ -181,12 +182,13 @@ struct Stepper::Inside {
     return ok;
   }
 
-  void update_structure(const WorldState& s) {
+  void update_structure(WorldState& s) {
     if (scheduled_serial == s.serial && scheduled == s.structure_version) return;
     scheduled_serial = s.serial;
     scheduled = s.structure_version;
     other = true;
     schedule.update_structure(s);
+    write_pivots(s, schedule.trees.pivots());
   }
 
   void freeze_leaving(WorldState& s) {

@@ -95,7 +95,10 @@ void WorldState::set_mass(std::uint32_t row, const MassProperties& m) {
   tables.set(Buffer::mass, row, 3, m.mass);
   tables.set3(Buffer::mass, row, 4, {1 / i.x, 1 / i.y, 1 / i.z});
   tables.set(Buffer::motion, row, 3, 1 / m.mass);
-  // the middle of three: not the smallest and not the largest, ties to any of the equal ones
+  tables.set(Buffer::mass, row, 7, middle_axis(i));
+}
+
+int middle_axis(Vec3 i) {
   const double low = std::min({i.x, i.y, i.z}), high = std::max({i.x, i.y, i.z});
   const double values[3] = {i.x, i.y, i.z};
   int smallest = 0, largest = 2;
@@ -103,7 +106,7 @@ void WorldState::set_mass(std::uint32_t row, const MassProperties& m) {
     if (values[k] == low) smallest = k;
   for (int k = 0; k < 3; k++)
     if (values[k] == high && k != smallest) largest = k;
-  tables.set(Buffer::mass, row, 7, 3 - smallest - largest);
+  return 3 - smallest - largest;
 }
 
 namespace {

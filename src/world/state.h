@@ -60,6 +60,9 @@ struct NoCollide {
   bool any() const { return joints > 0 || asked; }
 };
 
+/// Of three moments neither the smallest nor the largest; of equal ones any.
+int middle_axis(Vec3 moments);
+
 struct WorldState {
   explicit WorldState(const WorldDef& def);
 

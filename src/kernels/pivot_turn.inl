@@ -1,0 +1,118 @@
+// Before `advance`: a body that one pin alone holds to a fixed body turns about that pin with its inertia there. A constraint
+// solved once a sub-step would let it turn about its centre of mass meanwhile: a fast top then nutates five times too fast
+// between kicks (docs/joint-trees.md). What acts on it from a distance (gravity, forces, torques) acts along the way, by the
+// splitting of fourth order of S. Blanes and P. Moan, J. Comput. Appl. Math. 142 (2002), table 2, order 4, s = 6, kicks first.
+//
+// Stored velocities are half a kick behind the pose, as everywhere, but u is w x r at the pose's time and not the mean of the
+// sub-step: L + m r x u is then the momentum about the pin at any time, whatever impulses came, and what rounding loses of it
+// stays in the low part. `advance` is given nothing to do; pivot_settle brings the velocities back.
+#define PC_NO_PARENTS
+#include "tree_rows.inl"
+#undef PC_NO_PARENTS
+#include "tree_store.inl"
+#include "free_rotation.inl"
+#include "turned.inl"
+
+struct Pivot { Vec3 inverse; Real middle; Quaternion axes; Vec3 moments; Vec3 arm; Real mass; Vec3 weight; Vec3 torque; };
+// Velocities of a body at q from its momentum about the pin; r from the pin to its centre.
+struct Swing { Vec3 u; Vec3 l; };
+PC_FN Swing pc_swing_of(Pivot p, Quaternion q, Vec3 r, Vec3 momentum) {
+  Vec3 w = pc_sym_mul(pc_world_inertia(pc_quaternion_mul(q, p.axes), p.inverse), momentum);
+  Swing s; s.u = pc_cross(w, r); s.l = pc_sym_mul(pc_world_inertia(q, p.moments), w); return s;
+}
+PC_FN Vec3 pc_about_pin(Pivot p, Vec3 r, Vec3 u, Vec3 l) { Vec3 orbit = pc_cross(r, u); return pc_madd(l, orbit, p.mass); }
+PC_FN Vec3 pc_from_pin(Pivot p, Quaternion q) { return pc_negate(pc_rotate(q, p.arm)); }
+PC_FN Vec3 pc_torque(Pivot p, Vec3 r) { return pc_add(p.torque, pc_cross(r, p.weight)); }
+PC_FN Vec3 pc_inverse3(Vec3 v) { return Vec3(pc_inverse_or_zero(v.x), pc_inverse_or_zero(v.y), pc_inverse_or_zero(v.z)); }
+
+// Shares of the sub-step: kicks a0 to a6, turns b0 to b5 between them.
+struct Shares { Real kick; Real turn; };
+PC_FN Shares pc_shares(uint i) {
+  Shares s; s.kick = PC_REAL(0.0792036964311957); s.turn = PC_REAL(0.209515106613362);
+  if (i == 1u || i == 5u) s.kick = PC_REAL(0.353172906049774);
+  if (i == 2u || i == 4u) s.kick = PC_REAL(-0.0420650803577195);
+  if (i == 3u) s.kick = PC_REAL(0.2193769557534996);
+  if (i == 1u || i == 4u) s.turn = PC_REAL(-0.143851773179818);
+  if (i == 2u || i == 3u) s.turn = PC_REAL(0.434336666566456);
+  return s;
+}
+// Orientation and momentum about the pin, as sums of two reals, and the turn so far.
+struct Motion { Turned at; Vec3 l; Vec3 low; };
+PC_FN Motion pc_kick(Motion m, Vec3 torque, Real time) {
+  TwoSum sum = pc_two_sum(m.l, pc_madd(m.low, torque, time)); Motion o = m; o.l = sum.sum; o.low = sum.low; return o;
+}
+PC_FN Quaternion pc_facing(Motion m) { return pc_quaternion(m.at.q.v, m.at.q.s); }
+PC_FN Motion pc_swing_on(Pivot p, Motion start, Real h) {
+  Motion m = start; Quad about = pc_quad(p.inverse, p.middle);
+  for (uint i = 0u; i < 6u; i++) {
+    Shares s = pc_shares(i); precise Real kick = s.kick * h; precise Real time = s.turn * h; Quaternion q = pc_facing(m);
+    m = pc_kick(m, pc_torque(p, pc_from_pin(p, q)), kick);
+    Quaternion change = pc_free_rotation(pc_quaternion_mul(q, p.axes), m.l, about, time);
+    m.at = pc_turned(q, m.at.low, pc_quaternion_mul(change, pc_conjugate(p.axes)));
+  }
+  Shares s = pc_shares(6u); precise Real kick = s.kick * h;
+  return pc_kick(m, pc_torque(p, pc_from_pin(p, pc_facing(m))), kick);
+}
+
+// Share of a gap that is closed in a sub-step, at joint_push_speed at most.
+PC_FN Real pc_share_closed(PC_IO Vec3 gap) {
+  Real size = pc_length(gap); precise Real most = PC_INFO(joint_push_speed) * PC_INFO(h);
+  return pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0));
+}
+PC_FN Pivot pc_pivot(PC_IO Slot n, Index body, Index joint, Real inverse_mass) {
+  Quad about = PC_GATHER(joint_pivot, joint, 0u); Quad axes = PC_GATHER(joint_pivot, joint, 1u); Quad arm = PC_GATHER(joint_pivot, joint, 2u);
+  Quad push = PC_GATHER(force, body, 0u); Quad twist = PC_GATHER(force, body, 1u);
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z)); Vec3 acceleration = pc_madd(gravity, push.v, inverse_mass);
+  Pivot p; p.inverse = about.v; p.middle = about.s; p.axes = pc_quaternion(axes.v, axes.s); p.moments = pc_inverse3(pc_ld3_tree(PC_PASS n, TREE_MOMENTS));
+  p.arm = arm.v; p.mass = arm.s; p.weight = pc_scale(acceleration, arm.s); p.torque = twist.v; return p;
+}
+
+// How far a hinge is turned out of its locked angles, as a rotation vector that turns it back; of it what may be closed now.
+PC_FN Vec3 pc_straightening(PC_IO Slot n) {
+  Vec3 tilt = pc_zero3();
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return tilt;  // lint: allow (zeros otherwise)
+  for (uint i = 0u; i < 3u; i++) {
+    Real slack = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0));
+    tilt = pc_madd(tilt, pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), slack);
+  }
+  return pc_negate(pc_scale(tilt, pc_share_closed(PC_PASS tilt)));
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Tree t = pc_tree(PC_PASS m); Slot n = PC_NODE(m, t.first + 1u);
+  if (!PC_ANY(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5))) return;  // lint: allow (the same for all lanes of a block)
+  Index body = PC_ENDS(tree_ends, n, 0u); Index joint = PC_ENDS(tree_ends, n, 1u); Real h = PC_INFO(h); precise Real half_h = h * PC_REAL(0.5);
+  Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
+  Quad place = PC_GATHER(pose, body, 0u); Quad turned = PC_GATHER(pose, body, 1u); Quad place_low = PC_GATHER(pose, body, 2u); Quad turned_low = PC_GATHER(pose, body, 3u);
+  Quad u_before = PC_GATHER(velocity_parts, body, 0u); Quad l_before = PC_GATHER(velocity_parts, body, 1u);
+  Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
+  Pivot p = pc_pivot(PC_PASS n, body, joint, linear.s);
+
+  Quaternion q = pc_quaternion(turned.v, turned.s); Vec3 r = pc_from_pin(p, q); Vec3 torque = pc_torque(p, r);
+  Motion start; start.l = pc_about_pin(p, r, linear.v, angular.v); start.low = pc_about_pin(p, r, u_low.v, l_low.v);
+  Turn straight = pc_turn(pc_straightening(PC_PASS n)); start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
+  precise Real back = -half_h; start = pc_kick(start, torque, back);  // in phase with the pose: it has had a whole kick and was half a one behind
+  Motion next = pc_swing_on(p, start, h);
+  Quaternion q_next = pc_facing(next); Vec3 r_next = pc_from_pin(p, q_next); Vec3 torque_next = pc_torque(p, r_next);
+  next = pc_kick(next, torque_next, back);
+
+  // the way about the pin, and of a gap what may be closed
+  Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real closed = pc_share_closed(PC_PASS gap);
+  precise Vec3 step = (r_next - r) - gap * closed;
+  TwoSum there = pc_two_sum(place.v, pc_add(place_low.v, step));
+  Quaternion rotation = pc_quaternion_mul(q_next, pc_conjugate(q));
+  Real two = pc_select(rotation.w < PC_REAL(0.0), PC_REAL(-2.0), PC_REAL(2.0)); precise Real square = pc_dot(rotation.v, rotation.v) * PC_REAL(4.0);
+
+  Swing now = pc_swing_of(p, q_next, r_next, next.l);
+  Vec3 kept = pc_about_pin(p, r_next, now.u, now.l); precise Vec3 low = (next.l - kept) + next.low;
+  // the velocities that are read are half a kick ahead: of what acts from a distance that of now, of the rest half of the last
+  Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v)); Vec3 change = pc_sub(torque_next, torque); Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
+
+  Mask exists = linear.s > PC_REAL(0.0); Vec3 zero = pc_zero3(); Real none = PC_REAL(0.0);
+  pc_st6_tree(PC_PASS n, TREE_X, pc_six(now.u, now.l)); pc_st6_tree(PC_PASS n, TREE_F, pc_six(step, pc_scale(rotation.v, two))); PC_ST(tree_rows, n, TREE_C, square);
+  PC_SCATTER_IF(exists, motion, body, 0u, pc_quad(zero, linear.s)); PC_SCATTER_IF(exists, motion, body, 1u, pc_quad(zero, angular.s));
+  PC_SCATTER_IF(exists, pose, body, 0u, pc_quad(there.sum, place.s)); PC_SCATTER_IF(exists, pose, body, 1u, next.at.q);
+  PC_SCATTER_IF(exists, pose, body, 2u, pc_quad(pc_snap3(there.low), place_low.s)); PC_SCATTER_IF(exists, pose, body, 3u, next.at.low);
+  PC_SCATTER_IF(exists, velocity_parts, body, 0u, pc_quad(pc_snap3(pc_sub(now.u, kick.u)), u_before.s)); PC_SCATTER_IF(exists, velocity_parts, body, 1u, pc_quad(pc_snap3(pc_sub(now.l, kick.l)), l_before.s));
+  PC_SCATTER_IF(exists, velocity_parts, body, 2u, pc_quad(zero, none)); PC_SCATTER_IF(exists, velocity_parts, body, 3u, pc_quad(pc_snap3(low), none));
+}
