@@ -298,6 +298,9 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.joint_impulse_scale = Scalar(relax ? 0 : 0.05);
     info.joint_push_speed = Scalar(8);
     info.loop_give = Scalar(1e-5);
+    info.cross_share = Scalar(0.9);
+    info.row_mass_most = Scalar(1000);
+    info.idle_speed = Scalar(0.5);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.spin_floor = Scalar(6e-5);

@@ -137,6 +137,7 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.free_joints) b.kernel(Kernel::joint_solve, Phase::biased, k);
     if (s.trees) b.kernel(Kernel::tree_solve, Phase::biased, k);
     if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
+    if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
     if (s.tree_joints) b.kernel(Kernel::tree_joint_mass, Phase::biased, k);
     if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
     solve_contacts(b, s, Phase::biased, k);
