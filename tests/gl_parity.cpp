@@ -30,6 +30,7 @@ constexpr Call step_calls[] = {
     {Kernel::tree_collect, 0},
     {Kernel::tree_solve, 0},
     {Kernel::tree_respond, 0},
+    {Kernel::tree_answer, 0},
     {Kernel::tree_joint_mass, 0},
     {Kernel::tree_contact_prepare, 0},
     {Kernel::tree_joint_solve, 0},
@@ -66,10 +67,16 @@ std::vector<Call> calls(int sub_steps) {
   return all;
 }
 
+template <class Scalar> State<Scalar> made(const Mood& mood) {
+  State<Scalar> state = Maker<Scalar>(7, mood).make();
+  state.reals[std::size_t(Buffer::contact_reach)].resize(lay_out_reach(state, 1).size * schema(Buffer::contact_reach).reals);
+  return state;
+}
+
 /// Each kernel starts from the scalar reference's state, so a difference names the kernel that made it.
 template <class Scalar, class Other> void compare(const CpuKernels& reference, const char* what, Other other) {
   for (const Mood& mood : moods) {
-    State<Scalar> state = Maker<Scalar>(7, mood).make();
+    State<Scalar> state = made<Scalar>(mood);
     for (const Call& call : calls(3)) {
       State<Scalar> theirs = state;
       run_cpu(reference, call.kernel, call.info, state);
@@ -118,7 +125,7 @@ TEST_CASE("four lanes of double equal scalar") {
 /// has left the numbers (not-a-number spreads, and compares as equal).
 TEST_CASE("the contents that parity is checked on move, and stay numbers") {
   for (const Mood& mood : moods) {
-    State<float> state = Maker<float>(7, mood).make();
+    State<float> state = made<float>(mood);
     std::string first;
     for (const Call& call : calls(3)) {
       const State<float> before = state;

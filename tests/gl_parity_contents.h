@@ -268,7 +268,7 @@ template <class Scalar> void Maker<Scalar>::trees() {
   }
   state_.trees.build(tree_links(1 + coloured_joints, 1 + loose_bodies, anchors, random_), masses, ids);
   state_.nodes.build(state_.trees, masses);
-  for (const Buffer buffer : {Buffer::node_operator, Buffer::node_pending})
+  for (const Buffer buffer : {Buffer::node_operator, Buffer::node_response, Buffer::node_pending})
     state_.reals[std::size_t(buffer)].resize(state_.nodes.rows() * schema(buffer).reals);
   for (std::size_t tree = 0; tree < state_.trees.trees(); tree++) assemble(state_.trees.tree(tree));
   state_.reals[std::size_t(Buffer::tree_rows)].resize(lay_out(state_.trees, 1).size * schema(Buffer::tree_rows).reals);
@@ -319,6 +319,7 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   for (std::size_t i = 0; i < buffer_count; i++) {
     const Buffer buffer = Buffer(i);
     if (buffer == Buffer::tree_rows || table_of(buffer) == Table::node) continue;  // as many as nodes, below
+    if (buffer == Buffer::contact_reach) continue;                                 // when the contacts' bodies are known
     const std::uint32_t slots = buffer == Buffer::joint_rows ? coloured_joints : rows[std::size_t(table_of(buffer))] - 1;
     if (!is_index(buffer))
       state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);

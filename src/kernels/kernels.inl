@@ -10,14 +10,14 @@
 // Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
 // a slot), `<domain>_order` (a slot's table row), and the slots' scratch listed below.
 //
-//   PC_ROWS(domain, buffer, reals)            array of structures of arrays, the backend's width; contact_reach has a slot
-//                                             for each step of a contact's way through trees (tree_reach.inl)
+//   PC_ROWS(domain, buffer, reals)            array of structures of arrays, the backend's width; contact_reach has
+//                                             slots for the steps of a contact's way through trees (tree_reach.inl)
 
 #ifdef PC_ROWS
 PC_ROWS(contact, contact_rows, 64)
 PC_ROWS(contact, contact_impulses, 16)
 PC_ROWS(contact, rolling_impulses, 4)
-PC_ROWS(contact, contact_reach, 24)
+PC_ROWS(contact, contact_reach, 12)
 PC_ROWS(joint, joint_rows, 60)
 PC_ROWS(joint, tree_rows, 168)
 #endif

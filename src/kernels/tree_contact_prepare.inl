@@ -34,23 +34,23 @@ PC_FN Mask pc_idles(PC_IO Slot m, Meeting now) {
 
 PC_FN void pc_fill_reach(PC_IO Way w, Slot m, bool turns, Arms arms, Vec3 n, Vec3 t1, Vec3 t2) {
   Vec3 f1 = pc_negate(t1); Vec3 f2 = pc_negate(t2); Vec3 fn = pc_negate(n); Vec3 zero = pc_zero3();
-  pc_reach(PC_PASS w, m, 0u, REACH_PUSH, pc_six(f1, pc_cross(arms.a, f1)), pc_six(f2, pc_cross(arms.a, f2)), pc_six(fn, pc_cross(arms.a, fn)));
-  pc_reach(PC_PASS w, m, 1u, REACH_PUSH, pc_six(t1, pc_cross(arms.b, t1)), pc_six(t2, pc_cross(arms.b, t2)), pc_six(n, pc_cross(arms.b, n)));
+  pc_reach(PC_PASS w, m, 0u, 0u, pc_six(f1, pc_cross(arms.a, f1)), pc_six(f2, pc_cross(arms.a, f2)), pc_six(fn, pc_cross(arms.a, fn)));
+  pc_reach(PC_PASS w, m, 1u, 0u, pc_six(t1, pc_cross(arms.b, t1)), pc_six(t2, pc_cross(arms.b, t2)), pc_six(n, pc_cross(arms.b, n)));
   if (turns) {  // lint: allow (others have no use for it)
-    pc_reach(PC_PASS w, m, 0u, REACH_TURN, pc_six(zero, f1), pc_six(zero, f2), pc_six(zero, fn));
-    pc_reach(PC_PASS w, m, 1u, REACH_TURN, pc_six(zero, t1), pc_six(zero, t2), pc_six(zero, n));
+    pc_reach(PC_PASS w, m, 0u, 1u, pc_six(zero, f1), pc_six(zero, f2), pc_six(zero, fn));
+    pc_reach(PC_PASS w, m, 1u, 1u, pc_six(zero, t1), pc_six(zero, t2), pc_six(zero, n));
   }
 }
 // Of both sides: what bodies of trees answer, on top of free ones.
 PC_FN Responses pc_tree_responses(PC_IO Way w, Slot m, bool turns, Responses free) {
-  Responses r = free; r.l = pc_sym_add(free.l, pc_answers(PC_PASS w, m, REACH_PUSH)); Mat3 mixed = pc_mat3(pc_zero3(), pc_zero3(), pc_zero3());
-  if (w.shared_levels > 0u) r.l = pc_with_both(r.l, pc_cross_answers(PC_PASS w, m, REACH_PUSH, REACH_PUSH));  // lint: allow (zeros where a contact is not within one tree)
+  Responses r = free; r.l = pc_sym_add(free.l, pc_answers(PC_PASS w, m, 0u)); Mat3 mixed = pc_mat3(pc_zero3(), pc_zero3(), pc_zero3());
+  if (w.shared_levels > 0u) r.l = pc_with_both(r.l, pc_cross_answers(PC_PASS w, m, 0u, 0u));  // lint: allow (zeros where a contact is not within one tree)
   if (turns) {  // lint: allow (others have no use for it)
     Mask turning = pc_turns_matter(PC_PASS m); Vec3 zero = pc_zero3();
-    r.a = pc_sym_add(free.a, pc_answers(PC_PASS w, m, REACH_TURN)); mixed = pc_mixed_answers(PC_PASS w, m, REACH_PUSH, REACH_TURN);
+    r.a = pc_sym_add(free.a, pc_answers(PC_PASS w, m, 1u)); mixed = pc_mixed_answers(PC_PASS w, m);
     if (w.shared_levels > 0u) {  // lint: allow (as above)
-      r.a = pc_with_both(r.a, pc_cross_answers(PC_PASS w, m, REACH_TURN, REACH_TURN));
-      mixed = pc_mat_add(mixed, pc_mat_add(pc_cross_answers(PC_PASS w, m, REACH_PUSH, REACH_TURN), pc_transpose(pc_cross_answers(PC_PASS w, m, REACH_TURN, REACH_PUSH))));
+      r.a = pc_with_both(r.a, pc_cross_answers(PC_PASS w, m, 1u, 1u));
+      mixed = pc_mat_add(mixed, pc_mat_add(pc_cross_answers(PC_PASS w, m, 0u, 1u), pc_transpose(pc_cross_answers(PC_PASS w, m, 1u, 0u))));
     }
     r.a = pc_sym_select(turning, r.a, free.a); mixed = pc_mat3(pc_select3(turning, mixed.a, zero), pc_select3(turning, mixed.b, zero), pc_select3(turning, mixed.c, zero));
   }
@@ -59,6 +59,11 @@ PC_FN Responses pc_tree_responses(PC_IO Way w, Slot m, bool turns, Responses fre
 // What stands in no tree answers for itself.
 PC_FN BodyState pc_outside(Mask in_tree, BodyState b) {
   Real zero = PC_REAL(0.0); b.inverse_mass = pc_select(in_tree, zero, b.inverse_mass); b.response = pc_select(in_tree, zero, b.response); return b;
+}
+PC_FN Responses pc_outside_responses(PC_IO Way w, Slot m, Meeting now, Vec3 n, Vec3 t1, Vec3 t2) {
+  BodyState a = pc_outside(pc_in_tree(PC_PASS w, m, 0u), now.a); BodyState b = pc_outside(pc_in_tree(PC_PASS w, m, 1u), now.b);
+  if (PC_ANY(pc_max(a.inverse_mass, b.inverse_mass) > PC_REAL(0.0))) return pc_free_responses(a, b, now.arms.a, now.arms.b, n, t1, t2);  // lint: allow (zeros otherwise)
+  Responses r; r.l = pc_diagonal(PC_REAL(0.0)); r.a = r.l; r.w1 = pc_zero3(); r.w2 = r.w1; r.wn = r.w1; r.these = PC_REAL(1.0) > PC_REAL(0.0); return r;
 }
 // No row is heavier than what bare bodies would answer allows, many times over.
 PC_FN void pc_bound_masses(PC_IO Slot m, Mask these, BodyState a, BodyState b) {
@@ -79,8 +84,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)
   bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
   pc_fill_reach(PC_PASS w, m, turns, now.arms, n, t1, t2);
-  BodyState a = pc_outside(pc_in_tree(PC_PASS w, m, 0u), now.a); BodyState b = pc_outside(pc_in_tree(PC_PASS w, m, 1u), now.b);
-  Responses r = pc_tree_responses(PC_PASS w, m, turns, pc_free_responses(a, b, now.arms.a, now.arms.b, n, t1, t2));
+  Responses r = pc_tree_responses(PC_PASS w, m, turns, pc_outside_responses(PC_PASS w, m, now, n, t1, t2));
   Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
   Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
   r.these = scale > none; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);

@@ -16,8 +16,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
-  Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2); Twist v = now.twist; bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
-  Six rate = pc_with_pending(PC_PASS w, m, 1u, turns, pc_with_pending(PC_PASS w, m, 0u, turns, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
+  Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2); Twist v = now.twist;
+  uint turning = pc_turning(PC_PASS w, m);
+  Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
   Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2);
 
@@ -33,7 +34,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_note_push(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(r.impulse), pc_negate(torque_a)), r.touch);
   pc_note_push(PC_PASS w, m, 1u, tree_b, pc_six(r.impulse, torque_b), r.touch);
   Six along = pc_six(Vec3(pc_dot(t1, r.impulse), pc_dot(t2, r.impulse), pc_dot(n, r.impulse)), Vec3(pc_dot(t1, r.couple), pc_dot(t2, r.couple), pc_dot(n, r.couple)));
-  pc_push_side(PC_PASS w, m, 0u, turns, along); pc_push_side(PC_PASS w, m, 1u, turns, along);
+  pc_push_side(PC_PASS w, m, 0u, turning, along); pc_push_side(PC_PASS w, m, 1u, turning, along);
 }
 #undef PC_MEAN
 #undef pc_mean

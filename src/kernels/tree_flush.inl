@@ -21,8 +21,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     }
     pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
     Quad none = pc_quad(pc_zero3(), PC_REAL(0.0));
-    Mask exists = PC_LD(tree_rows, n, TREE_TOTAL) > PC_REAL(0.0);
-    for (uint i = 0u; i < 4u; i++) PC_SCATTER_IF(exists, node_pending, row, i, none);
+    for (uint i = 0u; i < 4u; i++) PC_SCATTER(node_pending, row, i, none);
   }
   Real share = pc_inverse_or_zero(PC_LD(tree_rows, root, TREE_TOTAL));
   pc_tree_add_changes(PC_PASS m, t, pc_scale(push, share), pc_scale(turn, share));

@@ -24,8 +24,8 @@ PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
   precise Real xx = m.xx * s; precise Real xy = m.xy * s; precise Real xz = m.xz * s; precise Real yy = m.yy * s; precise Real yz = m.yz * s; precise Real zz = m.zz * s;
   return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
-PC_FN void pc_nothing_pending(PC_IO Index row, Mask exists) {
-  for (uint i = 0u; i < 4u; i++) PC_SCATTER_IF(exists, node_pending, row, i, pc_quad(pc_zero3(), PC_REAL(0.0)));
+PC_FN void pc_nothing_pending(PC_IO Index row) {
+  for (uint i = 0u; i < 4u; i++) PC_SCATTER(node_pending, row, i, pc_quad(pc_zero3(), PC_REAL(0.0)));
 }
 
 PC_FN void pc_hand_root(PC_IO Slot root, Index row, Mask exists, Real scale) {
@@ -54,8 +54,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first);
   // the factor is in units of the tree's mass
   Real total = PC_LD(tree_rows, root, TREE_TOTAL); Mask exists = total > PC_REAL(0.0); Real scale = pc_sqrt(pc_inverse_or_zero(total));
-  Index first = PC_ORDER(tree_order, root); pc_hand_root(PC_PASS root, first, exists, scale); pc_nothing_pending(PC_PASS first, exists);
+  Index first = PC_ORDER(tree_order, root); pc_hand_root(PC_PASS root, first, exists, scale); pc_nothing_pending(PC_PASS first);
   for (uint k = 1u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); pc_hand_node(PC_PASS n, row, exists, scale); pc_nothing_pending(PC_PASS row, exists);
+    Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); pc_hand_node(PC_PASS n, row, exists, scale); pc_nothing_pending(PC_PASS row);
   }
 }

@@ -13,6 +13,7 @@ void TreeNodes::build(const Forest& forest, std::span<const double> masses, std:
   unit_.resize(masses.size());
   std::iota(unit_.begin(), unit_.end(), 0u);
   parent_.assign(1, 0);
+  root_.assign(1, 0);
   level_.assign(1, 0);
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
@@ -21,6 +22,7 @@ void TreeNodes::build(const Forest& forest, std::span<const double> masses, std:
     const std::uint32_t unit = tree[masses[tree[0].body] > 0 ? 0 : 1].body;
     for (std::uint32_t k = 0; k < tree.size(); k++) {
       parent_.push_back(k == 0 ? 0 : root + tree[k].parent);
+      root_.push_back(root);
       level_.push_back(k == 0 ? 0 : level_[root + tree[k].parent] + 1);
       if (masses[tree[k].body] == 0) continue;
       large_[tree[k].body] = large;
@@ -42,8 +44,7 @@ struct Ends {
 
 Ends ends_of(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b) {
   Ends e{{nodes.node(a), nodes.node(b)}, {}, {0, 0}};
-  for (std::size_t side = 0; side < 2; side++)
-    for (e.root[side] = e.own[side]; nodes.parent(e.root[side]) != 0;) e.root[side] = nodes.parent(e.root[side]);
+  for (std::size_t side = 0; side < 2; side++) e.root[side] = nodes.root(e.own[side]);
   if (e.root[0] == 0 || e.root[0] != e.root[1]) return e;
   std::array<std::uint32_t, 2> at = e.own;
   while (at[0] != at[1]) {
@@ -56,6 +57,7 @@ Ends ends_of(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b) {
   return e;
 }
 
+constexpr std::uint32_t widest = 64;        // backend, and more
 constexpr std::uint32_t fixed_entries = 7;  // PATH_LEVELS of tree_path.inl
 
 /// Levels of the ways of a block: the longest of its lanes.
@@ -65,7 +67,8 @@ struct Levels {
   /// Entries that list shared slots: of the root two.
   std::uint32_t shared_slots() const { return shared == 0 ? 0 : shared + 1; }
   std::uint32_t all() const { return depth[0] + depth[1] + below[0] + below[1] + shared_slots(); }
-  std::uint32_t reach_slots() const { return 2 * (any[0] + any[1]) + depth[0] + depth[1]; }
+  /// Of impulses, and as many of couples.
+  std::uint32_t reach_slots() const { return 2 * (2 * (any[0] + any[1]) + depth[0] + depth[1]); }
 };
 
 }  // namespace
@@ -82,17 +85,18 @@ std::uint16_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b
 
 std::uint32_t pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
                          std::vector<std::uint32_t>& out) {
-  assert(ends.size() >= std::size_t{2} * blocks * width);
+  assert(width <= widest && ends.size() >= std::size_t{2} * blocks * width);
   const auto end = [&](std::uint32_t block, std::uint32_t lane, std::uint32_t side) {
     return ends[(std::size_t{block} * 2 + side) * width + lane];
   };
   constexpr std::uint32_t head = 8;
   out.assign(blocks, 0);
   std::uint32_t reach = 0;
+  std::array<Ends, widest> lanes;
   for (std::uint32_t block = 0; block < blocks; block++) {
     Levels levels;
     for (std::uint32_t lane = 0; lane < width; lane++) {
-      const Ends e = ends_of(nodes, end(block, lane, 0), end(block, lane, 1));
+      const Ends& e = lanes[lane] = ends_of(nodes, end(block, lane, 0), end(block, lane, 1));
       for (std::size_t side = 0; side < 2; side++) {
         levels.depth[side] = std::max(levels.depth[side], nodes.level(e.own[side]));
         levels.below[side] = std::max(levels.below[side], e.below[side]);
@@ -113,7 +117,7 @@ std::uint32_t pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint3
     reach += levels.reach_slots();
     std::uint32_t* entries = out.data() + at + head;
     for (std::uint32_t lane = 0; lane < width; lane++) {
-      const Ends e = ends_of(nodes, end(block, lane, 0), end(block, lane, 1));
+      const Ends& e = lanes[lane];
       const auto put = [&](std::uint32_t entry, std::uint32_t value) { entries[entry * width + lane] = value; };
       /// The last `count` levels of a side's way, from entry `first` on.
       const auto put_way = [&](std::size_t side, std::uint32_t first, std::uint32_t count) {

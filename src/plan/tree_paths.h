@@ -30,11 +30,13 @@ class TreeNodes {
   std::uint32_t unit(std::uint32_t body) const { return unit_[body]; }
   /// Of a node; 0 above a root.
   std::uint32_t parent(std::uint32_t node) const { return parent_[node]; }
+  /// Of a node's tree; 0 of row 0.
+  std::uint32_t root(std::uint32_t node) const { return root_[node]; }
   /// Levels between a node and its root.
   std::uint32_t level(std::uint32_t node) const { return level_[node]; }
 
  private:
-  std::vector<std::uint32_t> node_, unit_, parent_, level_;
+  std::vector<std::uint32_t> node_, unit_, parent_, root_, level_;
   std::vector<char> large_;  // by body row
 };
 

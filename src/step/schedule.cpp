@@ -29,7 +29,8 @@ template <class Scalar> void foresee(const WorldState& state, std::vector<Contac
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
                            const TreeNodes& trees) {
   works_.clear();
-  if (trees.rows() > 1) state.tables.precision() == Precision::f32 ? foresee<float>(state, works_) : foresee<double>(state, works_);
+  if (trees.rows() > 1)
+    state.tables.precision() == Precision::f32 ? foresee<float>(state, works_) : foresee<double>(state, works_);
   rows_.resize(ends.size() - 1);
   std::iota(rows_.begin(), rows_.end(), 1u);
   colour_rows(state, ends, kind, trees, {});
