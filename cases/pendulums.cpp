@@ -116,9 +116,9 @@ void swing(Trial& trial, const Amplitude& amplitude, const Csv& reference) {
 void long_swing(Trial& trial) {
   Simulated& run = pendulum(trial, 0.5 * pi);
   const double e0 = energy(run);
-  const long steps = trial.steps(1000), tenth = steps / 10;
+  const long steps = trial.steps(1000);
   Worst worst;
-  double first = 0, last = 0;  // means over the first and the last tenth
+  Trend trend(steps);
   Neighbours n;
   n.dt = trial.dt();
   n.now = run.pose(0);
@@ -131,12 +131,10 @@ void long_swing(Trial& trial) {
     n.after = run.pose(0);
     const double error = (n.energy(run.mass(0), down) - e0) / gravity;
     worst.add(std::fabs(error));
-    if (k < tenth) first += error / double(tenth);
-    if (k >= steps - tenth) last += error / double(tenth);
+    trend.add(error);
   }
   trial.report("energy / (2 m g l)", worst, trial.at({1.36e-3, 8.4e-5, infinite, infinite}));
-  trial.report("trend of the energy / its oscillation", std::fabs(last - first) / worst,
-               trial.is_double() ? std::optional(0.1) : std::nullopt);
+  trial.report("trend of the energy / its oscillation", trend / worst, trial.is_double() ? std::optional(0.1) : std::nullopt);
 }
 
 // ---- A8 ------------------------------------------------------------------------------------------------
