@@ -33,6 +33,7 @@ constexpr Call step_calls[] = {
     {Kernel::tree_collect, 0},
     {Kernel::tree_solve, 0},
     {Kernel::tree_respond, 0},
+    {Kernel::tree_answer, 0},
     {Kernel::tree_joint_mass, 0},
     {Kernel::tree_contact_prepare, 0},
     {Kernel::tree_joint_solve, 0},
@@ -83,10 +84,16 @@ std::vector<Call> calls(int sub_steps) {
   return all;
 }
 
+template <class Scalar> State<Scalar> made(const Mood& mood) {
+  State<Scalar> state = Maker<Scalar>(8, mood).make();
+  state.reals[std::size_t(Buffer::contact_reach)].resize(lay_out_reach(state, 1).size * schema(Buffer::contact_reach).reals);
+  return state;
+}
+
 /// Each kernel starts from the scalar reference's state, so a difference names the kernel that made it.
 template <class Scalar, class Other> void compare(const CpuKernels& reference, const char* what, Other other) {
   for (const Mood& mood : moods) {
-    State<Scalar> state = Maker<Scalar>(8, mood).make();
+    State<Scalar> state = made<Scalar>(mood);
     for (const Call& call : calls(3)) {
       if (!mood.loops && closes_loops(call.kernel)) continue;
       State<Scalar> theirs = state;
@@ -136,7 +143,7 @@ TEST_CASE("four lanes of double equal scalar") {
 /// has left the numbers (not-a-number spreads, and compares as equal).
 TEST_CASE("the contents that parity is checked on move, and stay numbers") {
   for (const Mood& mood : moods) {
-    State<float> state = Maker<float>(8, mood).make();
+    State<float> state = made<float>(mood);
     std::string first;
     for (const Call& call : calls(3)) {
       if (!mood.loops && closes_loops(call.kernel)) continue;

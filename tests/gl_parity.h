@@ -37,6 +37,14 @@ inline std::vector<std::uint32_t> pack_ends(const std::vector<std::uint32_t>& lo
   return packed;
 }
 template <class Scalar>
+std::uint32_t paths_of(Buffer buffer, const State<Scalar>& state, std::size_t width, std::vector<std::uint32_t>& paths) {
+  const bool contacts = buffer == Buffer::contact_paths;
+  const std::vector<Range>& colours = contacts ? state.contact_colours : state.joint_colours;
+  const Buffer ends = contacts ? Buffer::contact_ends : Buffer::joint_ends;
+  return pack_paths(state.nodes, std::uint32_t(width), colours[state.tree_colours - 1].end / std::uint32_t(width),
+                    pack_ends(state.indices[std::size_t(ends)], width), paths);
+}
+template <class Scalar>
 std::vector<std::uint32_t> pack_indices(Buffer buffer, const State<Scalar>& state, std::size_t width, const TreeLayout& trees) {
   const std::vector<std::uint32_t>& logical = state.indices[std::size_t(buffer)];
   if (buffer == Buffer::tree_blocks) return trees.lists.blocks;
@@ -44,32 +52,55 @@ std::vector<std::uint32_t> pack_indices(Buffer buffer, const State<Scalar>& stat
   if (buffer == Buffer::tree_ends) return trees.lists.ends;
   if (buffer == Buffer::tree_order) return trees.lists.order;
   if (buffer == Buffer::contact_paths || buffer == Buffer::joint_paths) {
-    const bool contacts = buffer == Buffer::contact_paths;
-    const std::vector<Range>& colours = contacts ? state.contact_colours : state.joint_colours;
-    const Buffer ends = contacts ? Buffer::contact_ends : Buffer::joint_ends;
     std::vector<std::uint32_t> paths;
-    pack_paths(state.nodes, std::uint32_t(width), colours[state.tree_colours - 1].end / std::uint32_t(width),
-               pack_ends(state.indices[std::size_t(ends)], width), paths);
+    paths_of(buffer, state, width, paths);
     return paths;
   }
   return is_ends(buffer) ? pack_ends(logical, width) : logical;
 }
 
+/// Where the logical slots of a buffer of rows stand, and how many places there are: with the lanes that pad blocks of trees, and the
+/// ways that are shorter than others of their block.
+struct SlotLayout {
+  std::vector<std::size_t> slots;  // empty: as they come
+  std::size_t size = 0;
+};
+/// Of contact_reach, logically in the order of one lane.
+template <class Scalar> SlotLayout lay_out_reach(const State<Scalar>& state, std::size_t width) {
+  std::vector<std::uint32_t> single, packed;
+  paths_of(Buffer::contact_paths, state, 1, single);
+  SlotLayout layout;
+  layout.size = paths_of(Buffer::contact_paths, state, width, packed) * width;
+  const std::uint32_t count = state.contact_colours[state.tree_colours - 1].end;
+  for (std::uint32_t slot = 0; slot < count; slot++) {
+    const std::uint32_t *own = &single[single[slot]], *block = &packed[packed[slot / width]];  // heads: see tree_path.inl
+    const auto count = [](const std::uint32_t* head, std::size_t side) { return std::size_t{2} * head[4 + side] + head[side]; };
+    for (std::size_t turns = 0; turns < 2; turns++)
+      for (std::size_t side = 0; side < 2; side++)
+        for (std::size_t k = 0; k < count(own, side); k++) {
+          const std::size_t first = block[7] + turns * (count(block, 0) + count(block, 1)) + side * count(block, 0);
+          layout.slots.push_back((first + k) * width + slot % width);
+        }
+  }
+  return layout;
+}
+template <class Scalar>
+SlotLayout layout_of(Buffer buffer, const State<Scalar>& state, std::size_t width, const TreeLayout& trees) {
+  if (buffer == Buffer::contact_reach) return lay_out_reach(state, width);
+  if (buffer == Buffer::tree_rows) return {std::vector<std::size_t>(trees.slots.begin(), trees.slots.end()), trees.size};
+  return {{}, state.reals[std::size_t(buffer)].size() / std::max(1u, schema(buffer).reals)};
+}
+
 /// Copies between logical order and a backend's, for rows of the solver; tables are the same in both.
 template <class Scalar>
-void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width, const TreeLayout& trees,
+void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width, const SlotLayout& layout,
                 bool pack) {
   const std::size_t reals = schema(buffer).reals;
   for (std::size_t i = 0; i < count; i++) {
-    const std::size_t slot = buffer == Buffer::tree_rows ? trees.slots[i / reals] : i / reals;
+    const std::size_t slot = layout.slots.empty() ? i / reals : layout.slots[i / reals];
     const std::size_t packed = is_rows(buffer) ? place(slot, i % reals, reals, width) : i;
     to[pack ? packed : i] = from[pack ? i : packed];
   }
-}
-
-/// Reals of a buffer as a backend has it: lanes that pad blocks of trees have room of their own.
-template <class Scalar> std::size_t packed_size(Buffer buffer, const State<Scalar>& state, const TreeLayout& trees) {
-  return buffer == Buffer::tree_rows ? trees.size * schema(buffer).reals : state.reals[std::size_t(buffer)].size();
 }
 
 template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<Scalar>& state, std::uint32_t width) {
@@ -92,17 +123,19 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
   };
   std::array<std::vector<Line>, buffer_count> memory;
   void* buffers[buffer_count] = {};
+  std::array<SlotLayout, buffer_count> layouts;
   const TreeLayout trees = lay_out(state.trees, kernels.lanes);
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
     const auto indices = pack_indices(access.buffer, state, kernels.lanes, trees);
-    memory[i].resize((packed_size(access.buffer, state, trees) * sizeof(Scalar) + indices.size() * 4) / 64 + 1);
+    layouts[i] = layout_of(access.buffer, state, kernels.lanes, trees);
+    memory[i].resize((layouts[i].size * schema(access.buffer).reals * sizeof(Scalar) + indices.size() * 4) / 64 + 1);
     buffers[i] = memory[i].data();
     if (is_index(access.buffer))
       std::memcpy(buffers[i], indices.data(), indices.size() * 4);
     else
       copy_reals(access.buffer, state.reals[i].data(), static_cast<Scalar*>(buffers[i]), state.reals[i].size(), kernels.lanes,
-                 trees, true);
+                 layouts[i], true);
   }
   {
     const FlushSubnormals flush;  // as stepping does, and some GPUs
@@ -113,7 +146,7 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
     const std::size_t i = std::size_t(access.buffer);
     if (access.write)
       copy_reals(access.buffer, static_cast<const Scalar*>(buffers[i]), state.reals[i].data(), state.reals[i].size(),
-                 kernels.lanes, trees, false);
+                 kernels.lanes, layouts[i], false);
   }
 }
 
@@ -124,12 +157,14 @@ inline void require(const Status& status) {
 template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info, State<Scalar>& state) {
   std::array<std::vector<Scalar>, buffer_count> reals;
   std::array<std::vector<std::uint32_t>, buffer_count> indices;
+  std::array<SlotLayout, buffer_count> layouts;
   const TreeLayout trees = lay_out(state.trees, gl.width());
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
     indices[i] = pack_indices(access.buffer, state, gl.width(), trees);
-    reals[i].resize(packed_size(access.buffer, state, trees));
-    copy_reals(access.buffer, state.reals[i].data(), reals[i].data(), state.reals[i].size(), gl.width(), trees, true);
+    layouts[i] = layout_of(access.buffer, state, gl.width(), trees);
+    reals[i].resize(layouts[i].size * schema(access.buffer).reals);
+    copy_reals(access.buffer, state.reals[i].data(), reals[i].data(), state.reals[i].size(), gl.width(), layouts[i], true);
     void* host = is_index(access.buffer) ? static_cast<void*>(indices[i].data()) : reals[i].data();
     require(gl.attach(access.buffer, host, indices[i].size() * 4 + reals[i].size() * sizeof(Scalar)));
     require(gl.upload(access.buffer));
@@ -141,7 +176,7 @@ template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info
     const std::size_t i = std::size_t(access.buffer);
     if (!access.write) continue;
     require(gl.download(access.buffer));
-    copy_reals(access.buffer, reals[i].data(), state.reals[i].data(), state.reals[i].size(), gl.width(), trees, false);
+    copy_reals(access.buffer, reals[i].data(), state.reals[i].data(), state.reals[i].size(), gl.width(), layouts[i], false);
   }
 }
 
@@ -154,7 +189,8 @@ std::size_t differences(Kernel kernel, const State<Scalar>& a, const State<Scala
   std::size_t count = 0;
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer), reals = schema(access.buffer).reals;
-    for (std::size_t k = 0; access.write && k < a.reals[i].size(); k++) {
+    // of contact_reach lanes fill what they have no use for where others of their block have: what they use shows in what comes of it
+    for (std::size_t k = 0; access.write && access.buffer != Buffer::contact_reach && k < a.reals[i].size(); k++) {
       if (same(a.reals[i][k], b.reals[i][k])) continue;
       char text[200];
       std::snprintf(text, sizeof text, "%s row %zu real %zu: %a (%.9g) and %a (%.9g)",

@@ -27,7 +27,7 @@ inline Table table_of(Buffer buffer) { return schema(buffer).table; }
 inline bool is_index(Buffer buffer) { return schema(buffer).reals == 0; }
 inline bool is_rows(Buffer buffer) {
   return buffer == Buffer::contact_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows ||
-         buffer == Buffer::tree_rows;
+         buffer == Buffer::tree_rows || buffer == Buffer::contact_reach;
 }
 inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || buffer == Buffer::joint_ends; }
 
@@ -291,7 +291,7 @@ template <class Scalar> void Maker<Scalar>::trees() {
   for (std::size_t tree = 0; tree < state_.trees.trees(); tree++)
     if (state_.trees.tree(tree).size() == 2 && masses[state_.trees.tree(tree)[0].body] == 0) state_.trees.set_pivot(tree);
   state_.nodes.build(state_.trees, masses);
-  for (const Buffer buffer : {Buffer::node_operator, Buffer::node_pending})
+  for (const Buffer buffer : {Buffer::node_operator, Buffer::node_response, Buffer::node_pending})
     state_.reals[std::size_t(buffer)].resize(state_.nodes.rows() * schema(buffer).reals);
   for (std::size_t tree = 0; tree < state_.trees.trees(); tree++) assemble(state_.trees.tree(tree));
   state_.reals[std::size_t(Buffer::tree_rows)].resize(lay_out(state_.trees, 1).size * schema(Buffer::tree_rows).reals);
@@ -321,6 +321,9 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.joint_impulse_scale = Scalar(relax ? 0 : 0.05);
     info.joint_push_speed = Scalar(8);
     info.loop_give = Scalar(1e-5);
+    info.cross_share = Scalar(0.9);
+    info.row_mass_most = Scalar(1000);
+    info.idle_speed = Scalar(0.5);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.spin_floor = Scalar(6e-5);
@@ -339,6 +342,7 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   for (std::size_t i = 0; i < buffer_count; i++) {
     const Buffer buffer = Buffer(i);
     if (buffer == Buffer::tree_rows || table_of(buffer) == Table::node) continue;  // as many as nodes, below
+    if (buffer == Buffer::contact_reach) continue;                                 // when the contacts' bodies are known
     const std::uint32_t slots = buffer == Buffer::joint_rows ? coloured_joints : rows[std::size_t(table_of(buffer))] - 1;
     if (!is_index(buffer))
       state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);

@@ -48,6 +48,14 @@ inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a
 /// tree holds by itself answers nothing.
 inline constexpr double loop_give = 1e-4;
+/// Of what an impulse on one body of a joint tree moves another one, so much counts in the effective masses of a contact between the
+/// two: bodies that can hardly move against each other then have a mass that is finite.
+inline constexpr double cross_share = 0.9;
+/// Effective masses of contacts with joint trees are at most so many times what the bare bodies have.
+inline constexpr double row_mass_most = 1000;
+/// A contact with a joint tree that holds nothing is left alone in a sub-step while its points would have to be brought together by this and the
+/// speeds of its bodies besides [m/s].
+inline constexpr double idle_speed = 0.5;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

@@ -29,9 +29,8 @@ PC_INLINE void pc_store(Scalar* p, Real x) { *reinterpret_cast<Real::Vector*>(p)
 PC_INLINE Index pc_index(const uint* p) { return {p}; }
 PC_INLINE Mask pc_mask(uint flag) { return Real(Scalar(flag)) > Real(Scalar(0)); }
 PC_INLINE Mask pc_some(Index index) {
-  Mask m;
-  for (uint l = 0; l < PC_LANES; l++) m[l] = index.i[l] != 0 ? -1 : 0;
-  return m;
+  typedef uint Rows __attribute__((vector_size(4 * PC_LANES), aligned(4), may_alias));
+  return __builtin_convertvector(*reinterpret_cast<const Rows*>(index.i) != 0, Mask);
 }
 
 // pc_transpose_in: four consecutive reals of each lane's row become four Reals; pc_transpose_out reverses it.

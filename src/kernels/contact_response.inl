@@ -2,6 +2,7 @@
 // stored, so both momenta are conserved to rounding: the arms end in one common point (see pc_arms).
 #include "body_push.inl"
 #include "contact_arms.inl"
+#include "contact_twist.inl"
 
 PC_FN void pc_apply(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple) {
   Vec3 torque_a = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arms.b, impulse));
@@ -17,13 +18,4 @@ PC_FN Push pc_push(PC_IO Slot m, Real l0, Real l1, Real l2, Real l3) {
   precise Real m1 = PC_LD(contact_rows, m, ROW_B) * l0 + PC_LD(contact_rows, m, ROW_B + 1u) * l1 + PC_LD(contact_rows, m, ROW_B + 2u) * l2 + PC_LD(contact_rows, m, ROW_B + 3u) * l3;
   precise Real m2 = PC_LD(contact_rows, m, ROW_A) * l0 + PC_LD(contact_rows, m, ROW_A + 1u) * l1 + PC_LD(contact_rows, m, ROW_A + 2u) * l2 + PC_LD(contact_rows, m, ROW_A + 3u) * l3;
   Push p; p.n = n; p.m1 = m1; p.m2 = -m2; return p;
-}
-
-// Relative velocity of b against a at the manifold's centre, in the contact frame.
-struct Twist { Real v1; Real v2; Real vn; Real w1; Real w2; Real wn; };
-PC_FN Twist pc_twist(BodyState a, BodyState b, Arms arms, Vec3 n, Vec3 t1, Vec3 t2) {
-  Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b);
-  Vec3 va = pc_add(a.v, pc_cross(wa, arms.a)); Vec3 vb = pc_add(b.v, pc_cross(wb, arms.b));
-  Vec3 v = pc_sub(vb, va); Vec3 w = pc_sub(wb, wa);
-  Twist t; t.v1 = pc_dot(t1, v); t.v2 = pc_dot(t2, v); t.vn = pc_dot(n, v); t.w1 = pc_dot(t1, w); t.w2 = pc_dot(t2, w); t.wn = pc_dot(n, w); return t;
 }

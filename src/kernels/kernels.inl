@@ -10,12 +10,14 @@
 // Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
 // a slot), `<domain>_order` (a slot's table row), and the slots' scratch listed below.
 //
-//   PC_ROWS(domain, buffer, reals)            array of structures of arrays, the backend's width
+//   PC_ROWS(domain, buffer, reals)            array of structures of arrays, the backend's width; contact_reach has
+//                                             slots for the steps of a contact's way through trees (tree_reach.inl)
 
 #ifdef PC_ROWS
 PC_ROWS(contact, contact_rows, 64)
 PC_ROWS(contact, contact_impulses, 16)
 PC_ROWS(contact, rolling_impulses, 4)
+PC_ROWS(contact, contact_reach, 12)
 PC_ROWS(joint, joint_rows, 96)
 PC_ROWS(joint, tree_rows, 204)
 #endif
@@ -40,8 +42,8 @@ PC_KERNEL(joint_warm, free_joint, joints, PC_READ(joint_ends) PC_READ(joint_orde
 PC_KERNEL(joint_solve, free_joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
 PC_KERNEL(joint_solve_driven, free_joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_WRITE(joint_rows) PC_READ(pose) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion))
 PC_KERNEL(tree_joint_warm, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(joint_impulse) PC_READ(inertia) PC_WRITE(motion) PC_WRITE(node_pending))
-PC_KERNEL(tree_joint_mass, tree_joint, joints, PC_READ(joint_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_WRITE(joint_rows))
-PC_KERNEL(tree_joint_mass_driven, tree_joint, joints, PC_READ(joint_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_WRITE(joint_rows))
+PC_KERNEL(tree_joint_mass, tree_joint, joints, PC_READ(joint_paths) PC_READ(node_operator) PC_READ(node_response) PC_READ(motion) PC_READ(inertia) PC_WRITE(joint_rows))
+PC_KERNEL(tree_joint_mass_driven, tree_joint, joints, PC_READ(joint_paths) PC_READ(node_operator) PC_READ(node_response) PC_READ(motion) PC_READ(inertia) PC_WRITE(joint_rows))
 PC_KERNEL(tree_joint_solve, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(node_operator) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_joint_solve_driven, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_WRITE(joint_rows) PC_READ(node_operator) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_joint_arms, tree_joint, joints, PC_READ(joint_paths) PC_READ(pose) PC_WRITE(joint_rows))
@@ -55,7 +57,8 @@ PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) P
 PC_KERNEL(pivot_turn, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_READ(joint_pivot) PC_READ(force) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(pivot_settle, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_READ(tree_rows) PC_WRITE(motion) PC_WRITE(delta))
 PC_KERNEL(tree_collect, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(node_pending) PC_WRITE(tree_rows))
-PC_KERNEL(tree_respond, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(tree_rows) PC_WRITE(node_operator) PC_WRITE(node_pending))
+PC_KERNEL(tree_respond, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_WRITE(tree_rows) PC_WRITE(node_operator) PC_WRITE(node_pending))
+PC_KERNEL(tree_answer, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(tree_rows) PC_WRITE(node_response))
 PC_KERNEL(tree_flush, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(tree_order) PC_WRITE(tree_rows) PC_WRITE(node_pending) PC_WRITE(motion))
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
 PC_KERNEL(contact_refresh, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
@@ -64,8 +67,8 @@ PC_KERNEL(contact_warm, free_contact, impulses, PC_READ(contact_ends) PC_READ(in
 PC_KERNEL(contact_rolling, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(material) PC_WRITE(rolling_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, free_contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(tree_contact_warm, tree_contact, impulses, PC_READ(contact_paths) PC_READ(inertia) PC_READ(delta) PC_READ(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending))
-PC_KERNEL(tree_contact_prepare, tree_contact, impulses, PC_READ(contact_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
-PC_KERNEL(tree_contact_solve, tree_contact, impulses, PC_READ(contact_paths) PC_READ(contact_rows) PC_READ(node_operator) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending))
+PC_KERNEL(tree_contact_prepare, tree_contact, impulses, PC_READ(contact_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(contact_reach))
+PC_KERNEL(tree_contact_solve, tree_contact, impulses, PC_READ(contact_paths) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending) PC_WRITE(contact_reach))
 PC_KERNEL(contact_restitution, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(delta) PC_WRITE(motion))
 PC_KERNEL(contact_store, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(contact))
 #endif

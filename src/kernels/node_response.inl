@@ -1,4 +1,6 @@
 // How the two sides of a slot answer impulses, through the ways of tree_path.inl. Needs node_operator.inl, body_state.inl.
+#include "node_answer.inl"
+
 // Of one side, at its arm: as a body among joints, or a free one; a body of a tree answers nothing but with it.
 PC_FN Sym6 pc_side_response(PC_IO Way w, Slot m, uint side, Index body, Vec3 arm) {
   Sym6 g = pc_response(PC_PASS PC_WAY_EACH(m, pc_entry(w, PATH_OWN + side))); BodyState b = pc_body_state(PC_PASS body);

@@ -1,64 +1,93 @@
-// Once a sub-step, after tree_respond: the effective masses of a manifold with a body of a tree, from how whole trees
-// answer. Within one tree an impulse on one body also moves the other: of that what the nearest common node passes on.
-#include "body_state.inl"
+// Once a sub-step, after tree_respond: how far the rows of a manifold with a body of a tree reach (tree_reach.inl), and their effective masses, from
+// how whole trees answer.
+#define PC_SOME_ROWS
 #include "tree_math.inl"
 #include "contact_way.inl"
 #include "node_operator.inl"
-#include "node_response.inl"
 #include "contact_rows.inl"
+#include "body_state.inl"
 #include "contact_arms.inl"
+#include "contact_twist.inl"
+#include "contact_shift.inl"
+#include "contact_meeting.inl"
 #include "contact_masses.inl"
+#include "free_responses.inl"
+#include "tree_reach.inl"
+#include "contact_reach.inl"
 
-struct Frame { Vec3 t1; Vec3 t2; Vec3 n; };
-PC_FN Vec3 pc_in_frame(Frame f, Vec3 v) { return Vec3(pc_dot(f.t1, v), pc_dot(f.t2, v), pc_dot(f.n, v)); }
-PC_FN Sym3 pc_sym_in_frame(Frame f, Sym3 m) { Vec3 a = pc_sym_mul(m, f.t1); Vec3 b = pc_sym_mul(m, f.t2); Vec3 c = pc_sym_mul(m, f.n); return pc_products(f.t1, f.t2, f.n, a, b, c); }
-
-// How body b of a tree moves, at its arm and in the contact frame, when body a of it feels the impulses f; a tenth is left out.
-PC_FN Six pc_across_in_frame(PC_IO Way w, Slot m, Frame frame, Arms arms, Six f) {
-  Six x = pc_across(PC_PASS w, m, f);
-  precise Vec3 xl = pc_in_frame(frame, pc_add(x.l, pc_cross(x.a, arms.b))) * PC_REAL(0.9); precise Vec3 xa = pc_in_frame(frame, x.a) * PC_REAL(0.9);
-  return pc_six(xl, xa);
+// Contacts that hold nothing, and whose points would come no nearer than this speed could close, are left alone in this sub-step: in a pile half of all. What
+// is missed the next sub-step sees.
+PC_FN Real pc_room(PC_IO Slot m, uint i, Twist v, Shift shift) {
+  Real a = PC_LD(contact_rows, m, ROW_A + i); Real b = PC_LD(contact_rows, m, ROW_B + i);
+  precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + b * shift.turn1 - a * shift.turn2);
+  precise Real room = s * PC_INFO(inverse_h) + (v.vn + b * v.w1 - a * v.w2);
+  return pc_select(PC_LD(contact_rows, m, ROW_MASS + i) > PC_REAL(0.0), room, PC_REAL(1e9));
+}
+PC_FN Mask pc_idles(PC_IO Slot m, Meeting now) {
+  Real held = PC_REAL(0.0);
+  for (uint i = 0u; i < 4u; i++) held = pc_max(held, PC_LD(contact_impulses, m, i));
+  for (uint i = 0u; i < 3u; i++) held = pc_max(held, pc_abs(PC_LD(contact_impulses, m, IMPULSE_T + i)));
+  Real room = pc_min(pc_min(pc_room(PC_PASS m, 0u, now.twist, now.shift), pc_room(PC_PASS m, 1u, now.twist, now.shift)), pc_min(pc_room(PC_PASS m, 2u, now.twist, now.shift), pc_room(PC_PASS m, 3u, now.twist, now.shift)));
+  precise Real fast = pc_length(now.a.v) + pc_length(now.b.v) + PC_INFO(idle_speed);
+  return pc_and(room > fast, held < PC_TINY);
 }
 
-// Takes the share of an impulse (or couple) along axis i of the frame, felt by both bodies of one tree, out of the responses.
-PC_FN void pc_take_across(PC_INOUT(Responses) r, Six x0, Six x1, Six x2, Six y0, Six y1, Six y2) {
-  precise Real lxx = r.l.xx - (x0.l.x + x0.l.x); precise Real lxy = r.l.xy - (x1.l.x + x0.l.y); precise Real lxz = r.l.xz - (x2.l.x + x0.l.z);
-  precise Real lyy = r.l.yy - (x1.l.y + x1.l.y); precise Real lyz = r.l.yz - (x2.l.y + x1.l.z); precise Real lzz = r.l.zz - (x2.l.z + x2.l.z);
-  r.l = pc_sym3(lxx, lxy, lxz, lyy, lyz, lzz);
-  precise Real axx = r.a.xx - (y0.a.x + y0.a.x); precise Real axy = r.a.xy - (y1.a.x + y0.a.y); precise Real axz = r.a.xz - (y2.a.x + y0.a.z);
-  precise Real ayy = r.a.yy - (y1.a.y + y1.a.y); precise Real ayz = r.a.yz - (y2.a.y + y1.a.z); precise Real azz = r.a.zz - (y2.a.z + y2.a.z);
-  r.a = pc_sym3(axx, axy, axz, ayy, ayz, azz);
-  precise Vec3 w1 = r.w1 - (Vec3(x0.a.x, x1.a.x, x2.a.x) + y0.l); precise Vec3 w2 = r.w2 - (Vec3(x0.a.y, x1.a.y, x2.a.y) + y1.l); precise Vec3 wn = r.wn - (Vec3(x0.a.z, x1.a.z, x2.a.z) + y2.l);
-  r.w1 = w1; r.w2 = w2; r.wn = wn;
+PC_FN void pc_fill_reach(PC_IO Way w, Slot m, bool turns, Arms arms, Vec3 n, Vec3 t1, Vec3 t2) {
+  Vec3 f1 = pc_negate(t1); Vec3 f2 = pc_negate(t2); Vec3 fn = pc_negate(n); Vec3 zero = pc_zero3();
+  pc_reach(PC_PASS w, m, 0u, 0u, pc_six(f1, pc_cross(arms.a, f1)), pc_six(f2, pc_cross(arms.a, f2)), pc_six(fn, pc_cross(arms.a, fn)));
+  pc_reach(PC_PASS w, m, 1u, 0u, pc_six(t1, pc_cross(arms.b, t1)), pc_six(t2, pc_cross(arms.b, t2)), pc_six(n, pc_cross(arms.b, n)));
+  if (turns) {  // lint: allow (others have no use for it)
+    pc_reach(PC_PASS w, m, 0u, 1u, pc_six(zero, f1), pc_six(zero, f2), pc_six(zero, fn));
+    pc_reach(PC_PASS w, m, 1u, 1u, pc_six(zero, t1), pc_six(zero, t2), pc_six(zero, n));
+  }
+}
+// Of both sides: what bodies of trees answer, on top of free ones.
+PC_FN Responses pc_tree_responses(PC_IO Way w, Slot m, bool turns, Responses free) {
+  Responses r = free; r.l = pc_sym_add(free.l, pc_answers(PC_PASS w, m, 0u)); Mat3 mixed = pc_mat3(pc_zero3(), pc_zero3(), pc_zero3());
+  if (w.shared_levels > 0u) r.l = pc_with_both(r.l, pc_cross_answers(PC_PASS w, m, 0u, 0u));  // lint: allow (zeros where a contact is not within one tree)
+  if (turns) {  // lint: allow (others have no use for it)
+    Mask turning = pc_turns_matter(PC_PASS m); Vec3 zero = pc_zero3();
+    r.a = pc_sym_add(free.a, pc_answers(PC_PASS w, m, 1u)); mixed = pc_mixed_answers(PC_PASS w, m);
+    if (w.shared_levels > 0u) {  // lint: allow (as above)
+      r.a = pc_with_both(r.a, pc_cross_answers(PC_PASS w, m, 1u, 1u));
+      mixed = pc_mat_add(mixed, pc_mat_add(pc_cross_answers(PC_PASS w, m, 0u, 1u), pc_transpose(pc_cross_answers(PC_PASS w, m, 1u, 0u))));
+    }
+    r.a = pc_sym_select(turning, r.a, free.a); mixed = pc_mat3(pc_select3(turning, mixed.a, zero), pc_select3(turning, mixed.b, zero), pc_select3(turning, mixed.c, zero));
+  }
+  r.w1 = pc_add(free.w1, Vec3(mixed.a.x, mixed.b.x, mixed.c.x)); r.w2 = pc_add(free.w2, Vec3(mixed.a.y, mixed.b.y, mixed.c.y)); r.wn = pc_add(free.wn, Vec3(mixed.a.z, mixed.b.z, mixed.c.z)); return r;
+}
+// What stands in no tree answers for itself.
+PC_FN BodyState pc_outside(Mask in_tree, BodyState b) {
+  Real zero = PC_REAL(0.0); b.inverse_mass = pc_select(in_tree, zero, b.inverse_mass); b.response = pc_select(in_tree, zero, b.response); return b;
+}
+PC_FN Responses pc_outside_responses(PC_IO Way w, Slot m, Meeting now, Vec3 n, Vec3 t1, Vec3 t2) {
+  BodyState a = pc_outside(pc_in_tree(PC_PASS w, m, 0u), now.a); BodyState b = pc_outside(pc_in_tree(PC_PASS w, m, 1u), now.b);
+  if (PC_ANY(pc_max(a.inverse_mass, b.inverse_mass) > PC_REAL(0.0))) return pc_free_responses(a, b, now.arms.a, now.arms.b, n, t1, t2);  // lint: allow (zeros otherwise)
+  Responses r; r.l = pc_diagonal(PC_REAL(0.0)); r.a = r.l; r.w1 = pc_zero3(); r.w2 = r.w1; r.wn = r.w1; r.these = PC_REAL(1.0) > PC_REAL(0.0); return r;
+}
+// No row is heavier than what bare bodies would answer allows, many times over.
+PC_FN void pc_bound_masses(PC_IO Slot m, Mask these, BodyState a, BodyState b) {
+  precise Real light = a.inverse_mass + b.inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_INFO(row_mass_most);
+  for (uint i = 0u; i < 4u; i++) { Real mass = PC_LD(contact_rows, m, ROW_MASS + i); PC_ST(contact_rows, m, ROW_MASS + i, pc_select(these, pc_min(mass, most), mass)); }
+  precise Real trace = PC_LD(contact_rows, m, ROW_TT) + PC_LD(contact_rows, m, ROW_TT + 2u); Real less = pc_select(pc_and(these, trace > most), pc_div(most, pc_max(trace, most)), PC_REAL(1.0));
+  for (uint i = 0u; i < 3u; i++) { precise Real block = PC_LD(contact_rows, m, ROW_TT + i) * less; PC_ST(contact_rows, m, ROW_TT + i, block); }
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Way w = pc_way(PC_PASS m);
+  Way w = pc_way(PC_PASS m); Real one = PC_REAL(1.0); Real none = PC_REAL(0.0);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
-  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u); Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  Frame frame; frame.n = pc_ld3_rows(PC_PASS m, ROW_N); frame.t1 = pc_ld3_rows(PC_PASS m, ROW_T); frame.t2 = pc_cross(frame.n, frame.t1);
-  Sym6 side_a = pc_side_response(PC_PASS w, m, 0u, ia, arms.a);
-  Sym6 side_b = pc_side_response(PC_PASS w, m, 1u, ib, arms.b);
-  Sym6 both = pc_sym6_add(side_a, side_b);
-  Responses r; r.l = pc_sym_in_frame(frame, both.l); r.a = pc_sym_in_frame(frame, both.a);
-  Vec3 c1 = pc_in_frame(frame, pc_mat_tmul(both.c, frame.t1)); Vec3 c2 = pc_in_frame(frame, pc_mat_tmul(both.c, frame.t2)); Vec3 cn = pc_in_frame(frame, pc_mat_tmul(both.c, frame.n));
-  r.w1 = Vec3(c1.x, c2.x, cn.x); r.w2 = Vec3(c1.y, c2.y, cn.y); r.wn = Vec3(c1.z, c2.z, cn.z);
-  if (w.below_a + w.below_b > 0u) {  // lint: allow (the same for all lanes; where a contact is not within one tree it takes out zeros)
-    Vec3 zero = pc_zero3();
-    Six x0 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(frame.t1, pc_cross(arms.a, frame.t1))); Six x1 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(frame.t2, pc_cross(arms.a, frame.t2))); Six x2 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(frame.n, pc_cross(arms.a, frame.n)));
-    Six y0 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(zero, frame.t1)); Six y1 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(zero, frame.t2)); Six y2 = pc_across_in_frame(PC_PASS w, m, frame, arms, pc_six(zero, frame.n));
-    pc_take_across(r, x0, x1, x2, y0, y1, y2);
-  }
-  Real one = PC_REAL(1.0); Real none = PC_REAL(0.0);
-  Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
-  Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
-  pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
-  precise Real light = pc_body_state(PC_PASS ia).inverse_mass + pc_body_state(PC_PASS ib).inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_REAL(1000.0);
-  for (uint i = 0u; i < 4u; i++) PC_ST(contact_rows, m, ROW_MASS + i, pc_min(PC_LD(contact_rows, m, ROW_MASS + i), most));
-  precise Real trace = PC_LD(contact_rows, m, ROW_TT) + PC_LD(contact_rows, m, ROW_TT + 2u); Real less = pc_select(trace > most, pc_div(most, pc_max(trace, most)), one);
-  for (uint i = 0u; i < 3u; i++) { precise Real block = PC_LD(contact_rows, m, ROW_TT + i) * less; PC_ST(contact_rows, m, ROW_TT + i, block); }
-  PC_ST(contact_rows, m, ROW_SCALE, one);
+  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1); Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2);
   for (uint i = 0u; i < 4u; i++) {  // the slow means
     Real mean = PC_LD(contact_impulses, m, IMPULSE_MEAN + i); precise Real next = mean + (PC_LD(contact_impulses, m, i) - mean) * PC_INFO(mean_share); PC_ST(contact_impulses, m, IMPULSE_MEAN + i, next);
   }
+  Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); PC_ST(contact_rows, m, ROW_SCALE, scale);
+  if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)
+  bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
+  pc_fill_reach(PC_PASS w, m, turns, now.arms, n, t1, t2);
+  Responses r = pc_tree_responses(PC_PASS w, m, turns, pc_outside_responses(PC_PASS w, m, now, n, t1, t2));
+  Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
+  Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
+  r.these = scale > none; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
+  pc_bound_masses(PC_PASS m, r.these, now.a, now.b);
 }
+#undef PC_SOME_ROWS

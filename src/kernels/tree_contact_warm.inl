@@ -7,15 +7,19 @@
 #include "contact_warming.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Way w = pc_way(PC_PASS m);
+  Way w = pc_way(PC_PASS m); Real zero = PC_REAL(0.0);
+  Wrench wrench = pc_warm_start(PC_PASS m); Real size = pc_max(pc_largest(wrench.impulse), pc_largest(wrench.couple));
+  if (!PC_ANY(size > zero)) return;  // lint: allow (nothing changes nothing)
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
-  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  Wrench wrench = pc_warm_start(PC_PASS m);
   Vec3 torque_a = pc_add(wrench.couple, pc_cross(arms.a, wrench.impulse)); Vec3 torque_b = pc_add(wrench.couple, pc_cross(arms.b, wrench.impulse));
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
-  pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, wrench.impulse, torque_a, torque_b);
-  pc_note_push(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(wrench.impulse), pc_negate(torque_a)));
-  pc_note_push(PC_PASS w, m, 1u, tree_b, pc_six(wrench.impulse, torque_b));
+  Quad linear_a = PC_GATHER(motion, ia, 0u); Quad linear_b = PC_GATHER(motion, ib, 0u);
+  if (PC_ANY(pc_max(pc_select(tree_a, zero, linear_a.s), pc_select(tree_b, zero, linear_b.s)) > zero)) {  // lint: allow (bodies of trees and those that stand keep their rows)
+    BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+    pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, wrench.impulse, torque_a, torque_b);
+  }
+  pc_note_push(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(wrench.impulse), pc_negate(torque_a)), zero);
+  pc_note_push(PC_PASS w, m, 1u, tree_b, pc_six(wrench.impulse, torque_b), zero);
 }

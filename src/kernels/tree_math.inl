@@ -16,6 +16,12 @@ PC_FN Vec3 pc_mat_tmul(Mat3 m, Vec3 v) { return pc_combine(m.a, v.x, m.b, v.y, m
 PC_FN Six pc_sym6_mul(Sym6 h, Six x) {
   return pc_six(pc_add(pc_sym_mul(h.l, x.l), pc_mat_mul(h.c, x.a)), pc_add(pc_mat_tmul(h.c, x.l), pc_sym_mul(h.a, x.a)));
 }
+// A lower triangle E (in the places of a symmetric matrix) times v, and E^T times v; of six, [l 0; c a].
+PC_FN Vec3 pc_lower_mul(Sym3 e, Vec3 v) { precise Real x = e.xx * v.x; precise Real y = e.xy * v.x + e.yy * v.y; precise Real z = e.xz * v.x + e.yz * v.y + e.zz * v.z; return Vec3(x, y, z); }
+PC_FN Vec3 pc_lower_tmul(Sym3 e, Vec3 v) { precise Real x = e.xx * v.x + e.xy * v.y + e.xz * v.z; precise Real y = e.yy * v.y + e.yz * v.z; precise Real z = e.zz * v.z; return Vec3(x, y, z); }
+PC_FN Six pc_lower6_mul(Sym6 e, Six x) { return pc_six(pc_lower_mul(e.l, x.l), pc_add(pc_mat_mul(e.c, x.l), pc_lower_mul(e.a, x.a))); }
+PC_FN Six pc_lower6_tmul(Sym6 e, Six x) { return pc_six(pc_add(pc_lower_tmul(e.l, x.l), pc_mat_tmul(e.c, x.a)), pc_lower_tmul(e.a, x.a)); }
+PC_FN Real pc_largest(Vec3 v) { return pc_max(pc_abs(v.x), pc_max(pc_abs(v.y), pc_abs(v.z))); }
 PC_FN Sym3 pc_sym_sub(Sym3 a, Sym3 b) {
   precise Real xx = a.xx - b.xx; precise Real xy = a.xy - b.xy; precise Real xz = a.xz - b.xz;
   precise Real yy = a.yy - b.yy; precise Real yz = a.yz - b.yz; precise Real zz = a.zz - b.zz;

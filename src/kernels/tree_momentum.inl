@@ -27,12 +27,13 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_tu
   }
 }
 
-// Adds the changes to the bodies' velocities and momenta, both momenta of a free tree kept.
+// Adds the changes to the bodies' velocities and momenta, both momenta of a free tree kept; and that contacts touched them.
 PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
   pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
+    angular.s = pc_max(angular.s, PC_LD(tree_rows, n, TREE_TOUCH));
     linear.v = pc_add(linear.v, pc_ld3_tree(PC_PASS n, TREE_X)); angular.v = pc_madd(angular.v, pc_ld3_tree(PC_PASS n, TREE_CHANGE), PC_LD(tree_rows, n, TREE_TOTAL));
     PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 0u, linear);
     PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 1u, angular);

@@ -73,7 +73,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
     precise Real own = moments.s * share;
     pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_quaternion(turned.v, turned.s), pc_scale(moments.v, share)));
-    PC_ST(tree_rows, n, TREE_MASS, own); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
+    PC_ST(tree_rows, n, TREE_MASS, own); PC_ST(tree_rows, n, TREE_TOUCH, PC_REAL(0.0)); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   }
   pc_tree_stiffness(PC_PASS m, t);
   Real pivot = pc_select(PC_IS(pc_is_pivot(PC_PASS t)), PC_REAL(1.0), PC_REAL(0.0));

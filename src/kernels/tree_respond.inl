@@ -1,71 +1,61 @@
-// After tree_solve, where contacts touch trees: hands its factor on to them, as rows of node_operator, and adds how each body
-// answers impulses on it, root to leaves; nothing is pending. With E = X G_parent X^T the parent's response seen at the body, Z = E W,
-// M = W^T Z + D^-1:
-//   G = (1 - S W^T) E (1 - S W^T)^T + S D^-1 S^T = E - S Z^T - Z S^T + S M S^T
+// After tree_solve, where contacts or joints of loops touch trees: hands its factor on to them, as rows of node_operator; nothing is
+// pending. The inverse inertias of joints and roots are factored once more (node_operator.inl).
 #include "tree_rows.inl"
-#include "node_operator.inl"
+#include "tree_store.inl"
 
-PC_FN void pc_store_response(PC_IO Index row, Mask exists, Slot n, Sym3 d_inverse, Vec3 d, Vec3 rc, Sym6 g) {
-  PC_SCATTER_IF(exists, node_operator, row, 0u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W), d_inverse.xx));
-  PC_SCATTER_IF(exists, node_operator, row, 1u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 3u), d_inverse.xy));
-  PC_SCATTER_IF(exists, node_operator, row, 2u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 6u), d_inverse.xz));
-  PC_SCATTER_IF(exists, node_operator, row, 3u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 9u), d_inverse.yy));
-  PC_SCATTER_IF(exists, node_operator, row, 4u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 12u), d_inverse.yz));
-  PC_SCATTER_IF(exists, node_operator, row, 5u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 15u), d_inverse.zz));
-  PC_SCATTER_IF(exists, node_operator, row, 6u, pc_quad(d, g.l.xx));
-  PC_SCATTER_IF(exists, node_operator, row, 7u, pc_quad(rc, g.l.xy));
-  PC_SCATTER_IF(exists, node_operator, row, 8u, pc_quad(Vec3(g.l.xz, g.l.yy, g.l.yz), g.l.zz));
-  PC_SCATTER_IF(exists, node_operator, row, 9u, pc_quad(g.c.a, g.a.xx));
-  PC_SCATTER_IF(exists, node_operator, row, 10u, pc_quad(g.c.b, g.a.xy));
-  PC_SCATTER_IF(exists, node_operator, row, 11u, pc_quad(g.c.c, g.a.xz));
-  PC_SCATTER_IF(exists, node_operator, row, 12u, pc_quad(Vec3(g.a.yy, g.a.yz, g.a.zz), PC_REAL(0.0)));
-  for (uint i = 0u; i < 4u; i++) PC_SCATTER_IF(exists, node_pending, row, i, pc_quad(pc_zero3(), PC_REAL(0.0)));
+// E with E E^T = m, of positive matrices that rounding may have made less: what is below the rounding of `bare`'s diagonal, that m is the rest of,
+// answers nothing.
+PC_FN Sym3 pc_cholesky(PC_IO Sym3 m, Sym3 bare) {
+  Real none = PC_REAL(0.0); Real rounding = PC_INFO(rounding);
+  precise Real least_x = bare.xx * rounding; precise Real least_y = bare.yy * rounding; precise Real least_z = bare.zz * rounding;
+  Real xx = pc_sqrt(pc_select(m.xx > least_x, m.xx, none)); Real ix = pc_inverse_or_zero(xx);
+  precise Real xy = m.xy * ix; precise Real xz = m.xz * ix;
+  precise Real rest_y = m.yy - xy * xy; Real yy = pc_sqrt(pc_select(rest_y > least_y, rest_y, none)); Real iy = pc_inverse_or_zero(yy);
+  precise Real yz = (m.yz - xy * xz) * iy;
+  precise Real rest_z = m.zz - xz * xz - yz * yz; Real zz = pc_sqrt(pc_select(rest_z > least_z, rest_z, none));
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
+}
+// Row r of B with B E^T = c^T: E x = r, forwards.
+PC_FN Vec3 pc_lower_solve(Sym3 e, Vec3 r) {
+  precise Real x = r.x * pc_inverse_or_zero(e.xx); precise Real y = (r.y - e.xy * x) * pc_inverse_or_zero(e.yy); precise Real z = (r.z - e.xz * x - e.yz * y) * pc_inverse_or_zero(e.zz);
+  return Vec3(x, y, z);
 }
 PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
   precise Real xx = m.xx * s; precise Real xy = m.xy * s; precise Real xz = m.xz * s; precise Real yy = m.yy * s; precise Real yz = m.yz * s; precise Real zz = m.zz * s;
   return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
-// Three rows of a 3 x 3 product: rows x of the left times the matrix m.
-PC_FN Mat3 pc_rows_times(Vec3 x0, Vec3 x1, Vec3 x2, Mat3 m) { return pc_mat3(pc_mat_tmul(m, x0), pc_mat_tmul(m, x1), pc_mat_tmul(m, x2)); }
-PC_FN Mat3 pc_mat_add(Mat3 x, Mat3 y) { return pc_mat3(pc_add(x.a, y.a), pc_add(x.b, y.b), pc_add(x.c, y.c)); }
+PC_FN void pc_nothing_pending(PC_IO Index row) {
+  for (uint i = 0u; i < 4u; i++) PC_SCATTER(node_pending, row, i, pc_quad(pc_zero3(), PC_REAL(0.0)));
+}
 
-PC_FN Sym6 pc_node_response(PC_IO Slot n, Sym3 d_inverse, Vec3 d, Vec3 rc, Sym6 parent) {
-  Sym6 e = pc_response_at(parent, d); Mat3 wl = pc_ldm_tree(PC_PASS n, TREE_W); Mat3 wa = pc_ldm_tree(PC_PASS n, TREE_W + 9u); Mat3 ct = pc_transpose(e.c);
-  Mat3 zl = pc_mat_add(pc_rows_times(pc_row0(e.l), pc_row1(e.l), pc_row2(e.l), wl), pc_rows_times(e.c.a, e.c.b, e.c.c, wa));
-  Mat3 za = pc_mat_add(pc_rows_times(ct.a, ct.b, ct.c, wl), pc_rows_times(pc_row0(e.a), pc_row1(e.a), pc_row2(e.a), wa));
-  // M, symmetric
-  Mat3 wlt = pc_transpose(wl); Mat3 wat = pc_transpose(wa); Mat3 zlt = pc_transpose(zl); Mat3 zat = pc_transpose(za);
-  Sym3 m = pc_sym_add(d_inverse, pc_sym_add(pc_products(wlt.a, wlt.b, wlt.c, zlt.a, zlt.b, zlt.c), pc_products(wat.a, wat.b, wat.c, zat.a, zat.b, zat.c)));
-  Sym6 g;
-  // angular: E - Z - Z^T + M
-  precise Real axx = e.a.xx - (za.a.x + za.a.x) + m.xx; precise Real axy = e.a.xy - (za.a.y + za.b.x) + m.xy; precise Real axz = e.a.xz - (za.a.z + za.c.x) + m.xz;
-  precise Real ayy = e.a.yy - (za.b.y + za.b.y) + m.yy; precise Real ayz = e.a.yz - (za.b.z + za.c.y) + m.yz; precise Real azz = e.a.zz - (za.c.z + za.c.z) + m.zz;
-  g.a = pc_sym3(axx, axy, axz, ayy, ayz, azz);
-  // mixed: E - Z_l + R (M - Z_a^T), R v = rc x v; columns of the product are rc x columns (rows of its transpose)
-  Vec3 n0 = pc_cross(rc, pc_sub(pc_row0(m), za.a)); Vec3 n1 = pc_cross(rc, pc_sub(pc_row1(m), za.b)); Vec3 n2 = pc_cross(rc, pc_sub(pc_row2(m), za.c));
-  precise Vec3 ca = e.c.a - zl.a + Vec3(n0.x, n1.x, n2.x); precise Vec3 cb = e.c.b - zl.b + Vec3(n0.y, n1.y, n2.y); precise Vec3 cc = e.c.c - zl.c + Vec3(n0.z, n1.z, n2.z);
-  g.c = pc_mat3(ca, cb, cc);
-  // linear: E - R Z_l^T + (R M - Z_l) R^T
-  Vec3 r0 = pc_cross(rc, pc_row0(m)); Vec3 r1 = pc_cross(rc, pc_row1(m)); Vec3 r2 = pc_cross(rc, pc_row2(m));  // columns of R M
-  Vec3 q0 = pc_cross(rc, pc_sub(Vec3(r0.x, r1.x, r2.x), zl.a)); Vec3 q1 = pc_cross(rc, pc_sub(Vec3(r0.y, r1.y, r2.y), zl.b)); Vec3 q2 = pc_cross(rc, pc_sub(Vec3(r0.z, r1.z, r2.z), zl.c));
-  Vec3 s0 = pc_cross(rc, zl.a); Vec3 s1 = pc_cross(rc, zl.b); Vec3 s2 = pc_cross(rc, zl.c);  // columns of R Z_l^T
-  precise Real xx = e.l.xx - s0.x + q0.x; precise Real xy = e.l.xy - s1.x + q0.y; precise Real xz = e.l.xz - s2.x + q0.z;
-  precise Real yy = e.l.yy - s1.y + q1.y; precise Real yz = e.l.yz - s2.y + q1.z; precise Real zz = e.l.zz - s2.z + q2.z;
-  g.l = pc_sym3(xx, xy, xz, yy, yz, zz); return g;
+PC_FN void pc_hand_root(PC_IO Slot root, Index row, Mask exists, Real scale) {
+  Sym6 h = pc_ldh_tree(PC_PASS root, TREE_H); Mat3 ct = pc_transpose(h.c);
+  Sym3 l = pc_cholesky(PC_PASS h.l, h.l); Mat3 b = pc_mat3(pc_lower_solve(l, ct.a), pc_lower_solve(l, ct.b), pc_lower_solve(l, ct.c));
+  Sym3 rest = pc_sym_sub(h.a, pc_products(b.a, b.b, b.c, b.a, b.b, b.c));
+  Sym6 e; e.l = pc_sym_scale(l, scale); e.c = pc_mat3(pc_scale(b.a, scale), pc_scale(b.b, scale), pc_scale(b.c, scale)); e.a = pc_sym_scale(pc_cholesky(PC_PASS rest, h.a), scale);
+  pc_sth_tree(PC_PASS root, TREE_ROOT_FACTOR, e); Real zero = PC_REAL(0.0);
+  PC_SCATTER_IF(exists, node_operator, row, 0u, pc_quad(e.c.a, zero)); PC_SCATTER_IF(exists, node_operator, row, 1u, pc_quad(e.c.b, zero)); PC_SCATTER_IF(exists, node_operator, row, 2u, pc_quad(e.c.c, zero));
+  PC_SCATTER_IF(exists, node_operator, row, 3u, pc_quad(Vec3(e.l.xx, e.l.xy, e.l.xz), zero)); PC_SCATTER_IF(exists, node_operator, row, 4u, pc_quad(Vec3(e.l.yy, e.l.yz, e.l.zz), zero));
+  PC_SCATTER_IF(exists, node_operator, row, 5u, pc_quad(Vec3(e.a.xx, e.a.xy, e.a.xz), zero)); PC_SCATTER_IF(exists, node_operator, row, 6u, pc_quad(Vec3(e.a.yy, e.a.yz, e.a.zz), zero));
+}
+PC_FN void pc_hand_node(PC_IO Slot n, Index row, Mask exists, Real scale) {
+  Sym3 inverse = pc_lds_tree(PC_PASS n, TREE_D); Sym3 e = pc_sym_scale(pc_cholesky(PC_PASS inverse, inverse), scale);
+  Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); pc_sts_tree(PC_PASS n, TREE_FACTOR, e);
+  PC_SCATTER_IF(exists, node_operator, row, 0u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W), e.xx));
+  PC_SCATTER_IF(exists, node_operator, row, 1u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 3u), e.xy));
+  PC_SCATTER_IF(exists, node_operator, row, 2u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 6u), e.xz));
+  PC_SCATTER_IF(exists, node_operator, row, 3u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 9u), e.yy));
+  PC_SCATTER_IF(exists, node_operator, row, 4u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 12u), e.yz));
+  PC_SCATTER_IF(exists, node_operator, row, 5u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 15u), e.zz));
+  PC_SCATTER_IF(exists, node_operator, row, 6u, pc_quad(d, PC_REAL(0.0))); PC_SCATTER_IF(exists, node_operator, row, 7u, pc_quad(rc, PC_REAL(0.0)));
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Vec3 zero = pc_zero3();
+  Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first);
   // the factor is in units of the tree's mass
-  Real total = PC_LD(tree_rows, root, TREE_TOTAL); Mask exists = total > PC_REAL(0.0); Real share = pc_inverse_or_zero(total);
-  Sym6 h = pc_ldh_tree(PC_PASS root, TREE_H);
-  Sym6 g; g.l = pc_sym_scale(h.l, share); g.a = pc_sym_scale(h.a, share); g.c = pc_mat3(pc_scale(h.c.a, share), pc_scale(h.c.b, share), pc_scale(h.c.c, share));
-  Index row = PC_ORDER(tree_order, root);
-  Sym3 none = pc_diagonal(PC_REAL(0.0));
-  pc_store_response(PC_PASS row, exists, root, none, zero, zero, g);
+  Real total = PC_LD(tree_rows, root, TREE_TOTAL); Mask exists = total > PC_REAL(0.0); Real scale = pc_sqrt(pc_inverse_or_zero(total));
+  Index first = PC_ORDER(tree_order, root); pc_hand_root(PC_PASS root, first, exists, scale); pc_nothing_pending(PC_PASS first);
   for (uint k = 1u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Index own = PC_ORDER(tree_order, n); Index up = PC_ORDER(tree_order, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-    Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); Sym3 d_inverse = pc_sym_scale(pc_lds_tree(PC_PASS n, TREE_D), share);
-    pc_store_response(PC_PASS own, exists, n, d_inverse, d, rc, pc_node_response(PC_PASS n, d_inverse, d, rc, pc_response(PC_PASS up)));
+    Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); pc_hand_node(PC_PASS n, row, exists, scale); pc_nothing_pending(PC_PASS row);
   }
 }

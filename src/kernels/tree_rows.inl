@@ -33,6 +33,7 @@ const uint TREE_BODY = 146u;    // inertia, world axes
 const uint TREE_FAST = 137u;    // share of the body's turning that the sub-step is too long to resolve, 0 to 1
 const uint TREE_TOTAL = 152u;   // mass of the whole tree, the unit of all masses, inertias and impulses here
 const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows
+const uint TREE_TOUCH = 154u;   // largest load of a contact on the body in this sub-step
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
 // motor and spring of the joint (tree_drive.inl); written where a tree has any
@@ -52,6 +53,9 @@ const uint TREE_MOTOR_MOST = 194u;  // its largest impulse
 const uint TREE_DRIVE_RATE = 195u;  // and at the prediction
 const uint TREE_DRIVE_PUSH = 198u;
 const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
+// from tree_respond on, in places that are free by then: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
+const uint TREE_FACTOR = TREE_INERTIA;
+const uint TREE_ROOT_FACTOR = TREE_A;  // 21
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }

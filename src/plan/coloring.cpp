@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "collision/radix_sort.h"
+#include "plan/tree_paths.h"
 
 namespace pcphys {
 
@@ -17,7 +18,7 @@ template <class T> void assign_with_room(std::vector<T>& values, std::size_t cou
 }  // namespace
 
 void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,
-                      std::span<const std::uint8_t> kinds) {
+                      std::span<const std::uint16_t> kinds) {
   assert(units.size() == 2 * priorities.size() && (kinds.empty() || kinds.size() == priorities.size()));
   sort_by_priority(priorities);
   colour_of_.resize(order_.size());
@@ -42,7 +43,7 @@ void Colouring::sort_by_priority(std::span<const std::uint32_t> priorities) {
 
 // Row `unit_count` stands for all fixed units: its mask is cleared whenever it was set.
 std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units,
-                                std::span<const std::uint8_t> kinds, bool with_fixed, bool leads, std::uint32_t first) {
+                                std::span<const std::uint16_t> kinds, bool with_fixed, bool leads, std::uint32_t first) {
   taken_.assign(std::size_t{unit_count} + 1, 0);
   next_above_.clear();
   std::uint32_t above = first;
@@ -70,7 +71,7 @@ std::uint32_t Colouring::choose_above(std::uint32_t a, std::uint32_t b, std::uin
   return colour;
 }
 
-void Colouring::group(std::span<const std::uint8_t> kinds) {
+void Colouring::group(std::span<const std::uint16_t> kinds) {
   std::uint32_t colours = 0;
   for (const std::uint32_t colour : colour_of_) colours = std::max(colours, colour + 1);
   assign_with_room(offsets_, std::size_t{colours} + 1, 0u);
@@ -84,9 +85,9 @@ void Colouring::group(std::span<const std::uint8_t> kinds) {
     for (std::uint32_t i = 0; i < colour_of_.size(); ++i) place(i);
     return;
   }
-  std::uint32_t starts[257] = {};  // of each kind in by_kind_: a counting sort
-  for (const std::uint8_t kind : kinds) ++starts[kind + 1];
-  for (int k = 0; k < 256; ++k) starts[k + 1] += starts[k];
+  std::uint32_t starts[path_kinds + 1] = {};  // of each kind in by_kind_: a counting sort
+  for (const std::uint16_t kind : kinds) ++starts[kind + 1];
+  for (std::uint32_t k = 0; k < path_kinds; ++k) starts[k + 1] += starts[k];
   by_kind_.resize(kinds.size());
   for (std::uint32_t i = 0; i < kinds.size(); ++i) by_kind_[starts[kinds[i]]++] = i;
   for (const std::uint32_t i : by_kind_) place(i);

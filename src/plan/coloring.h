@@ -43,7 +43,7 @@ class Colouring {
   /// The first 64 colours of either kind are greedy exactly. What finds none of them free goes on above: it takes the colour
   /// after the last one above 63 on either unit. Only a unit with more than 64 constraints comes to that.
   void build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,
-             std::span<const std::uint8_t> kinds = {});
+             std::span<const std::uint16_t> kinds = {});
 
   std::uint32_t colours() const { return static_cast<std::uint32_t>(offsets_.size()) - 1; }
   /// Of the first group.
@@ -62,10 +62,10 @@ class Colouring {
 
   void sort_by_priority(std::span<const std::uint32_t> priorities);
   /// Colours the constraints of a group with a fixed unit, or those without, from `first` on; the first colour above them.
-  std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint8_t> kinds,
+  std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint16_t> kinds,
                        bool with_fixed, bool leads, std::uint32_t first);
   std::uint32_t choose_above(std::uint32_t a, std::uint32_t b, std::uint32_t unit_count);
-  void group(std::span<const std::uint8_t> kinds);
+  void group(std::span<const std::uint16_t> kinds);
 
   std::vector<std::uint32_t> offsets_{0}, list_, colour_of_;
   std::vector<std::uint64_t> order_, order_scratch_;  // priority << 32 | constraint

@@ -48,6 +48,9 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   biased.loop_give = Scalar(constants::loop_give);
+  biased.cross_share = Scalar(constants::cross_share);
+  biased.row_mass_most = Scalar(constants::row_mass_most);
+  biased.idle_speed = Scalar(constants::idle_speed);
   biased.limit_stiffness = Scalar(joint.mass_scale / joint.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
   biased.spin_floor = Scalar(constants::tree_spin_floor);

@@ -150,6 +150,7 @@ StepPlan make_plan(const PlanSignature& s) {
     solve_free_joints(b, s, Phase::biased, k);
     if (s.trees) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
     if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
+    if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
     if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
     if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
     solve_contacts(b, s, Phase::biased, k);

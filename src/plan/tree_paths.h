@@ -30,19 +30,24 @@ class TreeNodes {
   std::uint32_t unit(std::uint32_t body) const { return unit_[body]; }
   /// Of a node; 0 above a root.
   std::uint32_t parent(std::uint32_t node) const { return parent_[node]; }
+  /// Of a node's tree; 0 of row 0.
+  std::uint32_t root(std::uint32_t node) const { return root_[node]; }
   /// Levels between a node and its root.
   std::uint32_t level(std::uint32_t node) const { return level_[node]; }
 
  private:
-  std::vector<std::uint32_t> node_, unit_, parent_, level_;
+  std::vector<std::uint32_t> node_, unit_, parent_, root_, level_;
   std::vector<char> large_;  // by body row
 };
 
-/// Contacts or joints of one kind have ways of about one length; 0 where neither body has a node.
-std::uint8_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b);
+/// Contacts or joints of one kind have ways of about one length, and do about the same work: `turns`, a contact of more than
+/// one point; `idle`, one that will probably be left alone. 0 where neither body has a node; below `path_kinds`.
+inline constexpr std::uint32_t path_kinds = 512;
+std::uint16_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b, bool turns, bool idle);
 
-/// The lists `contact_paths` and `joint_paths` of tree_path.inl for the first `blocks` blocks of slots. `ends` as in Slots.
-void pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
-                std::vector<std::uint32_t>& out);
+/// The lists `contact_paths` and `joint_paths` of tree_path.inl for the first `blocks` blocks of slots; how many slots of
+/// `contact_reach` they have. `ends` as in Slots.
+std::uint32_t pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
+                         std::vector<std::uint32_t>& out);
 
 }  // namespace pcphys

@@ -61,7 +61,8 @@ std::span<const Range> ranges_of(Domain domain, const Schedule& schedule) {
   if (domain == Domain::tree_contact) return schedule.contacts.tree_ranges();
   return schedule.contacts.ranges();
 }
-std::size_t slots_of(Domain domain, const Schedule& schedule) {
+std::size_t slots_of(Buffer buffer, Domain domain, const Schedule& schedule) {
+  if (buffer == Buffer::contact_reach) return schedule.contacts.reach_slots();
   if (domain == Domain::tree) return schedule.trees.slots();
   return (of_joints(domain) ? schedule.joints : schedule.contacts).slots();
 }
@@ -157,7 +158,7 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
       else if (std::vector<std::uint32_t>* list = list_of(a.buffer, schedule))
         ok = attach(entry.place, a.buffer, list->data(), list->size() * 4);
       else
-        ok = at(entry.place).backend->reserve(a.buffer, slots_of(k.domain, schedule));
+        ok = at(entry.place).backend->reserve(a.buffer, slots_of(a.buffer, k.domain, schedule));
       if (!ok) return ok;
     }
   }

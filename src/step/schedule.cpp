@@ -3,10 +3,34 @@
 #include <algorithm>
 #include <numeric>
 
+#include "pcphys/constants.h"
+
 namespace pcphys {
+
+namespace {
+
+/// By contact row, what its work will be like. It orders contacts within a colour, and changes no result.
+template <class Scalar> void foresee(const WorldState& state, std::vector<ContactWork>& works) {
+  const std::uint32_t reals = schema(Buffer::contact).reals;
+  const double near = constants::idle_speed * state.last_substep;
+  const Scalar* contact = state.tables.data<Scalar>(Buffer::contact);
+  works.resize(state.tables.rows(Table::contact));
+  for (ContactWork& work : works) {
+    const auto points = std::uint32_t(contact[3]);
+    bool idle = true;
+    for (std::uint32_t i = 0; i < points; i++) idle &= contact[20 + i] == 0 && contact[7 + 4 * i] > Scalar(near);
+    work = {points > 1, idle};
+    contact += reals;
+  }
+}
+
+}  // namespace
 
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
                            const TreeNodes& trees) {
+  works_.clear();
+  if (trees.rows() > 1)
+    state.tables.precision() == Precision::f32 ? foresee<float>(state, works_) : foresee<double>(state, works_);
   rows_.resize(ends.size() - 1);
   std::iota(rows_.begin(), rows_.end(), 1u);
   colour_rows(state, ends, kind, trees, {});
@@ -15,6 +39,7 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
                            std::span<const std::uint32_t> rows, std::uint32_t kind, const TreeNodes& trees,
                            std::span<const char> alone) {
+  works_.clear();
   rows_.assign(rows.begin(), rows.end());
   colour_rows(state, ends, kind, trees, alone);
 }
@@ -37,7 +62,8 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
       ends_.push_back(ends[row][side]);
     }
     const bool within_trees = alone.empty() || !alone[row];
-    kinds_.push_back(within_trees ? path_kind(trees, ends[row][0], ends[row][1]) : std::uint8_t{0});
+    const ContactWork work = works_.empty() ? ContactWork{} : works_[row];
+    kinds_.push_back(within_trees ? path_kind(trees, ends[row][0], ends[row][1], work.turns, work.idle) : std::uint16_t{0});
     beside_trees_ += trees.is_large(ends[row][0]) || trees.is_large(ends[row][1]);
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
   }
@@ -50,7 +76,7 @@ void ColouredSlots::pack(std::uint32_t width) {
   width_ = width;
   version_++;
   pack_slots(colouring_, width, ends_, rows_, slots_);
-  if (any_with_trees()) pack_paths(*trees_, width, tree_ranges().back().end, slots_.ends, paths_);
+  if (any_with_trees()) reach_blocks_ = pack_paths(*trees_, width, tree_ranges().back().end, slots_.ends, paths_);
 }
 
 namespace {

@@ -14,6 +14,11 @@
 
 namespace pcphys {
 
+/// See path_kind.
+struct ContactWork {
+  bool turns = false, idle = false;
+};
+
 /// Constraints of one domain, grouped into colours: two of one colour share no body that moves.
 class ColouredSlots {
  public:
@@ -41,6 +46,8 @@ class ColouredSlots {
   /// Constraints with a body of a tree that is too large for them to be solved in it.
   std::uint32_t beside_trees() const { return beside_trees_; }
   std::vector<std::uint32_t>& paths() { return paths_; }
+  /// Of contact_reach.
+  std::size_t reach_slots() const { return std::size_t{reach_blocks_} * width_; }
   std::vector<std::uint32_t>& ends() { return slots_.ends; }
   std::vector<std::uint32_t>& order() { return slots_.order; }
   /// Counts the changes of `ends` and `order`.
@@ -53,9 +60,10 @@ class ColouredSlots {
                    const TreeNodes& trees, std::span<const char> alone);
 
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
-  std::vector<std::uint8_t> kinds_;
+  std::vector<std::uint16_t> kinds_;
+  std::vector<ContactWork> works_;  // by row, of contacts where there are trees
   const TreeNodes* trees_ = nullptr;
-  std::uint32_t beside_trees_ = 0;
+  std::uint32_t beside_trees_ = 0, reach_blocks_ = 0;
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
 };

@@ -244,7 +244,8 @@ struct Stepper::Inside {
   Status undo(WorldState& s, const Status& failed) {
     runner.undo(s);
     detector.put_back(s);
-    s.tables.resize(Table::node, 1);  // nothing is pending
+    s.tables.resize(Table::node, 0);  // nothing is pending, not in the row that pads either
+    s.tables.resize(Table::node, 1);
     s.contacts_version++;
     return failed;
   }

@@ -1,0 +1,55 @@
+// Fills contact_reach, and sums up answers. Needs tree_reach.inl, node_operator.inl. `turns`: 1 for couples, 0 for impulses.
+PC_FN Six pc_reach_joint(PC_IO Slot s, uint row, Link n, Six x) {
+  Vec3 t = pc_on_joint(n, x); pc_st3_reach(PC_PASS s, row * 3u, pc_lower_tmul(n.factor, t)); return pc_up(n, x, t);
+}
+PC_FN void pc_reach_root(PC_IO Slot first, Slot second, uint row, Sym6 factor, Six x) {
+  Six z = pc_lower6_tmul(factor, x); pc_st3_reach(PC_PASS first, row * 3u, z.l); pc_st3_reach(PC_PASS second, row * 3u, z.a);
+}
+// Of the three rows, as impulses x, y, z on the side's body.
+PC_FN void pc_reach(PC_IO Way w, Slot m, uint side, uint turns, Six x, Six y, Six z) {
+  if (pc_any_in_tree(w, side) == 0u) return;  // lint: allow (the same for all lanes)
+  uint depth = pc_depth(w, side); uint levels = pc_levels(w, side); uint first = pc_reach_first(w, side, turns);
+  for (uint i = 0u; i < depth; i++) {
+    uint k = depth - 1u - i; Link link = pc_link(PC_PASS PC_WAY_EACH(m, pc_entry(w, levels + k))); Slot s = PC_NODE(m, first + 2u + k);
+    x = pc_reach_joint(PC_PASS s, 0u, link, x); y = pc_reach_joint(PC_PASS s, 1u, link, y); z = pc_reach_joint(PC_PASS s, 2u, link, z);
+  }
+  Sym6 factor = pc_root_factor(PC_PASS PC_WAY_EACH(m, pc_entry(w, PATH_ROOT + side))); Slot half_a = PC_NODE(m, first); Slot half_b = PC_NODE(m, first + 1u);
+  pc_reach_root(PC_PASS half_a, half_b, 0u, factor, x); pc_reach_root(PC_PASS half_a, half_b, 1u, factor, y); pc_reach_root(PC_PASS half_a, half_b, 2u, factor, z);
+}
+// The products of the rows of slot s with those of slot q.
+PC_FN Mat3 pc_slot_products(PC_IO Slot s, Slot q) {
+  Vec3 x = pc_ld3_reach(PC_PASS q, 0u); Vec3 y = pc_ld3_reach(PC_PASS q, 3u); Vec3 z = pc_ld3_reach(PC_PASS q, 6u);
+  Vec3 u = pc_ld3_reach(PC_PASS s, 0u); Vec3 v = pc_ld3_reach(PC_PASS s, 3u); Vec3 w = pc_ld3_reach(PC_PASS s, 6u);
+  return pc_mat3(Vec3(pc_dot(u, x), pc_dot(u, y), pc_dot(u, z)), Vec3(pc_dot(v, x), pc_dot(v, y), pc_dot(v, z)), Vec3(pc_dot(w, x), pc_dot(w, y), pc_dot(w, z)));
+}
+// Sums over the ways of both sides: of rows with each other, and of impulses with couples.
+PC_FN Sym3 pc_answers(PC_IO Way w, Slot m, uint turns) {
+  Sym3 sum = pc_diagonal(PC_REAL(0.0)); uint count = pc_reach_all(w); uint first = pc_reach_first(w, 0u, turns);
+  for (uint i = 0u; i < count; i++) {
+    Slot s = PC_NODE(m, first + i); Vec3 x = pc_ld3_reach(PC_PASS s, 0u); Vec3 y = pc_ld3_reach(PC_PASS s, 3u); Vec3 z = pc_ld3_reach(PC_PASS s, 6u);
+    sum = pc_sym_add(sum, pc_products(x, y, z, x, y, z));
+  }
+  return sum;
+}
+PC_FN Mat3 pc_mat_add(Mat3 x, Mat3 y) { return pc_mat3(pc_add(x.a, y.a), pc_add(x.b, y.b), pc_add(x.c, y.c)); }
+PC_FN Mat3 pc_mixed_answers(PC_IO Way w, Slot m) {
+  Vec3 zero = pc_zero3(); Mat3 sum = pc_mat3(zero, zero, zero); uint count = pc_reach_all(w);
+  for (uint i = 0u; i < count; i++) sum = pc_mat_add(sum, pc_slot_products(PC_PASS PC_NODE(m, w.reach + i), PC_NODE(m, w.reach + count + i)));
+  return sum;
+}
+// What passes between the sides of a contact within one tree: products of a's rows with b's over the levels that they share. Not all of it
+// counts (cross_share), so that two bodies that can hardly move against each other have a mass that is finite.
+PC_FN Mat3 pc_cross_answers(PC_IO Way w, Slot m, uint turns_a, uint turns_b) {
+  Vec3 zero = pc_zero3(); Mat3 sum = pc_mat3(zero, zero, zero); uint levels = pc_levels_shared(w); uint first_a = pc_reach_first(w, 0u, turns_a); uint first_b = pc_reach_first(w, 1u, turns_b);
+  for (uint i = 0u; i <= w.shared_levels; i++) {
+    Mask shared_here = pc_some(PC_WAY_EACH(m, pc_entry(w, levels + i))); Mat3 x = pc_slot_products(PC_PASS PC_NODE(m, first_a + i), PC_NODE(m, first_b + i));
+    sum = pc_mat_add(sum, pc_mat3(pc_select3(shared_here, x.a, zero), pc_select3(shared_here, x.b, zero), pc_select3(shared_here, x.c, zero)));
+  }
+  Real share = PC_INFO(cross_share); return pc_mat3(pc_scale(sum.a, share), pc_scale(sum.b, share), pc_scale(sum.c, share));
+}
+// m + x + x^T
+PC_FN Sym3 pc_with_both(Sym3 m, Mat3 x) {
+  precise Real xx = m.xx + (x.a.x + x.a.x); precise Real xy = m.xy + (x.a.y + x.b.x); precise Real xz = m.xz + (x.a.z + x.c.x);
+  precise Real yy = m.yy + (x.b.y + x.b.y); precise Real yz = m.yz + (x.b.z + x.c.y); precise Real zz = m.zz + (x.c.z + x.c.z);
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
+}
