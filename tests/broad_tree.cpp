@@ -308,6 +308,12 @@ TEST_CASE("boxes: rounding is outward") {
     CHECK(static_cast<double>(round_up(x)) >= x);
   }
   CHECK(round_down(1.0) == 1.0f);
+  // to the neighbour, as std::nextafter has it
+  CHECK(round_down(0.1) == std::nextafter(0.1f, -1.0f));
+  CHECK(round_up(-0.1) == -round_down(0.1));
+  CHECK(round_down(1e300) == std::numeric_limits<float>::max());
+  CHECK(round_up(1e300) == std::numeric_limits<float>::infinity());
+  CHECK(round_down(-1e-60) == -std::numeric_limits<float>::denorm_min());
   CHECK(std::isnan(round_up(static_cast<double>(not_a_number))));
   CHECK(contains(cube(0, 0, 0, 1), cube(0, 0, 0, 1)));
   for (int k = 0; k < 3; ++k) {
@@ -321,4 +327,17 @@ TEST_CASE("boxes: rounding is outward") {
     box.min[k] = not_a_number;
     CHECK_FALSE(contains(cube(0, 0, 0, 1), box));
   }
+}
+
+TEST_CASE("boxes: they overlap when no axis separates them, and a NaN overlaps nothing") {
+  for (int k = 0; k < 3; ++k)
+    for (const float gap : {-0.5f, 0.0f, 0.5f}) {
+      Aabb beside = cube(0, 0, 0, 1);
+      beside.min[k] = 1 + gap;
+      beside.max[k] = 3;
+      CHECK(overlap(cube(0, 0, 0, 1), beside) == (gap <= 0));
+      CHECK(overlap(beside, cube(0, 0, 0, 1)) == (gap <= 0));
+      beside.min[k] = not_a_number;
+      CHECK_FALSE(overlap(cube(0, 0, 0, 1), beside));
+    }
 }

@@ -2,7 +2,8 @@
 // (`round_down`, `round_up`), so that a box never loses a point of its shape.
 #pragma once
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdint>
 #include <limits>
 #if defined(__SSE2__)
 #include <emmintrin.h>
@@ -17,14 +18,13 @@ struct Aabb {
 static_assert(sizeof(Aabb) == 24);
 
 /// The largest float that is not above x, and the smallest that is not below it; NaN stays NaN.
+/// Without branches, which could not be predicted: bits of floats as integers in the same order.
 inline float round_down(double x) {
   const float f = static_cast<float>(x);
-  return f > x ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
+  const auto ordered = [](std::int32_t bits) { return bits ^ ((bits >> 31) & 0x7fffffff); };
+  return std::bit_cast<float>(ordered(ordered(std::bit_cast<std::int32_t>(f)) - std::int32_t(f > x)));
 }
-inline float round_up(double x) {
-  const float f = static_cast<float>(x);
-  return f < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
-}
+inline float round_up(double x) { return -round_down(-x); }
 
 /// False for NaN and for inverted boxes.
 inline bool valid(const Aabb& box) { return box.min[0] <= box.max[0] && box.min[1] <= box.max[1] && box.min[2] <= box.max[2]; }
@@ -38,8 +38,18 @@ inline bool bounded(const Aabb& box) {
 
 /// Boxes that only touch do overlap.
 inline bool overlap(const Aabb& a, const Aabb& b) {
+#if defined(__SSE2__)
+  // Lanes min0 min1 min2 - against max0 max1 max2 -: without branches, which could not be predicted.
+  const auto high = [](const Aabb& box) {
+    const __m128 x = _mm_loadu_ps(box.min + 2);
+    return _mm_shuffle_ps(x, x, _MM_SHUFFLE(3, 3, 2, 1));
+  };
+  const __m128 ab = _mm_cmple_ps(_mm_loadu_ps(a.min), high(b)), ba = _mm_cmple_ps(_mm_loadu_ps(b.min), high(a));
+  return (_mm_movemask_ps(_mm_and_ps(ab, ba)) & 7) == 7;
+#else
   return a.min[0] <= b.max[0] && b.min[0] <= a.max[0] && a.min[1] <= b.max[1] && b.min[1] <= a.max[1] && a.min[2] <= b.max[2] &&
          b.min[2] <= a.max[2];
+#endif
 }
 
 /// False when either is no box.

@@ -111,6 +111,7 @@ void Detector::rebuild(const WorldState& s) {
   reach_.assign(s.shapes.size(), 0);
   hints_.clear();
   bool some_dynamic = false;
+  thinnest_ = std::numeric_limits<float>::infinity();
   std::uint32_t solid = 0;
   std::vector<bool> jointed(s.bodies.size());
   for (std::uint32_t row = 1; row < s.joints.size(); row++)
@@ -123,6 +124,7 @@ void Detector::rebuild(const WorldState& s) {
     proxies_[i] = {shape.def.kind,
                    true,
                    shape.def.local == Pose{},
+                   s.responds(row),
                    row,
                    across,
                    any,
@@ -130,6 +132,7 @@ void Detector::rebuild(const WorldState& s) {
                    s.responds(row) ? inner_radius(shape.def) : 0.0f,
                    jointed[row],
                    shape.def.convex.data()};
+    if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
     pairs_.add(i, !s.stands(row));
     some_dynamic |= s.responds(row);
     solid++;
@@ -258,7 +261,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
       if (!closes(manifold, twists_[row_a], twists_[row_b], apart, options.contact_margin, dt, fall,
                   proxies_[a].radius + proxies_[b].radius))
         continue;
-      to_light_side(manifold, share_of(s.tables, row_a, row_b));
+      to_light_side(manifold, share_of<Scalar>(s.tables, row_a, row_b));
       if (proxies_[a].jointed || proxies_[b].jointed) impact = -1;
     }
 
@@ -279,9 +282,9 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts |=
-        impact > 0 || (impact == 0 && out[30] > 0 &&
-                       fastest(manifold, twists_[row_a], twists_[row_b], view.apart) + fall / dt >= options.least_bounce);
+    found.impacts = found.impacts || impact > 0 ||
+                    (impact == 0 && out[30] > 0 &&
+                     fastest(manifold, twists_[row_a], twists_[row_b], view.apart) + fall / dt >= options.least_bounce);
   }
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;

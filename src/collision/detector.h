@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "collision/aabb.h"
@@ -12,6 +13,7 @@
 #include "collision/narrow.h"
 #include "collision/pair_cache.h"
 #include "collision/twist.h"
+#include "collision/view.h"
 #include "pcphys/step.h"
 #include "world/state.h"
 
@@ -50,6 +52,7 @@ class Detector {
   struct Proxy {
     ShapeKind kind = ShapeKind::sphere;
     bool alive = false, centred = true;  // centred: its frame is the body's
+    bool responds = false;               // forces and impulses act on its body
     std::uint32_t body = 0;              // row
     // how far a turn of one radian moves its surface outward: a turn across its axis (the body's y), any turn
     float lever_across = 0, lever_any = 0;
@@ -91,6 +94,7 @@ class Detector {
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   bool possible_ = false;
   std::vector<Proxy> proxies_;
+  float thinnest_ = 0;  // half the least thickness of what moves by forces [m]
   std::vector<Aabb> tight_;
   std::vector<float> reach_;   // how far a shape may come this step [m]
   std::vector<Twist> twists_;  // of bodies, by row
@@ -102,5 +106,18 @@ class Detector {
   Scratch<float> scratch_f_;
   Scratch<double> scratch_d_;
 };
+
+template <class Scalar>
+inline Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair,
+                                     const Options& options) const {
+  auto [a, b] = pairs_.pairs()[pair];
+  if (!proxies_[a].responds) std::swap(a, b);  // as WorldState::ends_of
+  const std::uint32_t row_a = proxies_[a].body, row_b = proxies_[b].body;
+  Sight<Scalar> view = {{a, b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[b], 0};
+  BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
+  for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
+  view.margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
+  return view;
+}
 
 }  // namespace pcphys

@@ -47,19 +47,6 @@ template <class Scalar> void from_start(double dt, double share, bool whirls, Fl
 }  // namespace
 
 template <class Scalar>
-Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair,
-                              const Options& options) const {
-  const auto [a, b] = pairs_.pairs()[pair];
-  const auto [row_a, row_b] = s.ends_of({a, b});
-  const bool swap = row_a != proxies_[a].body;
-  Sight<Scalar> view = {{swap ? b : a, swap ? a : b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[swap ? a : b], 0};
-  BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
-  for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
-  view.margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
-  return view;
-}
-
-template <class Scalar>
 void Detector::find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
                     std::uint32_t pair, Manifold<Scalar>& manifold) {
   if (options.narrow == NarrowPhase::fcl)
@@ -79,13 +66,18 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
   scratch.flights.clear();
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
   const auto pairs = pairs_.pairs();
+  // what comes no further in the step than `slow` approaches too slowly to bounce
+  const float slow = float(options.least_bounce * dt), certain = std::min(slow, 0.5f * thinnest_);
   for (std::uint32_t i = 0; i < pairs.size(); i++) {
     const auto [a, b] = pairs[i];
+    const float way = reach_[a] + reach_[b];
+    if (way <= certain) continue;
     const Proxy &x = proxies_[a], &y = proxies_[b];
     constexpr std::size_t stride = reals_of(Buffer::material);
+    const float thick = thickness(a, b);
+    if (way <= 0.01f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
     const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
-    if (reach_[a] + reach_[b] <= (bounces ? 0.01f : 0.5f) * thickness(a, b)) continue;
-    if (x.jointed || y.jointed || !overlap(tight_[a], tight_[b])) continue;
+    if ((!bounces && way <= 0.5f * thick) || x.jointed || y.jointed) continue;
     if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
@@ -109,7 +101,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   f.impact = 0;
   find(options, view, *a.view, view.there, f.pair, f.manifold);
   if (f.manifold.count == 0) return;
-  const double gap = double(least_separation(f.manifold)), share = share_of(s.tables, view.rows[0], view.rows[1]);
+  const double gap = double(least_separation(f.manifold)), share = share_of<Scalar>(s.tables, view.rows[0], view.rows[1]);
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
   const double near = std::max(1e-6 * double(thickness(view.shapes[0], view.shapes[1])),
                                16 * double(std::numeric_limits<Scalar>::epsilon()) * far);
@@ -145,13 +137,12 @@ bool Detector::settle(const WorldState& s, double dt, const Options& options, co
   const float first = std::min(struck_[view.rows[0]], struck_[view.rows[1]]);
   if (f.turned && double(first) < f.impact) {  // it will be sent elsewhere before
     find(options, view, scratch.shapes[view.shapes[0]], view.there, f.pair, f.manifold);
-    from_start(dt, share_of(s.tables, view.rows[0], view.rows[1]), false, f);
+    from_start(dt, share_of<Scalar>(s.tables, view.rows[0], view.rows[1]), false, f);
   }
   return f.counts || (f.stray && first < float(dt));
 }
 
 #define PC_INSTANTIATE(Scalar)                                                                                            \
-  template Sight<Scalar> Detector::sight(const WorldState&, const Scratch<Scalar>&, std::uint32_t, const Options&) const; \
   template void Detector::find(const Options&, const Sight<Scalar>&, const ShapeView<Scalar>&, const ShapeView<Scalar>&,  \
                                std::uint32_t, Manifold<Scalar>&);                                                         \
   template bool Detector::settle(const WorldState&, double, const Options&, const Scratch<Scalar>&, const Sight<Scalar>&, \

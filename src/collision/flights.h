@@ -26,8 +26,10 @@ template <class Scalar> struct Flight {
 };
 
 /// Of the way that two bodies come together, the part that the second does not go: by their inverse masses.
-inline double share_of(const Tables& t, std::uint32_t a, std::uint32_t b) {
-  const double wa = t.get(Buffer::motion, a, 3), wb = t.get(Buffer::motion, b, 3);
+template <class Scalar> double share_of(const Tables& t, std::uint32_t a, std::uint32_t b) {
+  const Scalar* inverse_masses = t.data<Scalar>(Buffer::motion) + 3;
+  const double wa = double(inverse_masses[a * reals_of(Buffer::motion)]),
+               wb = double(inverse_masses[b * reals_of(Buffer::motion)]);
   return wb / (wa + wb);
 }
 

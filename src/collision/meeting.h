@@ -39,7 +39,7 @@ template <class Scalar> void turn_by(const float* w, double t, Scalar* q) {
 
 template <class Scalar> ShapeView<Scalar> after(const Mover<Scalar>& m, double t) {
   ShapeView<Scalar> view = *m.view;
-  if (m.twist->turn == 0) return view;
+  if (m.twist->turn == 0 || (m.centred && view.kind == ShapeKind::sphere)) return view;
   turn_by(m.twist->w, t, view.q);
   if (m.centred) return view;
   Scalar turn[4] = {0, 0, 0, 1}, p[3] = {view.p[0], view.p[1], view.p[2]};

@@ -2,7 +2,6 @@
 #include "collision/narrow.h"
 #include "cpu/prelude.h"
 #include "world/hull.h"
-#define PC_FN_LARGE [[gnu::noinline]] static
 
 namespace pcphys {
 namespace PC_NAMESPACE {
@@ -26,6 +25,13 @@ static HullRef hull_of(const ShapeView<Scalar>& s) {
 static NarrowShape from_view(const ShapeView<Scalar>& s) {
   return {uint(s.kind), {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, pc_quaternion({s.q[0], s.q[1], s.q[2]}, s.q[3]), hull_of(s)};
 }
+// What is read of one.
+static inline NarrowShape ball_from_view(const ShapeView<Scalar>& s) {
+  NarrowShape ball{};
+  ball.size.x = s.size[0];
+  ball.p = {s.p[0], s.p[1], s.p[2]};
+  return ball;
+}
 }  // namespace PC_NAMESPACE
 
 void narrow(const ShapeView<PC_SCALAR>& a, const ShapeView<PC_SCALAR>& b, PC_SCALAR margin, std::uint32_t& hint, Manifold<PC_SCALAR>& out) {
@@ -33,7 +39,12 @@ void narrow(const ShapeView<PC_SCALAR>& a, const ShapeView<PC_SCALAR>& b, PC_SCA
   static_assert(PC_SPHERE == uint(ShapeKind::sphere) && PC_CAPSULE == uint(ShapeKind::capsule) && PC_BOX == uint(ShapeKind::box) &&
                 PC_CYLINDER == uint(ShapeKind::cylinder) && PC_HULL == uint(ShapeKind::hull) && PC_PLANE == uint(ShapeKind::plane));
   NarrowManifold m;
-  pc_narrow(from_view(a), from_view(b), margin, hint, m);
+  m.normal = {0, 1, 0};
+  m.count = 0;
+  if (a.kind == ShapeKind::sphere && b.kind == ShapeKind::sphere)  // copying whole shapes would take longer than the rest
+    pc_sphere_sphere(ball_from_view(a), ball_from_view(b), margin, m);
+  else
+    pc_narrow(from_view(a), from_view(b), margin, hint, m);
   out.normal[0] = m.normal.x;
   out.normal[1] = m.normal.y;
   out.normal[2] = m.normal.z;

@@ -147,6 +147,11 @@ template <class Scalar>
 void remember_impulses(const Scalar* before, const std::uint32_t* before_features, Scalar reach, Scalar* out,
                        const std::uint32_t* features) {
   const int count = int(out[3]), before_count = int(before[3]);
+  if (count == before_count && std::equal(features, features + count, before_features)) {  // what the rest would find
+    for (int i = 0; i < count; i++) out[20 + i] = before[20 + i], out[32 + i] = before[32 + i];
+    for (int k = 24; k < 28; k++) out[k] = before[k];
+    return;
+  }
   bool taken[4] = {}, given[4] = {};
   const auto hand_on = [&](int i, int j) {
     out[20 + i] = before[20 + j];

@@ -16,6 +16,7 @@
 
 #define PC_INLINE inline __attribute__((always_inline))
 #define PC_FN static PC_INLINE
+#define PC_FN_LARGE [[gnu::noinline]] static
 #define PC_INOUT(T) T&
 #define PC_REAL(x) Real(Scalar(x))
 #define precise
@@ -69,6 +70,17 @@ PC_INLINE bool pc_any(Mask m) { return pc_mask_bits(m) != 0; }
 
 PC_INLINE Index pc_each(const uint* list, Slot, uint i) { return pc_index(list + i); }
 
+// Quad k of row i. The product is hidden from the compiler, which would make one of it and k for each quad and then have no
+// registers left for them.
+PC_INLINE const Scalar* pc_at(const Scalar* buffer, uint i, uint quads, uint k) {
+  std::size_t row = std::size_t(i) * (quads * 4 * sizeof(Scalar));
+  __asm__("" : "+r"(row));
+  return reinterpret_cast<const Scalar*>(reinterpret_cast<const char*>(buffer) + row) + k * 4;
+}
+PC_INLINE Scalar* pc_at(Scalar* buffer, uint i, uint quads, uint k) {
+  return const_cast<Scalar*>(pc_at(static_cast<const Scalar*>(buffer), i, quads, k));
+}
+
 // Where row i of a buffer begins, for many quads of it: each lane's address is computed once.
 struct Row {
   const Scalar* p[PC_LANES];
@@ -76,9 +88,9 @@ struct Row {
 PC_INLINE Row pc_row(const Scalar* buffer, Index i, uint quads) {
   Row r;
 #if PC_LANES == 1
-  r.p[0] = buffer + std::size_t(i.i) * quads * 4;
+  r.p[0] = pc_at(buffer, i.i, quads, 0);
 #else
-  for (uint l = 0; l < PC_LANES; l++) r.p[l] = buffer + std::size_t(i.i[l]) * quads * 4;
+  for (uint l = 0; l < PC_LANES; l++) r.p[l] = pc_at(buffer, i.i[l], quads, 0);
 #endif
   return r;
 }
@@ -101,30 +113,36 @@ PC_INLINE Quad pc_row_quad(const Row& r, uint k) {
 PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) { return pc_row_quad(pc_row(buffer, i, quads), k); }
 PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
 #if PC_LANES == 1
-  Scalar* p = buffer + (std::size_t(i.i) * quads + k) * 4;
+  Scalar* p = pc_at(buffer, i.i, quads, k);
   p[0] = q.v.x;
   p[1] = q.v.y;
   p[2] = q.v.z;
   p[3] = q.s;
 #else
   Scalar* p[PC_LANES];
-  for (uint l = 0; l < PC_LANES; l++) p[l] = buffer + (std::size_t(i.i[l]) * quads + k) * 4;
+  for (uint l = 0; l < PC_LANES; l++) p[l] = pc_at(buffer, i.i[l], quads, k);
   const Real o[4] = {q.v.x, q.v.y, q.v.z, q.s};
   pc_transpose_out(p, o);
 #endif
 }
 
-// The same where the mask is set; other lanes write to a place that nobody reads.
+// The same where the mask is set: all lanes or none, but for the last blocks of colours.
 PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
 #if PC_LANES == 1
   if (mask) pc_scatter(buffer, i, quads, k, q);
 #else
-  alignas(64) Scalar nowhere[4];
   const uint bits = pc_mask_bits(mask);
-  Scalar* p[PC_LANES];
-  for (uint l = 0; l < PC_LANES; l++) p[l] = bits >> l & 1u ? buffer + (std::size_t(i.i[l]) * quads + k) * 4 : nowhere;
-  const Real o[4] = {q.v.x, q.v.y, q.v.z, q.s};
-  pc_transpose_out(p, o);
+  if (bits == (1u << PC_LANES) - 1u) {
+    pc_scatter(buffer, i, quads, k, q);
+  } else if (bits != 0) {
+    alignas(64) Scalar rows[PC_LANES][4];
+    Scalar* p[PC_LANES];
+    for (uint l = 0; l < PC_LANES; l++) p[l] = rows[l];
+    const Real o[4] = {q.v.x, q.v.y, q.v.z, q.s};
+    pc_transpose_out(p, o);
+    for (uint l = 0; l < PC_LANES; l++)
+      if (bits >> l & 1u) __builtin_memcpy(pc_at(buffer, i.i[l], quads, k), rows[l], sizeof rows[l]);
+  }
 #endif
 }
 

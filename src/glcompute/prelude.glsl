@@ -15,6 +15,7 @@
 #define Index uint
 #define Row uint
 #define PC_FN
+#define PC_FN_LARGE
 #define PC_INOUT(T) inout T
 #define PC_IO
 #define PC_PASS

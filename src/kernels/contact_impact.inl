@@ -55,7 +55,8 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
-  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s));
+  Quad turned = PC_GATHER(delta, i, 1u);
+  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, PC_REAL(1.0)));
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
@@ -75,37 +76,70 @@ PC_FN Real pc_impact_mass(Real mass, Real scale, Real light, Mask central) {
   precise Real scaled = mass * scale; return pc_select(central, pc_select(mass > PC_REAL(0.0), pc_inverse_or_zero(light), PC_REAL(0.0)), scaled);
 }
 
-PC_FN void pc_kernel(PC_IO Slot m) {
-  Real zero = PC_REAL(0.0);
-  Real kind = PC_LD(contact_rows, m, ROW_IMPACT); Real e = PC_LD(contact_rows, m, ROW_E);
-  Mask always = kind > zero; Mask mine = pc_and(kind > PC_REAL(-0.5), pc_or(always, e > zero));
-  if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
+// Whose impacts are looked for: 1 where they bounce or meet in flight.
+PC_FN Mask pc_impact_always(PC_IO Slot m) { return PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0); }
+PC_FN Mask pc_impact_mine(PC_IO Slot m) {
+  Mask bounces = PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0);
+  return pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(-0.5), pc_or(pc_impact_always(PC_PASS m), bounces));
+}
+
+// The way to the arms at impact: when the centres have come as near as the first gap is wide, or as found for a flight.
+PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
+  precise Real nearing = -pc_dot(n, relative); precise Real gap = PC_LD(contact_rows, m, ROW_S) + pc_dot(n, come);
+  precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing); Real until = pc_min(flight, PC_INFO(h));
+  return pc_select3(pc_impact_always(PC_PASS m), pc_ld3_rows(PC_PASS m, ROW_PATH), pc_madd(come, relative, until));
+}
+
+// What approaches no faster than the threshold does not bounce: |v*| is at most |u| + |A| h / 2, and has to be |A| h above it.
+PC_FN Mask pc_approaches_fast(PC_IO Slot m, Twist v, uint i, Mask before) {
+  precise Real u = v.vn + PC_LD(contact_rows, m, ROW_B + i) * v.w1 - PC_LD(contact_rows, m, ROW_A + i) * v.w2;
+  precise Real slowest = PC_INFO(restitution_threshold) * PC_REAL(-0.99); return pc_or(before, u < slowest);
+}
+PC_FN Mask pc_may_hit(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
-  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u); Quad turned_a = PC_GATHER(delta, ia, 1u); Quad turned_b = PC_GATHER(delta, ib, 1u);
+  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
+  Vec3 path = pc_impact_path(PC_PASS m, n, pc_sub(b.v, a.v), pc_sub(moved_b.v, moved_a.v));
+  Twist v = pc_twist(a, b, pc_arms(PC_PASS m, pc_zero3(), path), n, t1, t2);
+  Mask fast = pc_impact_always(PC_PASS m);
+  fast = pc_approaches_fast(PC_PASS m, v, 0u, fast); fast = pc_approaches_fast(PC_PASS m, v, 1u, fast);
+  fast = pc_approaches_fast(PC_PASS m, v, 2u, fast); fast = pc_approaches_fast(PC_PASS m, v, 3u, fast);
+  return pc_and(pc_impact_mine(PC_PASS m), fast);
+}
+PC_FN Mask pc_struck(PC_IO Slot m) {
+  Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 1u); Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 1u);
+  return pc_max(a.s, b.s) > PC_REAL(0.5);
+}
 
-  // the arms at impact: when the centres have come as near as the first gap is wide, or as found for a flight
-  Vec3 relative = pc_sub(b.v, a.v); precise Real nearing = -pc_dot(n, relative);
-  Vec3 come = pc_sub(moved_b.v, moved_a.v); precise Real gap = PC_LD(contact_rows, m, ROW_S) + pc_dot(n, come);
-  precise Real flight = pc_max(gap, zero) * pc_inverse_or_zero(nearing); Real until = pc_min(flight, PC_INFO(h));
-  Vec3 path = pc_select3(always, pc_ld3_rows(PC_PASS m, ROW_PATH), pc_madd(come, relative, until));
+PC_FN_LARGE void pc_hit(PC_IO Slot m) {
+  Real zero = PC_REAL(0.0);
+  Real kind = PC_LD(contact_rows, m, ROW_IMPACT); Real e = PC_LD(contact_rows, m, ROW_E);
+  Mask always = pc_impact_always(PC_PASS m); Mask mine = pc_impact_mine(PC_PASS m);
+  Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
+  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
+  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
+  Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
+
+  Vec3 relative = pc_sub(b.v, a.v); Vec3 come = pc_sub(moved_b.v, moved_a.v);
+  Vec3 path = pc_impact_path(PC_PASS m, n, relative, come);
   Mask both_move = pc_and(a.inverse_mass > zero, b.inverse_mass > zero); Mask both_fly = pc_and(always, both_move);
   Mask whirls = pc_and(pc_and(always, pc_whirls(PC_PASS a, b)), pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY);
   Arms arms = pc_arms_at(PC_PASS m, pc_zero3(), path, n, whirls);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
 
+  Real a0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A)); Real a1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 1u)); Real a2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 2u)); Real a3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 3u));
+  Real b0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B)); Real b1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 1u)); Real b2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 2u)); Real b3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 3u));
+  precise Real u0 = v.vn + b0 * v.w1 - a0 * v.w2; precise Real u1 = v.vn + b1 * v.w1 - a1 * v.w2;
+  precise Real u2 = v.vn + b2 * v.w1 - a2 * v.w2; precise Real u3 = v.vn + b3 * v.w1 - a3 * v.w2;
+
   // gaps, and accelerations in the contact frame
+  Quad turned_a = PC_GATHER(delta, ia, 1u); Quad turned_b = PC_GATHER(delta, ib, 1u);
   Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, arms.a)); Vec3 shift_b = pc_add(moved_b.v, pc_cross(turned_b.v, arms.b));
   Vec3 turn = pc_sub(turned_b.v, turned_a.v); Real shift_n = pc_dot(n, pc_sub(shift_b, shift_a)); Real turn1 = pc_dot(t1, turn); Real turn2 = pc_dot(t2, turn);
   Acceleration pull_a = pc_acceleration(PC_PASS ia, a); Acceleration pull_b = pc_acceleration(PC_PASS ib, b);
   Vec3 pull = pc_sub(pc_add(pull_b.a, pc_cross(pull_b.turn, arms.b)), pc_add(pull_a.a, pc_cross(pull_a.turn, arms.a)));
   Vec3 spin_up = pc_sub(pull_b.turn, pull_a.turn); Real pull_n = pc_dot(n, pull); Real up1 = pc_dot(t1, spin_up); Real up2 = pc_dot(t2, spin_up);
-
-  Real a0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A)); Real a1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 1u)); Real a2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 2u)); Real a3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 3u));
-  Real b0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B)); Real b1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 1u)); Real b2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 2u)); Real b3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 3u));
-  precise Real u0 = v.vn + b0 * v.w1 - a0 * v.w2; precise Real u1 = v.vn + b1 * v.w1 - a1 * v.w2;
-  precise Real u2 = v.vn + b2 * v.w1 - a2 * v.w2; precise Real u3 = v.vn + b3 * v.w1 - a3 * v.w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift_n + b0 * turn1 - a0 * turn2); precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift_n + b1 * turn1 - a1 * turn2);
   precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift_n + b2 * turn1 - a2 * turn2); precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift_n + b3 * turn1 - a3 * turn2);
   precise Real g0 = pull_n + b0 * up1 - a0 * up2; precise Real g1 = pull_n + b1 * up1 - a1 * up2;
@@ -164,4 +198,14 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(impulse, share), pc_scale(couple, share));
   pc_set_back(PC_PASS ia, before_a, a, t, hits); pc_set_back(PC_PASS ib, before_b, b, t, hits);
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
+  if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
+  // a sweep that is not the first comes in the coefficients of the relax pass: it looks at bodies that were struck in this sub-step
+  if (PC_ANY(again)) {  // lint: allow (the same for all)
+    if (!PC_ANY(pc_and(mine, pc_struck(PC_PASS m)))) return;  // lint: allow (nothing has changed)
+  }
+  if (PC_ANY(pc_may_hit(PC_PASS m))) pc_hit(PC_PASS m);  // lint: allow (nothing to do otherwise)
 }

@@ -14,7 +14,14 @@ PC_FN Real pc_restitution_row(PC_IO Real vn, Real approach, Real largest, Real e
   return pc_select(bounces, pc_snap(pc_max(next, PC_REAL(0.0))), impulse);
 }
 
+PC_FN Mask pc_bounces(PC_IO Slot m, uint i) {
+  precise Real threshold = -PC_INFO(restitution_threshold);
+  return pc_and(PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_APPROACH + i) < threshold);
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
+  Mask some = pc_or(pc_or(pc_bounces(PC_PASS m, 0u), pc_bounces(PC_PASS m, 1u)), pc_or(pc_bounces(PC_PASS m, 2u), pc_bounces(PC_PASS m, 3u)));
+  if (!PC_ANY(pc_and(some, PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0)))) return;  // lint: allow (zeros otherwise)
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);

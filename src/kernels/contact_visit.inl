@@ -26,6 +26,10 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real me
 
 // Impulse and couple on b at the centre, and the load before or after, whichever is larger.
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
+PC_FN Visit pc_visited(Friction f, Push push, Real load, Real pressed, Vec3 n, Vec3 t1, Vec3 t2) {
+  Visit r; r.impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); r.couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
+  r.touch = pc_max(load, pressed); return r;
+}
 PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
@@ -43,6 +47,14 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
   precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_mean(0u)); precise Real e0 = k0 - l0;
   PC_ST(contact_impulses, m, 0u, k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 0u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), k0));
+  Real more = pc_max(pc_max(l1, pc_mean(1u)), PC_LD(contact_rows, m, ROW_MASS + 1u));
+  more = pc_max(more, pc_max(pc_max(l2, pc_mean(2u)), PC_LD(contact_rows, m, ROW_MASS + 2u)));
+  more = pc_max(more, pc_max(pc_max(l3, pc_mean(3u)), PC_LD(contact_rows, m, ROW_MASS + 3u)));
+  if (!PC_ANY(more > PC_REAL(0.0))) {  // lint: allow (zeros otherwise: a single point has no more rows)
+    precise Real turn1 = b0 * e0; precise Real turn2 = a0 * e0;
+    Push one; one.n = e0; one.m1 = turn1; one.m2 = -turn2;
+    return pc_visited(f, one, load, k0, n, t1, t2);
+  }
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
   precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
@@ -61,6 +73,5 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 
   precise Real pressed = k0 + k1 + k2 + k3;
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
-  Visit r; r.impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); r.couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
-  r.touch = pc_max(load, pressed); return r;
+  return pc_visited(f, push, load, pressed, n, t1, t2);
 }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <string>
+#include <utility>
 
 namespace pcphys {
 namespace {
@@ -142,8 +143,9 @@ Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes)
 
 Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule) {
   std::array<std::array<bool, buffer_count>, 2> bound{};
+  std::array<bool, kernel_count> seen{};  // most come in every sub-step
   for (const PlanEntry& entry : plan.entries) {
-    if (entry.kind != PlanEntry::Kind::kernel) continue;
+    if (entry.kind != PlanEntry::Kind::kernel || std::exchange(seen[std::size_t(entry.kernel)], true)) continue;
     const KernelSchema& k = schema(entry.kernel);
     if (of_joints(k.domain)) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
     if (of_contacts(k.domain)) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());

@@ -47,6 +47,8 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
 void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
                                 const TreeNodes& trees, std::span<const char> alone) {
   trees_ = &trees;
+  follow(state, trees);
+  const bool some_trees = trees.rows() > 1;
   kinds_.clear();
   beside_trees_ = 0;
   units_.clear();
@@ -55,20 +57,29 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
   for (const std::uint32_t row : rows_) {
     std::uint32_t ids[2];
     for (int side = 0; side < 2; side++) {
-      const std::uint32_t row_of_side = ends[row][side];
-      ids[side] = state.bodies[row_of_side].index;
-      const std::uint32_t unit = trees.unit(row_of_side);
-      units_.push_back(state.responds(row_of_side) ? unit : Colouring::fixed_unit);
+      const Body& body = bodies_[ends[row][side]];
+      ids[side] = body.id;
+      units_.push_back(body.unit);
       ends_.push_back(ends[row][side]);
     }
+    priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
+    if (!some_trees) continue;
     const bool within_trees = alone.empty() || !alone[row];
     const ContactWork work = works_.empty() ? ContactWork{} : works_[row];
     kinds_.push_back(within_trees ? path_kind(trees, ends[row][0], ends[row][1], work.turns, work.idle) : std::uint16_t{0});
     beside_trees_ += trees.is_large(ends[row][0]) || trees.is_large(ends[row][1]);
-    priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
   }
   colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);
   width_ = 0;
+}
+
+void ColouredSlots::follow(const WorldState& state, const TreeNodes& trees) {
+  if (serial_ == state.serial && structure_ == state.structure_version) return;
+  serial_ = state.serial;
+  structure_ = state.structure_version;
+  bodies_.resize(state.bodies.size());
+  for (std::uint32_t row = 0; row < bodies_.size(); row++)
+    bodies_[row] = {state.bodies[row].index, state.responds(row) ? trees.unit(row) : Colouring::fixed_unit};
 }
 
 void ColouredSlots::pack(std::uint32_t width) {

@@ -59,6 +59,14 @@ class ColouredSlots {
   void colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
                    const TreeNodes& trees, std::span<const char> alone);
 
+  struct Body {
+    std::uint32_t id, unit;
+  };
+  /// What is read of bodies, when the world's objects have changed.
+  void follow(const WorldState& state, const TreeNodes& trees);
+
+  std::vector<Body> bodies_;                  // by row
+  std::uint64_t serial_ = 0, structure_ = 0;  // of the world that they are of
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
   std::vector<std::uint16_t> kinds_;
   std::vector<ContactWork> works_;  // by row, of contacts where there are trees
