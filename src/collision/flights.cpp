@@ -114,7 +114,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const double near = std::max(1e-6 * double(thickness(view.shapes[0], view.shapes[1])),
                                16 * double(std::numeric_limits<Scalar>::epsilon()) * far);
   f.counts = gap <= options.contact_margin;
-  if (gap <= near) return;
+  if (gap <= near) return to_light_side(f.manifold, share);
   Manifold<Scalar> met = f.manifold;
   const double fall = length(s.gravity) * dt * dt;
   const double t = meet(
