@@ -84,7 +84,7 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     const Proxy &x = proxies_[a], &y = proxies_[b];
     constexpr std::size_t stride = reals_of(Buffer::material);
     const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
-    if (reach_[a] + reach_[b] <= (bounces ? 0.01f : 0.5f) * thickness(a, b)) continue;
+    if (reach_[a] + reach_[b] <= (bounces ? 0.001f : 0.5f) * thickness(a, b)) continue;
     if (x.jointed || y.jointed || !overlap(tight_[a], tight_[b])) continue;
     if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
     Flight<Scalar>& f = scratch.flights.emplace_back();
@@ -129,6 +129,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
     f.turned = !(share > 0 && share < 1) && n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < Scalar(0.5);
     f.manifold = met;
     if (whirls) behind_centre(f.manifold);
+    to_light_side(f.manifold, share);
     back_to_start(*a.twist, *b.twist, view.apart, share, t, f.manifold);
     return;
   }

@@ -32,10 +32,11 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
   // friction goes by the load that the normal rows, visited after it, are about to leave, were they rigid: what the soft rows let
-  // go of in the biased visit they take up again in the relax visit, and what has just come together has no load yet
+  // go of in the biased visit they take up again in the relax visit, and what has just come together has no load yet. (What comes
+  // together later than in the first sixteenth of the sub-step does so elsewhere: its friction is the relax visit's.)
   precise Real load = l0 + l1 + l2 + l3;
   precise Real mean = shift.n + (PC_LD(contact_rows, m, ROW_S) + PC_LD(contact_rows, m, ROW_S + 1u) + PC_LD(contact_rows, m, ROW_S + 2u) + PC_LD(contact_rows, m, ROW_S + 3u)) * PC_REAL(0.25);
-  precise Real closing = v.vn + pc_max(mean, PC_REAL(0.0)) * PC_INFO(inverse_h);
+  precise Real closing = v.vn + pc_max(mean, PC_REAL(0.0)) * PC_INFO(inverse_h) * PC_REAL(16.0);
   precise Real coming = load - closing * pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)) * mass_scale;
   Mask waits = pc_and(load < PC_TINY, PC_INFO(load_ahead) > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
