@@ -56,10 +56,8 @@ inline constexpr double joint_push_speed = 8;
 /// that the contact's impulse would give it.
 inline constexpr double rest_roundings = 32;
 
-/// How often a sub-step looks for impacts: what one hands on, the next body hands on again, as in Newton's cradle. In a world
-/// of no more than `few_contacts` it costs little to look more often.
-inline constexpr int impact_sweeps = 2, impact_sweeps_of_few = 8;
-inline constexpr unsigned few_contacts = 16;
+/// How often a sub-step looks for impacts: what one hands on, the next body hands on again, as in Newton's cradle.
+inline constexpr int impact_sweeps = 2;
 
 /// Proxies of the broad phase are fattened by this, so that most steps change no pair [m].
 inline constexpr double broad_margin = 0.05;

@@ -23,7 +23,11 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real me
   return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));
 }
 
+// Accumulated impulses of the four points and of friction.
+struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
+#ifndef PC_MEAN
 #include "contact_settle.inl"
+#endif
 
 // Impulse and couple on b at the centre, and the load before or after, whichever is larger.
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
@@ -61,11 +65,13 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_mean(3u));
 
   Rows now; now.k0 = k0; now.k1 = k1; now.k2 = k2; now.k3 = k3; now.f = f;
+#ifndef PC_MEAN
   Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     Gaps gap; gap.s0 = s0; gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
     pc_settle(PC_PASS m, v, gap, mass_scale, unsettled, now);
   }
+#endif
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
   PC_ST(contact_impulses, m, 0u, now.k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));
   PC_ST(contact_impulses, m, 1u, now.k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));

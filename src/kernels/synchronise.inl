@@ -29,8 +29,8 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Quad push = PC_GATHER(force, i, 0u);
   Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
   Vec3 acceleration = pc_madd(gravity, push.v, linear.s);
-  Vec3 change = pc_sub(linear.v, linear_before.v); precise Real most = PC_INFO(h) * PC_REAL(2.0); Vec3 smooth = pc_scale(acceleration, most);
-  Mask glides = pc_dot(change, change) < pc_dot(smooth, smooth);
+  Vec3 change = pc_sub(linear.v, linear_before.v); precise Real most = PC_INFO(h) * PC_REAL(2.0); Vec3 forced = pc_scale(acceleration, most);
+  Mask glides = pc_dot(change, change) < pc_dot(forced, forced);
 #ifdef PC_DRAG
   Quad turn = PC_GATHER(force, i, 1u);
   Mask dynamic_body = linear.s > PC_REAL(0.0);

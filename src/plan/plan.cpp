@@ -128,8 +128,7 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
     if (s.free_contacts && s.impacts)
-      for (int sweep = 0; sweep < (s.few_contacts ? constants::impact_sweeps_of_few : constants::impact_sweeps); sweep++)
-        b.kernel(Kernel::contact_impact, Phase::biased, k);
+      for (int sweep = 0; sweep < constants::impact_sweeps; sweep++) b.kernel(Kernel::contact_impact, Phase::biased, k);
     if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
     if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
     if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);

@@ -24,7 +24,6 @@ struct PlanSignature {
   bool tree_contacts = false;               // and of bodies that do
   bool restitution = false;                 // some contact bounces
   bool impacts = false;                     // or is between shapes that meet in flight
-  bool few_contacts = false;                // impacts may be looked for more often
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
   bool joints() const { return free_joints || tree_joints; }
   bool contacts() const { return free_contacts || tree_contacts; }

@@ -218,7 +218,6 @@ struct Stepper::Inside {
       s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
     wanted.impacts = found.impacts;
-    wanted.few_contacts = found.impacts && found.contacts <= constants::few_contacts;
     wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
