@@ -15,8 +15,7 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real me
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real soft_rate = s * PC_INFO(contact_rate);
   Real bias = pc_select(s > PC_REAL(0.0), gap_rate, pc_max(soft_rate, -PC_INFO(push_speed)));
-  precise Real depth = s * PC_INFO(inverse_soft_depth); Real share = pc_clamp(-depth, PC_REAL(0.0), PC_REAL(1.0));
-  precise Real leak = PC_INFO(contact_impulse_scale) * share; precise Real rigid = PC_REAL(1.0) - leak;
+  precise Real softer = s * PC_INFO(contact_softening); Real leak = pc_clamp(softer, PC_REAL(0.0), PC_INFO(contact_impulse_scale)); precise Real rigid = PC_REAL(1.0) - leak;
   precise Real next = impulse - mass * rigid * (vn + bias) - leak * (impulse - mean);
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(s > PC_REAL(0.0), impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
