@@ -4,21 +4,26 @@
 #include "contact_shift.inl"
 
 // New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
-// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint, whose leak acts on what deviates
-// from a slow mean (PC_MEAN; else on the whole impulse): what rests is not pressed in (docs/joint-trees.md).
+// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint with a preload: it lets go of a share of
+// what goes beyond an impulse that a few weights of the body's own make, so that what lies alone does not sink. With bodies of
+// trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
 #ifdef PC_MEAN
-#define pc_mean(i) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+#define pc_held(i, mass) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+#define PC_LEAST_BEYOND PC_REAL(-1e30)
 #else
-#define pc_mean(i) PC_REAL(0.0)
+PC_FN Real pc_preload(PC_IO Real mass) { precise Real r = mass * PC_INFO(contact_preload); return r; }
+#define pc_held(i, mass) pc_preload(PC_PASS mass)
+#define PC_LEAST_BEYOND PC_REAL(0.0)
 #endif
-PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real mean) {
+PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held) {
+  Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real soft_rate = s * PC_INFO(contact_rate);
-  Real bias = pc_select(s > PC_REAL(0.0), gap_rate, pc_max(soft_rate, -PC_INFO(push_speed)));
-  precise Real softer = s * PC_INFO(contact_softening); Real leak = pc_clamp(softer, PC_REAL(0.0), PC_INFO(contact_impulse_scale)); precise Real rigid = PC_REAL(1.0) - leak;
-  precise Real next = impulse - mass * rigid * (vn + bias) - leak * (impulse - mean);
+  Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed)));
+  precise Real rigid = impulse - mass * (vn + bias); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
+  precise Real beyond = rigid - held; precise Real next = rigid - pc_max(beyond, PC_LEAST_BEYOND) * leak;
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
-  Mask waits = pc_and(pc_and(s > PC_REAL(0.0), impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
+  Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));
 }
 
@@ -49,19 +54,19 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_mean(0u)); precise Real e0 = k0 - l0;
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_held(0u, m0)); precise Real e0 = k0 - l0;
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
   precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
-  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_mean(1u)); precise Real e1 = k1 - l1;
+  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_held(1u, m1)); precise Real e1 = k1 - l1;
   Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
   precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
   precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift.n + b2 * shift.turn1 - a2 * shift.turn2);
-  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_mean(2u)); precise Real e2 = k2 - l2;
+  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_held(2u, m2)); precise Real e2 = k2 - l2;
   Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
   precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
-  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_mean(3u));
+  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_held(3u, m3));
 
   Rows now; now.k0 = k0; now.k1 = k1; now.k2 = k2; now.k3 = k3; now.f = f;
 #ifndef PC_MEAN

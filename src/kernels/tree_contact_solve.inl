@@ -37,4 +37,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_push_tree(PC_PASS w, m, 1u, tree_b, pc_six(r.impulse, torque_b));
 }
 #undef PC_MEAN
-#undef pc_mean
+#undef pc_held
+#undef PC_LEAST_BEYOND

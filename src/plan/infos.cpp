@@ -1,7 +1,7 @@
 #include "plan/infos.h"
 
-#include <algorithm>
 #include <limits>
+#include <cstdlib>
 
 #include "pcphys/constants.h"
 
@@ -41,8 +41,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
-  const double soft_depth = std::max(constants::soft_depth * length(gravity) * h * h, constants::least_soft_depth);
-  biased.contact_softening = Scalar(-contact.impulse_scale / soft_depth);
+  biased.contact_preload = Scalar((getenv("SD") ? atof(getenv("SD")) : constants::contact_preload) * length(gravity) * h);
   biased.mean_share = Scalar(constants::mean_impulse_share);
   biased.push_speed = Scalar(settings.push_speed);
   biased.joint_rate = Scalar(joint.rate);
@@ -68,7 +67,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   relax.contact_rate = relax.joint_rate = 0;
   relax.joint_mass_scale = 1;
   relax.load_ahead = 1;
-  relax.contact_impulse_scale = relax.contact_softening = relax.joint_impulse_scale = 0;
+  relax.contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
 template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);
