@@ -311,8 +311,8 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.h_before = Scalar(h / 0.8);
     info.impulse_ratio = Scalar(0.8);
     info.contact_rate = Scalar(relax ? 0 : 48);
-    info.contact_mass_scale = Scalar(relax ? 1 : 0.9);
     info.contact_impulse_scale = Scalar(relax ? 0 : 0.1);
+    info.contact_preload = Scalar(0.1);
     info.mean_share = Scalar(0.025);
     info.load_ahead = Scalar(relax ? 1 : 0);
     info.push_speed = Scalar(4);

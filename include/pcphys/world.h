@@ -26,7 +26,7 @@ class World;
 /// A manifold between two bodies, as the last step left it. World axes, SI units.
 struct Contact {
   struct Point {
-    Vec3 position;          // midway between the surfaces: the arm it had when found, from a where a is now [m]
+    Vec3 position;          // on the light body's surface, midway between equal ones; as found, from a where a is now [m]
     double separation = 0;  // negative when the shapes overlap [m]
     double impulse = 0;     // along the normal, of the last sub-step [N s]
   };

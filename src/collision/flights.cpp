@@ -75,7 +75,7 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     const Proxy &x = proxies_[a], &y = proxies_[b];
     constexpr std::size_t stride = reals_of(Buffer::material);
     const float thick = thickness(a, b);
-    if (way <= 0.01f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
+    if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
     const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
     if ((!bounces && way <= 0.5f * thick) || x.jointed || y.jointed) continue;
     if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
@@ -106,7 +106,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const double near = std::max(1e-6 * double(thickness(view.shapes[0], view.shapes[1])),
                                16 * double(std::numeric_limits<Scalar>::epsilon()) * far);
   f.counts = gap <= options.contact_margin;
-  if (gap <= near) return;
+  if (gap <= near) return to_light_side(f.manifold, share);
   Manifold<Scalar> met = f.manifold;
   const double fall = length(s.gravity) * dt * dt;
   const double t = meet(
@@ -121,6 +121,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
     f.turned = !(share > 0 && share < 1) && n[0] * m[0] + n[1] * m[1] + n[2] * m[2] < Scalar(0.5);
     f.manifold = met;
     if (whirls) behind_centre(f.manifold);
+    to_light_side(f.manifold, share);
     back_to_start(*a.twist, *b.twist, view.apart, share, t, f.manifold);
     return;
   }

@@ -4,74 +4,86 @@
 #include "contact_shift.inl"
 
 // New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
-// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint, whose leak acts on what deviates
-// from a slow mean (PC_MEAN; else on the whole impulse): what rests is not pressed in (docs/joint-trees.md).
+// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint with a preload: it lets go of a share of
+// what goes beyond an impulse that a few weights of the body's own make, so that what lies alone does not sink. With bodies of
+// trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
 #ifdef PC_MEAN
-#define pc_mean(i) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+#define pc_held(i, mass) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+#define PC_LEAST_BEYOND PC_REAL(-1e30)
 #else
-#define pc_mean(i) PC_REAL(0.0)
+PC_FN Real pc_preload(PC_IO Real mass) { precise Real r = mass * PC_INFO(contact_preload); return r; }
+#define pc_held(i, mass) pc_preload(PC_PASS mass)
+#define PC_LEAST_BEYOND PC_REAL(0.0)
 #endif
-PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real mean) {
+PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held) {
   Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real soft_rate = s * PC_INFO(contact_rate);
   Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed)));
-  Real mass_scale = pc_select(open, PC_REAL(1.0), PC_INFO(contact_mass_scale));
-  Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
-  precise Real next = impulse - mass * mass_scale * (vn + bias) - impulse_scale * (impulse - mean);
+  precise Real rigid = impulse - mass * (vn + bias); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
+  precise Real beyond = rigid - held; precise Real next = rigid - pc_max(beyond, PC_LEAST_BEYOND) * leak;
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));
 }
 
+// Accumulated impulses of the four points and of friction.
+struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
+#ifndef PC_MEAN
+#include "contact_settle.inl"
+#endif
+
 // Impulse and couple on b at the centre, and the load before or after, whichever is larger.
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
-PC_FN Visit pc_visited(Friction f, Push push, Real load, Real pressed, Vec3 n, Vec3 t1, Vec3 t2) {
-  Visit r; r.impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); r.couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
-  r.touch = pc_max(load, pressed); return r;
-}
 PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
+  // friction goes by the load that the normal rows, visited after it, are about to leave, were they rigid: what the soft rows let
+  // go of in the biased visit they take up again in the relax visit, and what has just come together has no load yet. (What comes
+  // together later than in the first sixteenth of the sub-step does so elsewhere: its friction is the relax visit's.)
   precise Real load = l0 + l1 + l2 + l3;
-  // the soft rows have let go of a share of the load, which the rigid ones of the relax pass will take up again
-  precise Real coming = load - v.vn * pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)) * mass_scale * PC_INFO(load_ahead);
-  Friction f = pc_friction(PC_PASS m, v, pc_select(load > PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)), load), mass_scale);
-  PC_ST(contact_impulses, m, IMPULSE_T, f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, f.next_twist);
+  precise Real mean = shift.n + (PC_LD(contact_rows, m, ROW_S) + PC_LD(contact_rows, m, ROW_S + 1u) + PC_LD(contact_rows, m, ROW_S + 2u) + PC_LD(contact_rows, m, ROW_S + 3u)) * PC_REAL(0.25);
+  precise Real closing = v.vn + pc_max(mean, PC_REAL(0.0)) * PC_INFO(inverse_h) * PC_REAL(16.0);
+  precise Real coming = load - closing * pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)) * mass_scale;
+  Mask waits = pc_and(load < PC_TINY, PC_INFO(load_ahead) > PC_REAL(0.0));
+  Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
   // normal rows
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_mean(0u)); precise Real e0 = k0 - l0;
-  PC_ST(contact_impulses, m, 0u, k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 0u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), k0));
-  Real more = pc_max(pc_max(l1, pc_mean(1u)), PC_LD(contact_rows, m, ROW_MASS + 1u));
-  more = pc_max(more, pc_max(pc_max(l2, pc_mean(2u)), PC_LD(contact_rows, m, ROW_MASS + 2u)));
-  more = pc_max(more, pc_max(pc_max(l3, pc_mean(3u)), PC_LD(contact_rows, m, ROW_MASS + 3u)));
-  if (!PC_ANY(more > PC_REAL(0.0))) {  // lint: allow (zeros otherwise: a single point has no more rows)
-    precise Real turn1 = b0 * e0; precise Real turn2 = a0 * e0;
-    Push one; one.n = e0; one.m1 = turn1; one.m2 = -turn2;
-    return pc_visited(f, one, load, k0, n, t1, t2);
-  }
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_held(0u, m0)); precise Real e0 = k0 - l0;
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
   precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
-  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_mean(1u)); precise Real e1 = k1 - l1;
-  PC_ST(contact_impulses, m, 1u, k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), k1));
+  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_held(1u, m1)); precise Real e1 = k1 - l1;
   Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
   precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
   precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift.n + b2 * shift.turn1 - a2 * shift.turn2);
-  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_mean(2u)); precise Real e2 = k2 - l2;
-  PC_ST(contact_impulses, m, 2u, k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), k2));
+  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_held(2u, m2)); precise Real e2 = k2 - l2;
   Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
   precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
-  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_mean(3u)); precise Real e3 = k3 - l3;
-  PC_ST(contact_impulses, m, 3u, k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), k3));
+  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_held(3u, m3));
 
-  precise Real pressed = k0 + k1 + k2 + k3;
-  Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
-  return pc_visited(f, push, load, pressed, n, t1, t2);
+  Rows now; now.k0 = k0; now.k1 = k1; now.k2 = k2; now.k3 = k3; now.f = f;
+#ifndef PC_MEAN
+  Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
+  if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
+    Gaps gap; gap.s0 = s0; gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
+    pc_settle(PC_PASS m, v, gap, mass_scale, unsettled, now);
+  }
+#endif
+  PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
+  PC_ST(contact_impulses, m, 0u, now.k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));
+  PC_ST(contact_impulses, m, 1u, now.k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));
+  PC_ST(contact_impulses, m, 2u, now.k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), now.k2));
+  PC_ST(contact_impulses, m, 3u, now.k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), now.k3));
+  precise Real c0 = now.k0 - l0; precise Real c1 = now.k1 - l1; precise Real c2 = now.k2 - l2; precise Real c3 = now.k3 - l3;
+  precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3;
+  Push push = pc_push(PC_PASS m, c0, c1, c2, c3);
+  Visit r; r.impulse = pc_combine(t1, now.f.change1, t2, now.f.change2, n, push.n); r.couple = pc_combine(t1, push.m1, t2, push.m2, n, now.f.change_twist);
+  r.touch = pc_max(load, pressed); return r;
 }

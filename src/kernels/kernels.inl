@@ -33,7 +33,7 @@ PC_KERNEL(remember, body, integrate, PC_READ(bodies) PC_READ(motion) PC_WRITE(ve
 PC_KERNEL(advance, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_WRITE(pose) PC_WRITE(delta))
 PC_KERNEL(advance_round, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_WRITE(pose) PC_WRITE(delta))
 PC_KERNEL(advance_seed, body, integrate, PC_READ(bodies) PC_READ(mass) PC_WRITE(motion) PC_WRITE(pose) PC_WRITE(delta))
-PC_KERNEL(synchronise, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_WRITE(velocity_parts))
+PC_KERNEL(synchronise, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_READ(force) PC_WRITE(velocity_parts))
 PC_KERNEL(synchronise_drag, body, integrate, PC_READ(bodies) PC_READ(motion) PC_READ(mass) PC_READ(force) PC_WRITE(velocity_parts))
 PC_KERNEL(synchronise_seed, body, integrate, PC_READ(bodies) PC_WRITE(velocity_parts))
 PC_KERNEL(joint_drives, joint, joints, PC_READ(joint_ends) PC_READ(joint_order) PC_READ(joint_frame) PC_READ(joint_drive) PC_READ(pose) PC_READ(mass) PC_READ(motion) PC_WRITE(joint_rows))

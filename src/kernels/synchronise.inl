@@ -1,6 +1,7 @@
 // After the last sub-step: half of what it changed in the velocities, so that u + half change is the
-// velocity in phase with the position, to second order. A body that a contact touched keeps u itself: an impact is
-// no acceleration. At rest that is zero to the rounding of the impulses that hold it; what is no larger reads zero.
+// velocity in phase with the position, to second order. A body that a contact touched keeps u itself unless the change is less
+// than twice what forces alone would have made of it: an impact is no acceleration. At rest that is zero to the rounding of
+// the impulses that hold it; what is no larger reads zero.
 // With drag (PC_DRAG) forces and drag bring it into phase exactly, as in begin.inl, whatever F h is:
 //   h (phi - phi2) / phi (a - F u) + half of what constraints changed.
 #ifdef PC_DRAG
@@ -25,11 +26,14 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear_before = PC_GATHER(velocity_parts, i, 0u);
   Quad angular_before = PC_GATHER(velocity_parts, i, 1u);
   Mask touched = angular.s > PC_REAL(0.0);
-#ifdef PC_DRAG
-  Quad push = PC_GATHER(force, i, 0u); Quad turn = PC_GATHER(force, i, 1u);
-  Mask dynamic_body = linear.s > PC_REAL(0.0);
+  Quad push = PC_GATHER(force, i, 0u);
   Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
   Vec3 acceleration = pc_madd(gravity, push.v, linear.s);
+  Vec3 change = pc_sub(linear.v, linear_before.v); precise Real most = PC_INFO(h) * PC_REAL(2.0); Vec3 forced = pc_scale(acceleration, most);
+  Mask glides = pc_dot(change, change) < pc_dot(forced, forced);
+#ifdef PC_DRAG
+  Quad turn = PC_GATHER(force, i, 1u);
+  Mask dynamic_body = linear.s > PC_REAL(0.0);
   Vec3 u = pc_select3(dynamic_body, pc_half_change(PC_PASS linear.v, linear_before.v, acceleration, push.s), pc_zero3());
   Vec3 l = pc_select3(dynamic_body, pc_half_change(PC_PASS angular.v, angular_before.v, turn.v, turn.s), pc_zero3());
 #else
@@ -39,8 +43,9 @@ PC_FN void pc_kernel(PC_IO Index i) {
   precise Real noise = angular.s * PC_INFO(rounding); precise Real speed = noise * linear.s;
   precise Real square = pc_max(moments.v.x, pc_max(moments.v.y, moments.v.z)) * linear.s; precise Real spin = noise * pc_sqrt(square);
   Vec3 zero = pc_zero3();
-  Vec3 held_u = pc_select3(pc_exceeds(linear.v, speed), zero, pc_negate(linear.v));
-  Vec3 held_l = pc_select3(pc_exceeds(angular.v, spin), zero, pc_negate(angular.v));
+  Vec3 moving_u = pc_select3(glides, u, zero); Vec3 moving_l = pc_select3(glides, l, zero);
+  Vec3 held_u = pc_select3(pc_exceeds(linear.v, speed), moving_u, pc_negate(linear.v));
+  Vec3 held_l = pc_select3(pc_exceeds(angular.v, spin), moving_l, pc_negate(angular.v));
   PC_SCATTER(velocity_parts, i, 0u, pc_quad(pc_snap3(pc_select3(touched, held_u, u)), PC_REAL(0.0)));
   PC_SCATTER(velocity_parts, i, 1u, pc_quad(pc_snap3(pc_select3(touched, held_l, l)), PC_REAL(0.0)));
 }

@@ -1,6 +1,7 @@
 #include "plan/infos.h"
 
 #include <limits>
+#include <cstdlib>
 
 #include "pcphys/constants.h"
 
@@ -39,8 +40,8 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.h_before = Scalar(h);
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
-  biased.contact_mass_scale = Scalar(contact.mass_scale);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
+  biased.contact_preload = Scalar((getenv("SD") ? atof(getenv("SD")) : constants::contact_preload) * length(gravity) * h);
   biased.mean_share = Scalar(constants::mean_impulse_share);
   biased.push_speed = Scalar(settings.push_speed);
   biased.joint_rate = Scalar(joint.rate);
@@ -67,7 +68,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
   relax.contact_rate = relax.joint_rate = 0;
-  relax.contact_mass_scale = relax.joint_mass_scale = 1;
+  relax.joint_mass_scale = 1;
   relax.load_ahead = 1;
   relax.contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
