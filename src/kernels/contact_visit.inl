@@ -15,10 +15,12 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real me
   Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real soft_rate = s * PC_INFO(contact_rate);
-  Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed)));
-  Real mass_scale = pc_select(open, PC_REAL(1.0), PC_INFO(contact_mass_scale));
+  Real bias = pc_select(open, gap_rate, soft_rate);
+  precise Real scaled = mass * pc_select(open, PC_REAL(1.0), PC_INFO(contact_mass_scale));
   Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
-  precise Real next = impulse - mass * mass_scale * (vn + bias) - impulse_scale * (impulse - mean);
+  // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
+  precise Real give = scaled * bias + impulse_scale * (impulse - mean); precise Real most = mass * PC_INFO(push_speed);
+  precise Real next = impulse - scaled * vn - pc_max(give, -most);
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));

@@ -20,12 +20,10 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 }  // namespace
 
-double substep_length(const StepSettings& settings, double dt) { return dt / settings.substeps; }
-
 template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep,
+void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep,
                 InfoOf<Scalar> (&infos)[phase_count]) {
-  const double h = substep_length(settings, dt), ratio = last_substep > 0 ? h / last_substep : 1;
+  const double ratio = last_substep > 0 ? h / last_substep : 1;
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
 
