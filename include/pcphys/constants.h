@@ -32,9 +32,12 @@ inline constexpr double moment_tolerance = 1e-6;
 /// that it makes. Of the pairs tried (docs/impulses.md) the stiffest that lets stacks rest.
 inline constexpr double contact_frequency_times_h = 1.7320508075688772;  // sqrt(3): the whole overlap, a quarter let go of
 inline constexpr double contact_damping_ratio = 0;
+/// The same for contacts with joint trees, whose rows leak on what deviates from a slow mean (mean_impulse_share).
+inline constexpr double tree_contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
+inline constexpr double tree_contact_damping_ratio = 5;
 /// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md); they are to bring what it is
 /// pressed in to this share of the contact margin.
-inline constexpr double uneven_masses = 16, load_overlap = 0.05;
+inline constexpr double uneven_masses = 16, load_overlap = 0.025;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;

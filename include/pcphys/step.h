@@ -41,8 +41,8 @@ enum class Timer : std::uint8_t { forces, broad, narrow, plan, upload, integrate
 const char* name(Timer timer);
 
 struct StepReport {
-  Error error;             // code none: the step was made. Otherwise the world is as it was before
-  std::uint64_t step = 0;  // how many steps this stepper has made
+  Error error;                 // code none: the step was made. Otherwise the world is as it was before
+  std::uint64_t step = 0;      // how many steps this stepper has made
   std::uint32_t substeps = 0;  // of this step: the setting, or more for heavy loads (StepSettings::load_refinement)
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   /// What the direct solve of joint trees does not carry: joints that close a loop beside another joint of the same bodies or

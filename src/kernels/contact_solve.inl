@@ -18,3 +18,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_apply(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple);
 }
 #undef pc_mean
+#undef pc_soft_rate
+#undef pc_soft_mass_scale
+#undef pc_soft_impulse_scale

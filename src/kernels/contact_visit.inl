@@ -8,16 +8,22 @@
 // from a slow mean (PC_MEAN; else on the whole impulse): what rests is not pressed in (docs/joint-trees.md).
 #ifdef PC_MEAN
 #define pc_mean(i) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+#define pc_soft_rate PC_INFO(tree_contact_rate)
+#define pc_soft_mass_scale PC_INFO(tree_contact_mass_scale)
+#define pc_soft_impulse_scale PC_INFO(tree_contact_impulse_scale)
 #else
 #define pc_mean(i) PC_REAL(0.0)
+#define pc_soft_rate PC_INFO(contact_rate)
+#define pc_soft_mass_scale PC_INFO(contact_mass_scale)
+#define pc_soft_impulse_scale PC_INFO(contact_impulse_scale)
 #endif
 PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real mean) {
   Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
-  precise Real soft_rate = s * PC_INFO(contact_rate);
-  Real bias = pc_select(open, gap_rate, soft_rate);
-  precise Real scaled = mass * pc_select(open, PC_REAL(1.0), PC_INFO(contact_mass_scale));
-  Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
+  precise Real push_rate = s * pc_soft_rate;
+  Real bias = pc_select(open, gap_rate, push_rate);
+  precise Real scaled = mass * pc_select(open, PC_REAL(1.0), pc_soft_mass_scale);
+  Real impulse_scale = pc_select(open, PC_REAL(0.0), pc_soft_impulse_scale);
   // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
   precise Real give = scaled * bias + impulse_scale * (impulse - mean); precise Real most = mass * PC_INFO(push_speed);
   precise Real next = impulse - scaled * vn - pc_max(give, -most);

@@ -38,3 +38,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 }
 #undef PC_MEAN
 #undef pc_mean
+#undef pc_soft_rate
+#undef pc_soft_mass_scale
+#undef pc_soft_impulse_scale

@@ -7,6 +7,9 @@
 
 namespace pcphys {
 
+/// [s]
+double substep_length(double dt, std::uint32_t substeps);
+
 /// One block a phase, by Phase. `h`: the sub-step; `last_substep`: of the step before, 0 if there was none [s].
 template <class Scalar>
 void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep, InfoOf<Scalar> (&infos)[phase_count]);

@@ -13,17 +13,15 @@ void Loads::find(const WorldState& state, const TreeNodes& trees) {
     const auto [a, b] = state.contacts.ends[row];
     if (!state.responds(a) || !state.responds(b) || path_kind(trees, a, b) > 0) continue;
     const double x = state.tables.get(Buffer::motion, a, 3), y = state.tables.get(Buffer::motion, b, 3);
-    if (std::max(x, y) >= constants::uneven_masses * std::min(x, y)) uneven_.push_back({row, std::max(x, y)});
+    if (x >= constants::uneven_masses * y) uneven_.push_back({row, x / y});
+    if (y >= constants::uneven_masses * x) uneven_.push_back({row, -y / x});
   }
 }
 
 std::uint32_t Loads::refinement(const WorldState& state, const StepSettings& settings, double dt) const {
-  if (uneven_.empty() || state.last_substep <= 0) return 1;
-  double largest = 0;  // [m/s^2]
-  for (const Uneven& u : uneven_) {
-    const Quat impulses = state.tables.get4(Buffer::contact, u.contact, 20);
-    largest = std::max(largest, (impulses.x + impulses.y + impulses.z + impulses.w) * u.inverse_mass / state.last_substep);
-  }
+  double largest = 0;  // acceleration that the load would give to what carries it [m/s^2]
+  for (const Uneven& u : uneven_)
+    largest = std::max(largest, -u.ratio * dot(state.tables.get3(Buffer::contact, u.contact, 0), state.gravity));
   const double h = dt / settings.substeps, frequency = constants::contact_frequency_times_h / h;
   const double aim = constants::load_overlap * settings.contact_margin;
   double overlap = largest / (frequency * frequency);

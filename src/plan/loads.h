@@ -15,13 +15,14 @@ class Loads {
  public:
   /// Follows a change of contacts: finds those in which a free body could carry one much heavier than itself.
   void find(const WorldState& state, const TreeNodes& trees);
-  /// By what the sub-steps of a step of `dt` are to be multiplied, from the loads of the last step: a power of two.
+  /// By what the sub-steps of a step of `dt` are to be multiplied, from the weights that could rest on lighter bodies: a power
+  /// of two.
   std::uint32_t refinement(const WorldState& state, const StepSettings& settings, double dt) const;
 
  private:
   struct Uneven {
     std::uint32_t contact;
-    double inverse_mass;  // of the lighter body [1/kg]
+    double ratio;  // of the masses; below zero where the normal leads from the heavier body to the lighter
   };
   std::vector<Uneven> uneven_;
 };

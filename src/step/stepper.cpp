@@ -222,7 +222,7 @@ struct Stepper::Inside {
     PlanSignature wanted = signature(schedule);
     if (schedule.uneven && settings.integrator != Integrator::seed)
       wanted.substeps = std::min(most_substeps, settings.substeps * loads.refinement(s, settings, dt));
-    const double h = dt / wanted.substeps;
+    const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
