@@ -69,8 +69,8 @@ class Bench {
     wanted.restitution = found_.restitution;
     if (wanted.trees) state().tables.resize(Table::node, schedule_.trees.nodes().rows());
     plan_ = make_plan(wanted);
-    fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_f_);
-    fill_infos(settings_, world_.gravity(), dt, state().last_substep, infos_d_);
+    fill_infos(settings_, world_.gravity(), substep_length(dt, settings_.substeps), state().last_substep, infos_f_);
+    fill_infos(settings_, world_.gravity(), substep_length(dt, settings_.substeps), state().last_substep, infos_d_);
     if (auto status = runner_.prepare(settings_, variant.precision); !status) return status;
     if (auto status = bind(); !status) return status;
     return run(plan_);

@@ -104,6 +104,7 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"warmup", setup.warmup},
       {"dt", setup.dt},
       {"substeps", setup.settings.substeps},
+      {"substeps_last", outcome.last.substeps},
       {"lanes", simulation.lanes},
       {"threads", setup.settings.threads},
       {"median_ms", median(outcome.times.step)},

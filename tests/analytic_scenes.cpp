@@ -119,6 +119,28 @@ TEST_CASE("scenes: a stack and a pyramid stand") {
     }
 }
 
+TEST_CASE("scenes: a box carries 1,000 times its weight, by sub-steps") {
+  for (const Mode& mode : precisions()) {
+    const SceneRun r(mode, "heavy", 2, 600, 1000);
+    r.tell(mode);
+    CAPTURE(mode.name());
+    r.check_sound();
+    CHECK(r.end.penetration.max <= 0.001);
+    CHECK(r.end.drift.sideways <= 0.001);
+  }
+}
+
+TEST_CASE("scenes: a stack of 20 and a pyramid of 60 hardly lean") {
+  const Mode mode{Precision::f32};
+  for (const char* name : {"stack", "pyramid"}) {
+    const SceneRun r(mode, name, std::string(name) == "stack" ? 20 : 60);
+    r.tell(mode);
+    CAPTURE(name);
+    r.check_sound();
+    CHECK(r.end.drift.sideways <= 0.05);
+  }
+}
+
 TEST_CASE("scenes: a stack and a pyramid gain less than 1e-3 of the little range that they sink through") {
   for (const Mode& mode : precisions())
     for (const char* name : {"stack", "pyramid"}) {

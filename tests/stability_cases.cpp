@@ -20,6 +20,12 @@ TEST_CASE("B1: chains of 10 links hold loads of up to 1e6 links") {
   for (const Mode& mode : precisions()) check_rows(rows_of("B1", mode, fine, "10 links"));
 }
 
+TEST_CASE("B3: a box carries 10,000 times its weight, and towers of 10 and a pyramid carry heavy tops") {
+  for (const Mode& mode : precisions())
+    for (const char* variant : {"two boxes, 1:10000", "tower of 10, top x100", "pyramid of 10, top x300"})
+      check_rows(rows_of("B3", mode, fine, variant), without("down"));
+}
+
 TEST_CASE("B4: a tower of 10 stands and its contact forces are the weights") {
   for (const Mode& mode : precisions()) {
     const auto rows = rows_of("B4", mode, fine, "10 cubes");

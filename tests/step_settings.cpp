@@ -62,6 +62,32 @@ TEST_CASE("report: counts of bodies, joints, pairs, contacts, points, colours, s
   CHECK(stepper.step(world, frame).step == 3);
 }
 
+TEST_CASE("report: sub-steps that were made, more of them under a heavy load") {
+  const auto substeps = [](double density, std::uint32_t refinement, double height = 1.5) {
+    World world;
+    (void)must(world.create_body(fixed_box({0, -0.5, 0}, {5, 0.5, 5})));
+    BodyDef box;
+    box.shapes = {ShapeDef::box({0.5, 0.5, 0.5})};
+    box.pose.position = {0, 0.5, 0};
+    box.density = 1;
+    (void)must(world.create_body(box));
+    box.pose.position = {0, height, 0};
+    box.density = density;
+    (void)must(world.create_body(box));
+    Stepper stepper(with([=](StepSettings& s) { s.load_refinement = refinement; }));
+    const StepReport& report = stepper.step(world, frame);
+    REQUIRE(report);
+    return report.substeps;
+  };
+  CHECK(substeps(10, 16) == 4);         // little
+  CHECK(substeps(100, 16) == 16);       // enough for 0.5 mm
+  CHECK(substeps(1000, 16) == 64);      // 16 times at most
+  CHECK(substeps(1000, 4) == 16);       // or what the setting says
+  CHECK(substeps(1000, 1) == 4);        // never
+  CHECK(substeps(1000, 16, 2.5) == 4);  // it does not touch yet
+  CHECK(substeps(1e-3, 16) == 4);       // light on heavy
+}
+
 TEST_CASE("names of timers") {
   const char* names[] = {"forces", "broad", "narrow", "plan", "upload", "integrate", "joints", "impulses", "download"};
   CHECK(std::size(names) == std::size_t(Timer::count));
@@ -93,6 +119,7 @@ TEST_CASE("settings that are refused, by a step and by configure") {
       {with([](StepSettings& s) { s.push_speed = -1; }), ErrorCode::bad_argument, "must be finite and not below zero."},
       {with([](StepSettings& s) { s.restitution_threshold = -1; }), ErrorCode::bad_argument,
        "must be finite and not below zero."},
+      {with([](StepSettings& s) { s.load_refinement = 0; }), ErrorCode::bad_argument, "must lie between 1 (never) and 1000."},
       {with([](StepSettings& s) { s.contact_margin = INFINITY; }), ErrorCode::bad_argument, "must be finite and not below zero."},
   };
   for (const Case& c : cases) {

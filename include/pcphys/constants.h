@@ -29,13 +29,20 @@ inline constexpr double locked_interval = 1e-6;
 /// Moments may violate the triangle inequality by this share, for rounding.
 inline constexpr double moment_tolerance = 1e-6;
 
-/// Soft contacts: angular frequency times sub-step, and damping ratio. Stiffness is tied to the sub-step, so
-/// overlap falls with its square. Of the pairs tried (docs/impulses.md) the stiffest that lets a stack of ten rest.
-inline constexpr double contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
-inline constexpr double contact_damping_ratio = 5;
+/// Soft contacts: angular frequency times sub-step, and damping ratio. Stiffness is tied to the sub-step, so overlap falls with
+/// its square. A spring alone: what it lets go of in each sub-step damps the solver, and the relax pass takes out the velocity
+/// that it makes. Of the pairs tried (docs/impulses.md) the stiffest that lets stacks rest.
+inline constexpr double contact_frequency_times_h = 1.7320508075688772;  // sqrt(3): the whole overlap, a quarter let go of
+inline constexpr double contact_damping_ratio = 0;
+/// The same for contacts with joint trees, whose rows leak on what deviates from a slow mean (mean_impulse_share).
+inline constexpr double tree_contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
+inline constexpr double tree_contact_damping_ratio = 5;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a sub-step:
 /// what lies alone does not sink.
 inline constexpr double contact_preload = 3;
+/// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md); they are to bring what it is
+/// pressed in to this share of the contact margin.
+inline constexpr double uneven_masses = 16, load_overlap = 0.025;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;

@@ -19,3 +19,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 }
 #undef pc_held
 #undef PC_LEAST_BEYOND
+#undef PC_SOFT_RATE
+#undef PC_SOFT_LEAK

@@ -1,7 +1,7 @@
 #include "plan/infos.h"
 
-#include <limits>
 #include <cstdlib>
+#include <limits>
 
 #include "pcphys/constants.h"
 
@@ -21,13 +21,13 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 }  // namespace
 
-double substep_length(const StepSettings& settings, double dt) { return dt / settings.substeps; }
+double substep_length(double dt, std::uint32_t substeps) { return dt / substeps; }
 
 template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep,
-                InfoOf<Scalar> (&infos)[phase_count]) {
-  const double h = substep_length(settings, dt), ratio = last_substep > 0 ? h / last_substep : 1;
+void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep, InfoOf<Scalar> (&infos)[phase_count]) {
+  const double ratio = last_substep > 0 ? h / last_substep : 1;
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
+  const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
 
   InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
@@ -42,6 +42,8 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
   biased.contact_preload = Scalar((getenv("SD") ? atof(getenv("SD")) : constants::contact_preload) * length(gravity) * h);
+  biased.tree_contact_rate = Scalar(of_tree.rate);
+  biased.tree_contact_impulse_scale = Scalar(of_tree.impulse_scale);
   biased.mean_share = Scalar(constants::mean_impulse_share);
   biased.push_speed = Scalar(settings.push_speed);
   biased.joint_rate = Scalar(joint.rate);
@@ -67,10 +69,10 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
-  relax.contact_rate = relax.joint_rate = 0;
+  relax.contact_rate = relax.tree_contact_rate = relax.joint_rate = 0;
   relax.joint_mass_scale = 1;
   relax.load_ahead = 1;
-  relax.contact_impulse_scale = relax.joint_impulse_scale = 0;
+  relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
 template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);

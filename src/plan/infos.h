@@ -8,10 +8,10 @@
 namespace pcphys {
 
 /// [s]
-double substep_length(const StepSettings& settings, double dt);
+double substep_length(double dt, std::uint32_t substeps);
 
-/// One block a phase, by Phase. `last_substep`: of the step before, 0 if there was none [s].
+/// One block a phase, by Phase. `h`: the sub-step; `last_substep`: of the step before, 0 if there was none [s].
 template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double last_substep, InfoOf<Scalar> (&infos)[phase_count]);
+void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep, InfoOf<Scalar> (&infos)[phase_count]);
 
 }  // namespace pcphys

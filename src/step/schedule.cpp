@@ -181,13 +181,19 @@ void TreeSlots::pack(std::uint32_t width) {
 void Schedule::update_structure(const WorldState& state) {
   bodies.clear();
   drag = gyroscopic = false;
+  double lightest = 0, heaviest = 0;  // as inverse masses
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
     if (state.stands(row)) continue;
     bodies.push_back(row);
     drag |= state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0;
     const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4);
     gyroscopic |= inverse.x != inverse.y || inverse.y != inverse.z;
+    const double inverse_mass = state.tables.get(Buffer::motion, row, 3);
+    if (inverse_mass <= 0) continue;
+    lightest = std::max(lightest, inverse_mass);
+    heaviest = heaviest > 0 ? std::min(heaviest, inverse_mass) : inverse_mass;
   }
+  uneven = lightest >= constants::uneven_masses * heaviest && heaviest > 0;
   moving = std::uint32_t(bodies.size());
   bodies.resize((bodies.size() + padding - 1) / padding * padding, 0);
   bodies_version++;

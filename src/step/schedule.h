@@ -128,6 +128,7 @@ class Schedule {
   std::vector<std::uint32_t> bodies;      // rows that move, padded with row 0 to a multiple of `padding`
   std::uint32_t moving = 0;               // without the padding
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
+  bool uneven = false;                    // masses differ by more than constants::uneven_masses
   std::uint64_t bodies_version = 0;
   ColouredSlots joints, contacts;  // joints: those that stand in no tree
   TreeSlots trees;

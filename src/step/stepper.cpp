@@ -10,6 +10,7 @@
 #include "pcphys/constants.h"
 #include "pcphys/step.h"
 #include "plan/infos.h"
+#include "plan/loads.h"
 #include "plan/plan.h"
 #include "step/processor_state.h"
 #include "step/runner.h"
@@ -23,11 +24,16 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::uint32_t most_substeps = 1000;
+
 Status check_settings(const StepSettings& s) {
-  if (s.substeps < 1 || s.substeps > 1000)
+  if (s.substeps < 1 || s.substeps > most_substeps)
     return Error{ErrorCode::bad_time_step,
                  "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
   if (Status ok = Workers::check(s.threads); !ok) return ok;
+  if (s.load_refinement < 1 || s.load_refinement > most_substeps)
+    return Error{ErrorCode::bad_argument, "The refinement for heavy loads is " + std::to_string(s.load_refinement) +
+                                              "; it must lie between 1 (never) and 1000."};
   for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
     if (!std::isfinite(x) || x < 0)
       return Error{ErrorCode::bad_argument,
@@ -69,6 +75,7 @@ struct Stepper::Inside {
   StepSettings settings;
   Detector detector;
   Schedule schedule;
+  Loads loads;
   Runner runner;
   StepReport report;
   std::vector<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few
@@ -117,12 +124,12 @@ struct Stepper::Inside {
     return plans.emplace_back(wanted, make_plan(wanted)).second;
   }
 
-  const void* fill(const WorldState& s, double dt) {
+  const void* fill(const WorldState& s, double h) {
     if (s.tables.precision() == Precision::f32) {
-      fill_infos(settings, s.gravity, dt, s.last_substep, infos_f);
+      fill_infos(settings, s.gravity, h, s.last_substep, infos_f);
       return infos_f;
     }
-    fill_infos(settings, s.gravity, dt, s.last_substep, infos_d);
+    fill_infos(settings, s.gravity, h, s.last_substep, infos_d);
     return infos_d;
   }
 
@@ -191,6 +198,11 @@ struct Stepper::Inside {
     write_pivots(s, schedule.trees.pivots());
   }
 
+  void update_contacts(const WorldState& s) {
+    schedule.update_contacts(s);
+    if (schedule.uneven) loads.find(s, schedule.trees.nodes());
+  }
+
   void freeze_leaving(WorldState& s) {
     for (const std::uint32_t row : leaving) {
       report.frozen.push_back(s.body_ids.id<BodyId>(s.bodies[row].index));
@@ -210,8 +222,11 @@ struct Stepper::Inside {
     Detector::Found found;
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
-    if (found.changed || other || contacts_version != s.contacts_version) schedule.update_contacts(s);
+    if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
     PlanSignature wanted = signature(schedule);
+    if (schedule.uneven && settings.integrator != Integrator::seed)
+      wanted.substeps = std::min(most_substeps, settings.substeps * loads.refinement(s, settings, dt));
+    const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
@@ -227,10 +242,11 @@ struct Stepper::Inside {
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
-    if (ok = runner.run(settings, *plan, s, schedule, fill(s, dt), report); !ok) return undo(s, ok);
+    if (ok = runner.run(settings, *plan, s, schedule, fill(s, h), report); !ok) return undo(s, ok);
     find_outside(s, schedule.bodies, outside);
     if (!outside.empty()) return {};
-    s.last_substep = substep_length(settings, dt);
+    s.last_substep = h;
+    report.substeps = wanted.substeps;
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;
