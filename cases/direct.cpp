@@ -1,5 +1,6 @@
 #include "direct.h"
 
+#include "parts.h"
 #include "plan/infos.h"
 #include "plan/plan.h"
 #include "step/processor_state.h"
@@ -8,16 +9,6 @@
 
 namespace pcphys::cases {
 namespace {
-
-BodyDef sphere(double mass, double radius, Vec3 position, Vec3 velocity, Vec3 spin) {
-  BodyDef def;
-  def.shapes = {ShapeDef::sphere(radius)};
-  def.mass = mass;
-  def.pose.position = position;
-  def.velocity = velocity;
-  def.angular_velocity = spin;
-  return def;
-}
 
 void write_contact_row(WorldState& s, const SphereContact& c, double gap) {
   s.tables.resize(Table::contact, 2);
@@ -36,7 +27,7 @@ void write_contact_row(WorldState& s, const SphereContact& c, double gap) {
 Result<World> make_world(const SphereContact& c, Precision precision) {
   World world({precision, {}});
   const Vec3 centre1 = -(c.radius1 + c.radius2) * c.normal;
-  for (const BodyDef& def : {sphere(c.mass1, c.radius1, centre1, c.v1, c.w1), sphere(c.mass2, c.radius2, {}, c.v2, c.w2)})
+  for (const BodyDef& def : {ball(c.mass1, c.radius1, centre1, c.v1, c.w1), ball(c.mass2, c.radius2, {}, c.v2, c.w2)})
     if (auto made = world.create_body(def); !made) return made.error();
   return world;
 }

@@ -29,14 +29,11 @@ void two_boxes(Trial& trial, double overlap) {
 
 void pyramid(Trial& trial) {
   const int base = 4;
-  const double overlap = 0.25;
   Simulated& run = trial.start([=](scenes::Builder& builder) {
     (void)builder.world().set_gravity(down);
     builder.set_material(0.6, 0);
     add_floor(builder);
-    for (int row = 0; row < base; ++row)
-      for (int i = 0; i < base - row; ++i)
-        add_block(builder, {0.5, 0.5, 0.5}, 1, {{i - 0.5 * (base - row), 0, (1 - overlap) * (0.5 + row)}, {}});
+    add_pyramid(builder, {.base = base, .overlap = 0.25});
   });
   Worst speed;
   for (long k = 0; k < trial.steps(2); ++k) {

@@ -98,16 +98,12 @@ void size_of_drop(Trial& trial, ShapeKind kind, double size, double restitution,
 }
 
 void tiny_pyramid(Trial& trial) {
-  const int base = 30;
   const double edge = 0.05;
   Simulated& run = trial.start([=](scenes::Builder& builder) {
     (void)builder.world().set_gravity(down);
     builder.set_material(0.6, 0);
     add_floor(builder);
-    const double half = 0.5 * edge;
-    for (int row = 0; row < base; ++row)
-      for (int i = 0; i < base - row; ++i)
-        add_block(builder, {half, half, half}, 0.125, {{edge * (i - 0.5 * (base - row)), 0, half + edge * row}, {}});
+    add_pyramid(builder, {.base = 30, .edge = edge, .mass = 0.125});
   });
   run.step(trial.dt(), trial.steps(5));
   const Moved m = moved(run);

@@ -2,21 +2,10 @@
 #include <numbers>
 #include <string>
 
-#include "case.h"
-#include "measures.h"
+#include "parts.h"
 
 namespace pcphys::cases {
 namespace {
-
-BodyDef ball(double mass, double radius, Vec3 position, Vec3 velocity, Vec3 spin = {}) {
-  BodyDef def;
-  def.shapes = {ShapeDef::sphere(radius)};
-  def.mass = mass;
-  def.pose.position = position;
-  def.velocity = velocity;
-  def.angular_velocity = spin;
-  return def;
-}
 
 // ---- A16 -----------------------------------------------------------------------------------------------
 

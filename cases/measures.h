@@ -90,6 +90,22 @@ class Worst {
   double value_ = 0;
 };
 
+/// What should oscillate about one value: how far its mean over the last tenth of a run lies from that over the first.
+class Trend {
+ public:
+  explicit Trend(long steps) : steps_(steps), tenth_(steps / 10) {}
+  void add(double value) {
+    if (done_ < tenth_) first_ += value / double(tenth_);
+    if (done_ >= steps_ - tenth_) last_ += value / double(tenth_);
+    ++done_;
+  }
+  operator double() const { return std::fabs(last_ - first_); }
+
+ private:
+  long steps_, tenth_, done_ = 0;
+  double first_ = 0, last_ = 0;
+};
+
 /// exp of a rotation vector [rad].
 Quat exponential(Vec3 rotation);
 /// The angle that turns a into b, in [0, pi] [rad].

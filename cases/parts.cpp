@@ -24,13 +24,26 @@ int add_block(scenes::Builder& builder, Vec3 half, double mass, const Pose& pose
   return builder.add(def);
 }
 
-int add_ball(scenes::Builder& builder, double radius, double mass, Vec3 centre, Vec3 velocity) {
+BodyDef ball(double mass, double radius, Vec3 centre, Vec3 velocity, Vec3 spin) {
   BodyDef def;
   def.shapes = {ShapeDef::sphere(radius)};
   def.mass = mass;
   def.pose.position = centre;
   def.velocity = velocity;
-  return builder.add(def);
+  def.angular_velocity = spin;
+  return def;
+}
+
+int add_ball(scenes::Builder& builder, double radius, double mass, Vec3 centre, Vec3 velocity) {
+  return builder.add(ball(mass, radius, centre, velocity));
+}
+
+void add_pyramid(scenes::Builder& builder, const Pyramid& p) {
+  const double half = 0.5 * p.edge, rise = 1 - p.overlap;
+  for (int row = 0; row < p.base; ++row)
+    for (int i = 0; i < p.base - row; ++i)
+      add_block(builder, {half, half, half}, row + 1 == p.base ? p.top_mass : p.mass,
+                {{p.edge * (i - 0.5 * (p.base - row)), 0, rise * (half + p.edge * row)}, {}});
 }
 
 void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b) {

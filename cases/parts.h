@@ -14,7 +14,17 @@ int add_floor(scenes::Builder& builder, Vec3 offset = {});
 int add_level_floor(scenes::Builder& builder);
 /// A box that moves, by half extents.
 int add_block(scenes::Builder& builder, Vec3 half, double mass, const Pose& pose, Vec3 velocity = {});
+/// A sphere that moves.
+BodyDef ball(double mass, double radius, Vec3 centre, Vec3 velocity = {}, Vec3 spin = {});
 int add_ball(scenes::Builder& builder, double radius, double mass, Vec3 centre, Vec3 velocity = {});
+/// Rows of cubes on one another, one fewer in each, `base` in the lowest, in the plane y = 0 above z = 0.
+struct Pyramid {
+  int base = 10;
+  double edge = 1, mass = 1;  // [m], [kg]
+  double top_mass = mass;     // of the last cube
+  double overlap = 0;         // of one row and the next, as a share of the edge
+};
+void add_pyramid(scenes::Builder& builder, const Pyramid& pyramid);
 void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b);
 
 /// Links of B1: boxes of 0.04 x 0.04 x 0.2 m and 1 kg along their z axis, the last one `ratio` times as heavy.

@@ -117,19 +117,18 @@ void swing(Trial& trial, const Amplitude& amplitude, const Csv& reference) {
 void long_swing(Trial& trial) {
   Simulated& run = pendulum(trial, 0.5 * pi);
   const double e0 = energy(run);
-  const long steps = trial.steps(1000), tenth = steps / 10;
+  const long steps = trial.steps(1000);
   Worst worst;
-  constexpr double rounding = 1e-9;  // an energy that is kept to this has no oscillation to compare a trend with
-  double first = 0, last = 0;        // means over the first and the last tenth
+  Trend trend(steps);
   for (long k = 0; k < steps; ++k) {
     run.step(trial.dt());
     const double error = (energy(run) - e0) / gravity;
     worst.add(std::fabs(error));
-    if (k < tenth) first += error / double(tenth);
-    if (k >= steps - tenth) last += error / double(tenth);
+    trend.add(error);
   }
   trial.report("energy / (2 m g l)", worst, trial.at({1.36e-3, 8.4e-5, infinite, infinite}));
-  trial.report("trend of the energy / its oscillation", std::fabs(last - first) / std::max<double>(worst, rounding),
+  const double oscillation = std::max<double>(worst, 1e-9);  // what is kept to less is rounding
+  trial.report("trend of the energy / its oscillation", trend / oscillation,
                trial.is_double() ? std::optional(0.1) : std::nullopt);
 }
 

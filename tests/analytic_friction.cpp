@@ -10,6 +10,14 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+BodyDef plane_of(const Material& material) {
+  BodyDef floor;
+  floor.kind = BodyKind::fixed;
+  floor.shapes = {ShapeDef::plane()};
+  floor.material = material;
+  return floor;
+}
+
 /// A body on a plane that is tilted by `degrees` towards the direction `yaw` (gravity is turned instead).
 struct Incline {
   Run run;
@@ -20,11 +28,7 @@ struct Incline {
   Incline(const Mode& mode, const ShapeDef& shape, double height, const Material& material, double degrees, double yaw = 0,
           std::uint32_t substeps = 4, double dt = 1.0 / 240, bool settle = true)
       : run(mode, {0, -gravity * std::cos(degrees * pi / 180), 0}, substeps), down{std::cos(yaw), 0, std::sin(yaw)} {
-    BodyDef floor;
-    floor.kind = BodyKind::fixed;
-    floor.shapes = {ShapeDef::plane()};
-    floor.material = material;
-    run.add(floor);
+    run.add(plane_of(material));
     BodyDef def;
     def.shapes = {shape};
     def.mass = 1;
@@ -271,11 +275,7 @@ TEST_CASE("rolling friction: the same hash in every lane width and on GL; withou
 TEST_CASE("combination rules: each of them, and which holds where two differ") {
   const auto contact_of = [](const Material& a, const Material& b) {
     Run run(Mode{});
-    BodyDef floor;
-    floor.kind = BodyKind::fixed;
-    floor.shapes = {ShapeDef::plane()};
-    floor.material = a;
-    run.add(floor);
+    run.add(plane_of(a));
     BodyDef def;
     def.shapes = {ShapeDef::sphere(0.1)};
     def.pose.position = {0, 0.1, 0};

@@ -69,23 +69,6 @@ PC_INLINE bool pc_any(Mask m) { return pc_mask_bits(m) != 0; }
 
 PC_INLINE Index pc_each(const uint* list, Slot, uint i) { return pc_index(list + i); }
 
-// Four consecutive reals of row i: quad k of a buffer with `quads` of them a row.
-PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) {
-  Quad q;
-#if PC_LANES == 1
-  const Scalar* p = buffer + (std::size_t(i.i) * quads + k) * 4;
-  q.v = Vec3(p[0], p[1], p[2]);
-  q.s = p[3];
-#else
-  const Scalar* p[PC_LANES];
-  for (uint l = 0; l < PC_LANES; l++) p[l] = buffer + (std::size_t(i.i[l]) * quads + k) * 4;
-  Real o[4];
-  pc_transpose_in(p, o);
-  q.v = Vec3(o[0], o[1], o[2]);
-  q.s = o[3];
-#endif
-  return q;
-}
 // Where row i of a buffer begins, for many quads of it: each lane's address is computed once.
 struct Row {
   const Scalar* p[PC_LANES];
@@ -114,6 +97,8 @@ PC_INLINE Quad pc_row_quad(const Row& r, uint k) {
 #endif
   return q;
 }
+// Four consecutive reals of row i: quad k of a buffer with `quads` of them a row.
+PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) { return pc_row_quad(pc_row(buffer, i, quads), k); }
 PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
 #if PC_LANES == 1
   Scalar* p = buffer + (std::size_t(i.i) * quads + k) * 4;
