@@ -120,7 +120,6 @@ void long_swing(Trial& trial) {
   const long steps = trial.steps(1000);
   Worst worst;
   Trend trend(steps);
-  constexpr double rounding = 1e-9;  // an energy that is kept to this has no oscillation to compare a trend with
   for (long k = 0; k < steps; ++k) {
     run.step(trial.dt());
     const double error = (energy(run) - e0) / gravity;
@@ -128,7 +127,8 @@ void long_swing(Trial& trial) {
     trend.add(error);
   }
   trial.report("energy / (2 m g l)", worst, trial.at({1.36e-3, 8.4e-5, infinite, infinite}));
-  trial.report("trend of the energy / its oscillation", trend / std::max<double>(worst, rounding),
+  const double oscillation = std::max<double>(worst, 1e-9);  // what is kept to less is rounding
+  trial.report("trend of the energy / its oscillation", trend / oscillation,
                trial.is_double() ? std::optional(0.1) : std::nullopt);
 }
 
