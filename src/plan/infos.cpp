@@ -1,7 +1,6 @@
 #include "plan/infos.h"
 
 #include <limits>
-#include <cstdlib>
 
 #include "pcphys/constants.h"
 
@@ -41,7 +40,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double dt, double la
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
-  biased.contact_preload = Scalar((getenv("SD") ? atof(getenv("SD")) : constants::contact_preload) * length(gravity) * h);
+  biased.contact_preload = Scalar(constants::contact_preload * length(gravity) * h);
   biased.mean_share = Scalar(constants::mean_impulse_share);
   biased.push_speed = Scalar(settings.push_speed);
   biased.joint_rate = Scalar(joint.rate);
