@@ -32,8 +32,8 @@ inline constexpr double moment_tolerance = 1e-6;
 inline constexpr double contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
 inline constexpr double contact_damping_ratio = 5;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a sub-step:
-/// what lies alone does not sink.
-inline constexpr double contact_preload = 3;
+/// what lies alone does not sink. (From 2 on pyramids spread.)
+inline constexpr double contact_preload = 1.75;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;
