@@ -38,8 +38,8 @@ inline constexpr double contact_damping_ratio = 0;
 inline constexpr double tree_contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
 inline constexpr double tree_contact_damping_ratio = 5;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a sub-step:
-/// what lies alone does not sink.
-inline constexpr double contact_preload = 3;
+/// what lies alone does not sink. (From 2 on pyramids spread.)
+inline constexpr double contact_preload = 1.75;
 /// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md); they are to bring what it is
 /// pressed in to this share of the contact margin.
 inline constexpr double uneven_masses = 16, load_overlap = 0.025;

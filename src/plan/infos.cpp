@@ -1,6 +1,5 @@
 #include "plan/infos.h"
 
-#include <cstdlib>
 #include <limits>
 
 #include "pcphys/constants.h"
@@ -41,7 +40,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
-  biased.contact_preload = Scalar((getenv("SD") ? atof(getenv("SD")) : constants::contact_preload) * length(gravity) * h);
+  biased.contact_preload = Scalar(constants::contact_preload * length(gravity) * h);
   biased.tree_contact_rate = Scalar(of_tree.rate);
   biased.tree_contact_impulse_scale = Scalar(of_tree.impulse_scale);
   biased.mean_share = Scalar(constants::mean_impulse_share);
