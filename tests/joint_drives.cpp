@@ -51,7 +51,7 @@ void workshop(World& world) {
     if (i > 0) joint.spring = {50.0 * i, 1, axis_angle({1, 0, 0}, 0.2)};
     must(world.create_joint(joint));
   }
-  must(world.create_spring(spring_between(arm[1], arm[3], 0.4, 1e6)));
+  must(world.create_spring(spring_between(arm[1], arm[3], 1, 1e6)));
   SpringDef held = spring_between(world.ground(), arm[2], 1, 300);
   held.damping = 5;
   held.anchor_a = {1.2, 3.5, 0};
