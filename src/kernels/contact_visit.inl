@@ -19,6 +19,14 @@
 #endif
 PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real mean) {
   Mask open = s > PC_REAL(0.0);
+#ifdef PC_MEAN
+  precise Real gap_rate = s * PC_INFO(inverse_h);
+  precise Real soft_rate = s * PC_INFO(tree_contact_rate);
+  Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed)));
+  Real mass_scale = pc_select(open, PC_REAL(1.0), pc_soft_mass_scale);
+  Real impulse_scale = pc_select(open, PC_REAL(0.0), pc_soft_impulse_scale);
+  precise Real next = impulse - mass * mass_scale * (vn + bias) - impulse_scale * (impulse - mean);
+#else
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real push_rate = s * pc_soft_rate;
   Real bias = pc_select(open, gap_rate, push_rate);
@@ -27,6 +35,7 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real me
   // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
   precise Real give = scaled * bias + impulse_scale * (impulse - mean); precise Real most = mass * PC_INFO(push_speed);
   precise Real next = impulse - scaled * vn - pc_max(give, -most);
+#endif
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));
