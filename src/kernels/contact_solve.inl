@@ -18,6 +18,3 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_apply(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple);
 }
 #undef pc_held
-#undef PC_LEAST_BEYOND
-#undef PC_SOFT_RATE
-#undef PC_SOFT_LEAK

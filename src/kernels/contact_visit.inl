@@ -9,25 +9,25 @@
 // trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
 #ifdef PC_MEAN
 #define pc_held(i, mass) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
-#define PC_LEAST_BEYOND PC_REAL(-1e30)
-#define PC_SOFT_RATE PC_INFO(tree_contact_rate)
-#define PC_SOFT_LEAK PC_INFO(tree_contact_impulse_scale)
 #else
 PC_FN Real pc_preload(PC_IO Real mass) { precise Real r = mass * PC_INFO(contact_preload); return r; }
 #define pc_held(i, mass) pc_preload(PC_PASS mass)
-#define PC_LEAST_BEYOND PC_REAL(0.0)
-#define PC_SOFT_RATE PC_INFO(contact_rate)
-#define PC_SOFT_LEAK PC_INFO(contact_impulse_scale)
 #endif
 PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held) {
   Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
-  precise Real soft_rate = s * PC_SOFT_RATE;
-  Real bias = pc_select(open, gap_rate, soft_rate); Real leak = pc_select(open, PC_REAL(0.0), PC_SOFT_LEAK);
+#ifdef PC_MEAN
+  precise Real soft_rate = s * PC_INFO(tree_contact_rate);
+  Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed))); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(tree_contact_impulse_scale));
+  precise Real rigid = impulse - mass * (vn + bias); precise Real next = rigid - (rigid - held) * leak;
+#else
+  precise Real soft_rate = s * PC_INFO(contact_rate);
+  Real bias = pc_select(open, gap_rate, soft_rate); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
   precise Real beyond = impulse - mass * (vn + bias) - held;
   // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
-  precise Real give = mass * bias + pc_max(beyond, PC_LEAST_BEYOND) * leak; precise Real most = mass * PC_INFO(push_speed);
+  precise Real give = mass * bias + pc_max(beyond, PC_REAL(0.0)) * leak; precise Real most = mass * PC_INFO(push_speed);
   precise Real next = impulse - mass * vn - pc_max(give, -most);
+#endif
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));

@@ -38,6 +38,3 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 }
 #undef PC_MEAN
 #undef pc_held
-#undef PC_LEAST_BEYOND
-#undef PC_SOFT_RATE
-#undef PC_SOFT_LEAK
