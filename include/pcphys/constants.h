@@ -38,11 +38,11 @@ inline constexpr double contact_damping_ratio = 1.73;
 inline constexpr double tree_contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
 inline constexpr double tree_contact_damping_ratio = 5;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a sub-step:
-/// what lies alone does not sink. (From 2 on pyramids spread.)
-inline constexpr double contact_preload = 1.75;
-/// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md); they are to bring what it is
-/// pressed in to this share of the contact margin.
-inline constexpr double uneven_masses = 16, load_overlap = 0.025;
+/// what lies alone on what stands does not sink.
+inline constexpr double contact_preload = 3;
+/// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md): where it would be pressed in
+/// by more than the first share of the contact margin, they are to bring that down to the second.
+inline constexpr double uneven_masses = 16, heavy_overlap = 0.75, load_overlap = 0.025;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;

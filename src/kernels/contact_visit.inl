@@ -5,13 +5,15 @@
 
 // New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint with a preload: it lets go of a share of
-// what goes beyond an impulse that a few weights of the body's own make, so that what lies alone does not sink. With bodies of
-// trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
+// what goes beyond an impulse that a few weights of the body's own make (`preload`, a velocity), so that what lies alone does not
+// sink. With bodies of trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
 #ifdef PC_MEAN
 #define pc_held(i, mass) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+#define PC_PRELOAD
 #else
-PC_FN Real pc_preload(PC_IO Real mass) { precise Real r = mass * PC_INFO(contact_preload); return r; }
-#define pc_held(i, mass) pc_preload(PC_PASS mass)
+PC_FN Real pc_times_preload(Real mass, Real preload) { precise Real r = mass * preload; return r; }
+#define pc_held(i, mass) pc_times_preload(mass, preload)
+#define PC_PRELOAD , Real preload
 #endif
 PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held) {
   Mask open = s > PC_REAL(0.0);
@@ -41,7 +43,7 @@ struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
 
 // Impulse and couple on b at the centre, and the load before or after, whichever is larger.
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
-PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2) {
+PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2 PC_PRELOAD) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
@@ -79,7 +81,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     Gaps gap; gap.s0 = s0; gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
-    pc_settle(PC_PASS m, v, gap, mass_scale, unsettled, now);
+    pc_settle(PC_PASS m, v, gap, mass_scale, preload, unsettled, now);
   }
 #endif
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);

@@ -25,7 +25,7 @@ std::uint32_t Loads::refinement(const WorldState& state, const StepSettings& set
   const double h = dt / settings.substeps, frequency = constants::contact_frequency_times_h / h;
   const double aim = constants::load_overlap * settings.contact_margin;
   double overlap = largest / (frequency * frequency);
-  if (overlap <= 4 * aim) return 1;
+  if (overlap <= constants::heavy_overlap * settings.contact_margin) return 1;
   std::uint32_t times = 1;
   for (; overlap > aim && 2 * times <= settings.load_refinement; overlap /= 4) times *= 2;
   return times;
