@@ -80,7 +80,8 @@ TEST_CASE("report: sub-steps that were made, more of them under a heavy load") {
     return report.substeps;
   };
   CHECK(substeps(10, 16) == 4);         // little
-  CHECK(substeps(100, 16) == 16);       // enough for 0.5 mm
+  CHECK(substeps(100, 16) == 4);        // still less than 15 mm
+  CHECK(substeps(300, 16) == 32);       // enough for 0.5 mm
   CHECK(substeps(1000, 16) == 64);      // 16 times at most
   CHECK(substeps(1000, 4) == 16);       // or what the setting says
   CHECK(substeps(1000, 1) == 4);        // never
