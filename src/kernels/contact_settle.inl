@@ -3,13 +3,11 @@
 // one round leaves (a box that tilts a little, and slides while it does) is never undone.
 struct Gaps { Real s0; Real s1; Real s2; Real s3; };
 
-// Whether rounds are needed: more than one point, and in the biased visit a load half as large again, or friction that changes by
-// half of its limit. On what stands (`preload`), where rows are rigid under a few weights and nothing wears off, a load that changes
-// by a fiftieth and friction by a twentieth of the limit.
-PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real coming, Friction f, Real preload) {
-  Mask stands = preload > PC_REAL(0.0); precise Real risen = coming - load;
-  precise Real more = pc_select(stands, pc_abs(risen), risen) - load * pc_select(stands, PC_REAL(0.02), PC_REAL(0.5));
-  precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC); precise Real square = limit * limit * pc_select(stands, PC_REAL(0.0025), PC_REAL(0.25));
+// Whether rounds are needed: more than one point, and in the biased visit a load half as large again as what holds, or friction
+// that changes by half of its limit.
+PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real coming, Friction f) {
+  precise Real more = coming - load * PC_REAL(1.5);
+  precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC); precise Real square = limit * limit * PC_REAL(0.25);
   Real biased = pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MASS + 1u));
   return pc_and(biased > PC_REAL(0.0), pc_or(more > PC_REAL(0.0), change > square));
 }

@@ -78,7 +78,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 
   Rows now; now.k0 = k0; now.k1 = k1; now.k2 = k2; now.k3 = k3; now.f = f;
 #ifndef PC_MEAN
-  Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f, preload);
+  Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     Gaps gap; gap.s0 = s0; gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
     pc_settle(PC_PASS m, v, gap, mass_scale, preload, unsettled, now);
