@@ -89,6 +89,13 @@ TEST_CASE("lanes: 1, 4 and 8 in float have equal hashes over 600 steps") {
   }
 }
 
+TEST_CASE("lanes: a heap of ragdolls, in which blocks mix contacts of all kinds") {
+  const Case heap{"ragdolls", 20, 0};
+  const auto wanted = hashes(heap, Precision::f32, lanes(1), 180);
+  CHECK(hashes(heap, Precision::f32, lanes(4), 180) == wanted);
+  CHECK(hashes(heap, Precision::f32, lanes(8), 180) == wanted);
+}
+
 TEST_CASE("lanes: 1 and 4 in double have equal hashes over 600 steps") {
   for (const Case& c : cases) {
     INFO(text(c, Precision::f64));
