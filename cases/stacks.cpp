@@ -30,6 +30,18 @@ double sunk(const Simulated& run, int count) {
   return worst;
 }
 
+/// How far boxes have been from where they were built, at any tenth step of so many seconds.
+Moved farthest(Trial& trial, Simulated& run, double seconds) {
+  Worst across, below;
+  for (long k = 0; k < trial.steps(seconds) / 10; ++k) {
+    run.step(trial.dt(), 10);
+    const Moved m = moved(run);
+    across.add(m.across);
+    below.add(m.down);
+  }
+  return {across, below};
+}
+
 // ---- B3 ------------------------------------------------------------------------------------------------
 
 void heavy_tower(Trial& trial, int count, double top_mass, bool bounded) {
@@ -61,13 +73,7 @@ void heavy_pyramid(Trial& trial, double ratio) {
 
 void plain_tower(Trial& trial, int count) {
   Simulated& run = tower(trial, count, 1);
-  Worst across, dz;
-  for (long k = 0; k < trial.steps(10) / 10; ++k) {
-    run.step(trial.dt(), 10);
-    const Moved m = moved(run);
-    across.add(m.across);
-    dz.add(m.down);
-  }
+  const auto [across, dz] = farthest(trial, run, 10);
   const bool coarse = trial.dt() > 1.0 / 100, bounded = count <= (coarse ? 10 : 30);
   trial.report("across [m]", across, bounded ? std::optional(0.05) : std::nullopt, 0.05);
   trial.report("down [m]", dz, bounded ? std::optional(coarse ? 5e-3 : 1e-3) : std::nullopt);
@@ -156,13 +162,7 @@ void arch(Trial& trial) {
     for (int i = 0; i < 4; ++i)
       add_block(builder, half, 200 * 8 * half.x * half.y * half.z, {{0, 0, outer(last, 1).z + half.z * (2 * i + 1)}, {}});
   });
-  Worst across, sunk;
-  for (long k = 0; k < trial.steps(60) / 10; ++k) {
-    run.step(trial.dt(), 10);
-    const Moved m = moved(run);
-    across.add(m.across);
-    sunk.add(m.down);
-  }
+  const auto [across, sunk] = farthest(trial, run, 60);
   trial.report("across [m]", across, 0.02);
   trial.report("down [m]", sunk, 0.02);
 }

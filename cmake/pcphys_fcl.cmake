@@ -1,15 +1,5 @@
 # FCL is a selectable narrow phase on the CPU and the oracle of the tests; the library works without it.
-set(PCPHYS_HAVE_FCL FALSE)
-if(NOT PCPHYS_WITH_FCL STREQUAL OFF)
-  find_package(fcl QUIET CONFIG)
-  if(fcl_FOUND)
-    set(PCPHYS_HAVE_FCL TRUE)
-  elseif(NOT PCPHYS_WITH_FCL STREQUAL AUTO)
-    message(FATAL_ERROR "pcphys: PCPHYS_WITH_FCL is ${PCPHYS_WITH_FCL} but FCL was not found. "
-      "Install it (Debian, Ubuntu: apt-get install libfcl-dev) or configure with -DPCPHYS_WITH_FCL=OFF.")
-  endif()
-endif()
-message(STATUS "pcphys: FCL narrow phase: ${PCPHYS_HAVE_FCL}")
+pcphys_find_optional(FCL PACKAGE fcl CALLED FCL DEBIAN libfcl-dev FOR "narrow phase")
 
 function(pcphys_link_fcl target)
   if(PCPHYS_HAVE_FCL)

@@ -1,0 +1,16 @@
+# Libraries that pcphys can do without. pcphys_find_optional(TBB PACKAGE TBB CALLED oneTBB DEBIAN libtbb-dev FOR "threads")
+# follows PCPHYS_WITH_TBB (AUTO, ON, OFF) and sets PCPHYS_HAVE_TBB. A macro: the targets that it finds are the caller's.
+macro(pcphys_find_optional name)
+  cmake_parse_arguments(of "" "PACKAGE;CALLED;DEBIAN;FOR" "" ${ARGN})
+  set(PCPHYS_HAVE_${name} FALSE)
+  if(NOT PCPHYS_WITH_${name} STREQUAL OFF)
+    find_package(${of_PACKAGE} QUIET CONFIG)
+    if(${of_PACKAGE}_FOUND)
+      set(PCPHYS_HAVE_${name} TRUE)
+    elseif(NOT PCPHYS_WITH_${name} STREQUAL AUTO)
+      message(FATAL_ERROR "pcphys: PCPHYS_WITH_${name} is ${PCPHYS_WITH_${name}} but ${of_CALLED} was not found. "
+        "Install it (Debian, Ubuntu: apt-get install ${of_DEBIAN}) or configure with -DPCPHYS_WITH_${name}=OFF.")
+    endif()
+  endif()
+  message(STATUS "pcphys: ${of_FOR} (${of_CALLED}): ${PCPHYS_HAVE_${name}}")
+endmacro()
