@@ -18,9 +18,12 @@ const char* name(Place place);
 enum class Integrator : std::uint8_t { verlet, seed };
 const char* name(Integrator integrator);
 
-/// Which coefficients a kernel is given: those of the step's start, of the solve, or of the relax pass.
-enum class Phase : std::uint8_t { first, biased, relax };
-inline constexpr unsigned phase_count = 3;
+/// Which coefficients a kernel is given: those of the step's start, of the solve, of the relax pass, or of the step's end.
+enum class Phase : std::uint8_t { first, biased, relax, last };
+inline constexpr unsigned phase_count = 4;
+
+/// Sub-step classes: islands of octave k make 2^k times the sub-steps that the settings ask for (docs/substeps.md).
+inline constexpr unsigned octave_count = 10;
 
 enum class Kernel : std::uint8_t;
 enum class Buffer : std::uint8_t;
@@ -32,8 +35,9 @@ struct PlanEntry {
   Kernel kernel{};  // of a kernel
   Buffer buffer{};  // of a transfer
   Phase phase = Phase::biased;
-  bool barrier = false;  // uses what a kernel before it wrote, or writes what one read, on the same device
-  std::uint32_t substep = 0;
+  bool barrier = false;       // uses what a kernel before it wrote, or writes what one read, on the same device
+  std::uint32_t substep = 0;  // of the octave's
+  std::uint8_t octave = 0;    // of the islands that a kernel is for
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
 };
 
@@ -43,7 +47,7 @@ struct LeftOut {
 };
 
 struct StepPlan {
-  std::uint32_t substeps = 0;
+  std::uint32_t substeps = 0;  // of octave 0
   std::vector<PlanEntry> entries;
   std::vector<LeftOut> left_out;
   friend bool operator==(const StepPlan&, const StepPlan&) = default;

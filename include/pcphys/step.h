@@ -20,8 +20,8 @@ struct StepSettings {
   Place integrate = Place::cpu, joints = Place::cpu, impulses = Place::cpu;
   Integrator integrator = Integrator::verlet;
   std::uint32_t substeps = 4;
-  /// Most by which a step may multiply its sub-steps where a body carries a load far beyond its own weight; 1: never.
-  std::uint32_t load_refinement = 16;
+  /// Most by which a step may multiply the sub-steps of an island that needs it (docs/substeps.md); 1: never.
+  std::uint32_t refinement = 16;
   std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is
   std::uint32_t threads = 1;  // of the CPU, up to 256; 0: as many as the processor runs at a time
   NarrowPhase narrow = NarrowPhase::native;
@@ -43,7 +43,8 @@ const char* name(Timer timer);
 struct StepReport {
   Error error;                 // code none: the step was made. Otherwise the world is as it was before
   std::uint64_t step = 0;      // how many steps this stepper has made
-  std::uint32_t substeps = 0;  // of this step: the setting, or more for heavy loads (StepSettings::load_refinement)
+  std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
+  std::uint32_t refined = 0;   // bodies whose islands made more than the setting
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   /// What the direct solve of joint trees does not carry: joints that close a loop beside another joint of the same bodies or
   /// in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).

@@ -1,6 +1,7 @@
 // What the tree solve keeps of a node: a body, and the joint to its parent (docs/joints.md). Nodes of a tree stand one
 // after the other, parents before children; node 0 is the root, of which only the fields of a body are used.
 #include "tree_math.inl"
+#include "tree_shape.inl"
 
 const uint TREE_RC = 0u;        // arm from the body's centre to the pin, start of the sub-step
 const uint TREE_RP = 3u;        // the same of the parent
@@ -73,8 +74,6 @@ PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
 // Whether any lane's joint has angle rows. Skipping them changes no bit: where there are none they are zeros.
 PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(0.5); }
 // where a tree's nodes stand, and its topology
-struct Tree { uint first; uint count; };
-PC_FN Tree pc_tree(PC_IO Slot m) { uint block = PC_BLOCK(m); uint at = block * 2u; Tree t; t.first = PC_UINT(tree_blocks, at); t.count = PC_UINT(tree_blocks, at + 1u); return t; }
 #ifndef PC_NO_PARENTS
 PC_FN uint pc_parent(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) >> 1u; }
 // whether the tree is one body that a pin holds to a fixed one: it turns about the pin (pivot_turn.inl)

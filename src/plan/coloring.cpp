@@ -94,29 +94,39 @@ void Colouring::group(std::span<const std::uint16_t> kinds) {
 }
 
 void pack_slots(const Colouring& colouring, std::uint32_t width, std::span<const std::uint32_t> ends,
-                std::span<const std::uint32_t> rows, std::vector<std::uint32_t>& out_ends, std::vector<std::uint32_t>& out_order,
-                std::vector<Range>& out_ranges) {
+                std::span<const std::uint32_t> rows, Slots& out, OctaveOf of) {
   assert(width > 0 && ends.size() == 2 * rows.size() && rows.size() == colouring.constraints());
-  assign_with_room(out_ranges, colouring.colours(), Range{});
+  assert(of.octaves.empty() || of.octaves.size() == rows.size());
+  const std::uint32_t colours = colouring.colours(), leading = colouring.leading_colours();
+  assign_with_room(out.ranges, std::size_t{of.count} * colours, Range{});
+  const auto each_range = [&](auto visit) {
+    for (const auto [first, end] : {Range{0, leading}, Range{leading, colours}})
+      for (unsigned octave = 0; octave < of.count; octave++)
+        for (std::uint32_t c = first; c < end; ++c) visit(octave, c, out.ranges[std::size_t{octave} * colours + c]);
+  };
   std::uint32_t blocks = 0;
-  for (std::uint32_t c = 0; c < colouring.colours(); ++c) {
+  each_range([&](unsigned octave, std::uint32_t c, Range& range) {
+    const std::span<const std::uint32_t> all = colouring.of_colour(c);
+    const auto count =
+        of.octaves.empty() ? all.size() : std::size_t(std::ranges::count_if(all, [&](auto i) { return of.is(i, octave); }));
     const std::uint32_t first = blocks;
-    blocks += (static_cast<std::uint32_t>(colouring.of_colour(c).size()) + width - 1) / width;
-    out_ranges[c] = {first, blocks};
-  }
-  assign_with_room(out_order, std::size_t{blocks} * width, 0u);
-  assign_with_room(out_ends, std::size_t{blocks} * width * 2, 0u);
-  for (std::uint32_t c = 0; c < colouring.colours(); ++c) {
-    std::size_t slot = std::size_t{out_ranges[c].begin} * width, lane = 0;
+    blocks += (static_cast<std::uint32_t>(count) + width - 1) / width;
+    range = {first, blocks};
+  });
+  assign_with_room(out.order, std::size_t{blocks} * width, 0u);
+  assign_with_room(out.ends, std::size_t{blocks} * width * 2, 0u);
+  each_range([&](unsigned octave, std::uint32_t c, const Range& range) {
+    std::size_t slot = std::size_t{range.begin} * width, lane = 0;
     for (const std::uint32_t i : colouring.of_colour(c)) {
+      if (!of.is(i, octave)) continue;
       const std::size_t side_a = 2 * (slot - lane) + lane;  // blocks hold `width` ends of side 0, then of side 1
-      out_order[slot] = rows[i];
-      out_ends[side_a] = ends[2 * std::size_t{i}];
-      out_ends[side_a + width] = ends[2 * std::size_t{i} + 1];
+      out.order[slot] = rows[i];
+      out.ends[side_a] = ends[2 * std::size_t{i}];
+      out.ends[side_a + width] = ends[2 * std::size_t{i} + 1];
       ++slot;
       if (++lane == width) lane = 0;
     }
-  }
+  });
 }
 
 }  // namespace pcphys

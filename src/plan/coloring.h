@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "plan/octave_of.h"
 #include "step/backend.h"
 
 namespace pcphys {
@@ -80,19 +81,14 @@ class Colouring {
 struct Slots {
   std::vector<std::uint32_t> ends;   // ends[(block * 2 + side) * width + lane]: body row
   std::vector<std::uint32_t> order;  // order[block * width + lane]: row of the constraint's table
-  std::vector<Range> ranges;         // blocks of each colour
+  std::vector<Range> ranges;         // blocks of each colour, by octave
 
   std::uint32_t blocks() const { return ranges.empty() ? 0 : ranges.back().end; }
 };
 
-/// `ends[2i]`, `ends[2i + 1]`: body rows of constraint i; `rows[i]`: its row.
+/// `ends[2i]`, `ends[2i + 1]`: body rows of constraint i; `rows[i]`: its row. Constraints of the leading group of
+/// colours come first, of all octaves; the range of a colour and octave is `ranges[octave * colours + colour]`.
 void pack_slots(const Colouring& colouring, std::uint32_t width, std::span<const std::uint32_t> ends,
-                std::span<const std::uint32_t> rows, std::vector<std::uint32_t>& out_ends, std::vector<std::uint32_t>& out_order,
-                std::vector<Range>& out_ranges);
-
-inline void pack_slots(const Colouring& colouring, std::uint32_t width, std::span<const std::uint32_t> ends,
-                       std::span<const std::uint32_t> rows, Slots& out) {
-  pack_slots(colouring, width, ends, rows, out.ends, out.order, out.ranges);
-}
+                std::span<const std::uint32_t> rows, Slots& out, OctaveOf of = {});
 
 }  // namespace pcphys

@@ -78,12 +78,36 @@ void Forest::grow() {
   }
 }
 
-void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
-  std::map<std::vector<std::uint32_t>, std::size_t> shapes;  // parents and sides of all nodes
+namespace {
+/// Blocks of trees of one shape.
+void pack_alike(const Forest& forest, std::span<const std::size_t> trees, std::uint32_t width, TreeBlocks& out) {
+  for (std::size_t begin = 0; begin < trees.size(); begin += width) {
+    const std::size_t lanes = std::min<std::size_t>(width, trees.size() - begin), count = forest.tree(trees[begin]).size();
+    out.blocks.push_back(std::uint32_t(out.parents.size()));
+    out.blocks.push_back(std::uint32_t(count));
+    for (std::size_t k = 0; k < count; k++) {
+      const TreeNode& like = forest.tree(trees[begin])[k];
+      out.parents.push_back(like.parent << 1 | std::uint32_t(like.flipped));
+      const std::size_t at = out.ends.size();
+      out.ends.resize(at + 2 * width, 0);
+      out.order.resize(at / 2 + width, 0);
+      for (std::size_t lane = 0; lane < lanes; lane++) {
+        const TreeNode& node = forest.tree(trees[begin + lane])[k];
+        out.ends[at + lane] = node.body;
+        out.ends[at + width + lane] = node.joint;
+        out.order[at / 2 + lane] = 1 + forest.first(trees[begin + lane]) + std::uint32_t(k);
+      }
+    }
+  }
+}
+}  // namespace
+
+void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out, OctaveOf of) {
+  std::map<std::vector<std::uint32_t>, std::size_t> shapes;  // octave, then parents and sides of all nodes
   std::vector<std::vector<std::size_t>> alike;               // trees of each shape, in the order of the forest
   std::vector<std::uint32_t> shape;
   for (std::size_t i = 0; i < forest.trees(); i++) {
-    shape.clear();
+    shape.assign(1, of.octaves.empty() ? 0 : of.octaves[i]);
     for (const TreeNode& node : forest.tree(i)) shape.push_back(node.parent << 1 | std::uint32_t(node.flipped));
     const auto [at, is_new] = shapes.try_emplace(shape, alike.size());
     if (is_new) alike.emplace_back();
@@ -93,25 +117,13 @@ void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
   out.parents.clear();
   out.ends.clear();
   out.order.clear();
-  for (const std::vector<std::size_t>& trees : alike)
-    for (std::size_t begin = 0; begin < trees.size(); begin += width) {
-      const std::size_t lanes = std::min<std::size_t>(width, trees.size() - begin), count = forest.tree(trees[begin]).size();
-      out.blocks.push_back(std::uint32_t(out.parents.size()));
-      out.blocks.push_back(std::uint32_t(count));
-      for (std::size_t k = 0; k < count; k++) {
-        const TreeNode& like = forest.tree(trees[begin])[k];
-        out.parents.push_back(like.parent << 1 | std::uint32_t(like.flipped));
-        const std::size_t at = out.ends.size();
-        out.ends.resize(at + 2 * width, 0);
-        out.order.resize(at / 2 + width, 0);
-        for (std::size_t lane = 0; lane < lanes; lane++) {
-          const TreeNode& node = forest.tree(trees[begin + lane])[k];
-          out.ends[at + lane] = node.body;
-          out.ends[at + width + lane] = node.joint;
-          out.order[at / 2 + lane] = 1 + forest.first(trees[begin + lane]) + std::uint32_t(k);
-        }
-      }
-    }
+  out.ranges.assign(of.count, {0, 0});
+  for (unsigned octave = 0; octave < of.count; octave++) {
+    out.ranges[octave].begin = out.count();
+    for (const std::vector<std::size_t>& trees : alike)
+      if (of.is(trees.front(), octave)) pack_alike(forest, trees, width, out);
+    out.ranges[octave].end = out.count();
+  }
 }
 
 }  // namespace pcphys

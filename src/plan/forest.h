@@ -9,6 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "plan/octave_of.h"
+#include "step/backend.h"
+
 namespace pcphys {
 
 /// A joint as the forest sees it: body rows, and its id for the order.
@@ -59,9 +62,11 @@ struct TreeBlocks {
   std::vector<std::uint32_t> parents;  // of each node parent << 1 | flipped
   std::vector<std::uint32_t> ends;     // ends[(node * 2 + side) * width + lane]: body row, joint row
   std::vector<std::uint32_t> order;    // order[node * width + lane]: 1 + the node's place in the forest; 0 pads
+  std::vector<Range> ranges;           // blocks of each octave
 
   std::uint32_t count() const { return std::uint32_t(blocks.size() / 2); }
 };
-void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out);
+/// `of`: by tree.
+void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out, OctaveOf of = {});
 
 }  // namespace pcphys

@@ -23,8 +23,10 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 double substep_length(double dt, std::uint32_t substeps) { return dt / substeps; }
 
 template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep, InfoOf<Scalar> (&infos)[phase_count]) {
-  const double ratio = last_substep > 0 ? h / last_substep : 1;
+void fill_infos(const StepSettings& settings, Vec3 gravity, double world_h, double last_substep,
+                InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
+  const double times = double(1u << octave), h = world_h / times;
+  const double before = last_substep > 0 ? last_substep : world_h;
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
   const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
@@ -60,11 +62,17 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   biased.restitution_threshold = Scalar(settings.restitution_threshold);
   biased.rounding = Scalar(constants::rest_roundings) * std::numeric_limits<Scalar>::epsilon();
 
-  InfoOf<Scalar>& first = infos[unsigned(Phase::first)];
-  first = biased;
-  first.h_change = Scalar(1 - ratio);
-  first.h_before = Scalar(h / ratio);
-  first.impulse_ratio = Scalar(ratio);
+  const auto change = [&](Phase phase, double from, double to) {
+    InfoOf<Scalar>& info = infos[unsigned(phase)];
+    info = biased;
+    info.h = Scalar(to);
+    info.inverse_h = Scalar(1 / to);
+    info.h_change = Scalar(1 - to / from);
+    info.h_before = Scalar(from);
+    info.impulse_ratio = Scalar(to / from);
+  };
+  change(Phase::first, before, h);
+  change(Phase::last, h, world_h);
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
@@ -74,7 +82,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
-template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);
-template void fill_infos<double>(const StepSettings&, Vec3, double, double, InfoOf<double> (&)[phase_count]);
+template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count], unsigned);
+template void fill_infos<double>(const StepSettings&, Vec3, double, double, InfoOf<double> (&)[phase_count], unsigned);
 
 }  // namespace pcphys

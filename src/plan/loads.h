@@ -11,17 +11,24 @@ namespace pcphys {
 
 class TreeNodes;
 
+/// The island of a body is to be of this octave at least.
+struct Wanted {
+  std::uint32_t body;  // row
+  std::uint8_t octave;
+};
+
 class Loads {
  public:
   /// Follows a change of contacts: finds those in which a free body could carry one much heavier than itself.
   void find(const WorldState& state, const TreeNodes& trees);
-  /// By what the sub-steps of a step of `dt` are to be multiplied, from the weights that could rest on lighter bodies: a power
-  /// of two.
-  std::uint32_t refinement(const WorldState& state, const StepSettings& settings, double dt) const;
+  void clear() { uneven_.clear(); }
+  /// Adds what a step of `dt` needs, up to `highest_octave`, for the weights that could rest on lighter bodies.
+  void want(const WorldState& state, const StepSettings& settings, double dt, std::uint8_t highest_octave,
+            std::vector<Wanted>& wanted) const;
 
  private:
   struct Uneven {
-    std::uint32_t contact;
+    std::uint32_t contact, body;
     double ratio;  // of the masses; below zero where the normal leads from the heavier body to the lighter
   };
   std::vector<Uneven> uneven_;

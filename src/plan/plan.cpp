@@ -14,6 +14,9 @@ class Builder {
     for (std::size_t b = 0; b < buffer_count; b++) current_[b][std::size_t(Place::cpu)] = true;
   }
 
+  /// The kernels that follow are for islands of this octave.
+  void enter(std::uint8_t octave) { octave_ = octave; }
+
   void kernel(Kernel kernel, Phase phase, std::uint32_t substep) {
     const KernelSchema& k = schema(kernel);
     const Place place = signature_.places[std::size_t(k.stage)];
@@ -23,7 +26,7 @@ class Builder {
       barrier |= place == Place::gl && (written_[std::size_t(a.buffer)] || (a.write && read_[std::size_t(a.buffer)]));
     }
     if (barrier) settle();
-    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep});
+    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep, octave_});
     for (const Access& a : k.accesses) {
       if (place == Place::gl) (a.write ? written_ : read_)[std::size_t(a.buffer)] = true;
       if (!a.write) continue;
@@ -48,7 +51,7 @@ class Builder {
     if (here) return;
     here = true;
     const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
-    plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep});
+    plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep, octave_});
     if (kind == PlanEntry::Kind::download) settle();
   }
   void settle() {
@@ -58,6 +61,7 @@ class Builder {
 
   const PlanSignature& signature_;
   StepPlan& plan_;
+  std::uint8_t octave_ = 0;
   std::array<std::array<bool, 2>, buffer_count> current_{};  // by Place
   std::array<bool, buffer_count> written_{}, read_{};        // on GL since the last barrier
   std::array<bool, buffer_count> host_wrote_{};
@@ -84,16 +88,16 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
 
 /// The kernels that move bodies between impulses.
 struct Motion {
-  Kernel begin, integrate, advance, synchronise;
+  Kernel begin, integrate, advance, synchronise, restagger;
 };
 Motion motion(const PlanSignature& s) {
   const Kernel round = Kernel::advance_round;  // the same in every scheme
   if (s.integrator == Integrator::seed)
     return {Kernel::begin_seed, s.drag ? Kernel::integrate_seed : Kernel::integrate, s.gyroscopic ? Kernel::advance_seed : round,
-            Kernel::synchronise_seed};
+            Kernel::synchronise_seed, Kernel::restagger};  // one octave alone
   const Kernel advance = s.gyroscopic ? Kernel::advance : round;
-  if (s.drag) return {Kernel::begin_drag, Kernel::integrate_drag, advance, Kernel::synchronise_drag};
-  return {Kernel::begin, Kernel::integrate, advance, Kernel::synchronise};
+  if (s.drag) return {Kernel::begin_drag, Kernel::integrate_drag, advance, Kernel::synchronise_drag, Kernel::restagger_drag};
+  return {Kernel::begin, Kernel::integrate, advance, Kernel::synchronise, Kernel::restagger};
 }
 
 // what acts on trees first: the floor under what lies on them comes later (see Colouring)
@@ -116,6 +120,63 @@ void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32
   if (s.free_contacts) b.kernel(Kernel::contact_solve, phase, substep);
 }
 
+/// A sub-step; `count`: of how many.
+void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32_t k, std::uint32_t count) {
+  if (k + 1 == count && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
+  if (k > 0) look_at_drives(b, s, Phase::biased, k);
+  b.kernel(with.integrate, Phase::biased, k);
+  if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
+  if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
+  // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
+  if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
+  if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
+  if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
+  // before what lasts of the contacts acts again: an impact is between velocities that bodies have
+  if (s.free_contacts && s.impacts)
+    for (int sweep = 0; sweep < constants::impact_sweeps; sweep++)
+      b.kernel(Kernel::contact_impact, sweep == 0 ? Phase::biased : Phase::relax, k);
+  if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+  if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
+  if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
+  if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
+  if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
+  solve_free_joints(b, s, Phase::biased, k);
+  if (s.trees) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
+  if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
+  if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
+  if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
+  if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
+  solve_contacts(b, s, Phase::biased, k);
+  if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
+  if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
+  b.kernel(with.advance, Phase::biased, k);
+  if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
+  if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
+  solve_free_joints(b, s, Phase::relax, k);
+  if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
+  if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
+  solve_contacts(b, s, Phase::relax, k);
+}
+
+/// All sub-steps of the islands of an octave.
+void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
+  const Motion with = motion(s);
+  const std::uint32_t count = s.substeps << octave, last = count - 1;
+  b.enter(octave);
+  look_at_drives(b, s, Phase::first, 0);
+  b.kernel(with.begin, Phase::first, 0);
+  if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
+  for (std::uint32_t k = 0; k < count; k++) substep(b, s, with, k, count);
+  if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
+  if (s.contacts()) b.kernel(Kernel::contact_store, Phase::last, last);
+  b.kernel(with.synchronise, Phase::relax, last);
+  if (octave == 0) return;
+  // what is remembered is of the world's sub-step, whatever the octave of the next step
+  b.kernel(with.restagger, Phase::last, last);
+  if (s.joints()) b.kernel(Kernel::joint_keep, Phase::last, last);
+  if (s.trees) b.kernel(Kernel::tree_keep, Phase::last, last);
+}
+
 }  // namespace
 
 StepPlan make_plan(const PlanSignature& s) {
@@ -123,53 +184,10 @@ StepPlan make_plan(const PlanSignature& s) {
   plan.substeps = s.substeps;
   leave_out(s, plan);
   if (!s.bodies) return plan;
-
   Builder b(s, plan);
-  const Motion with = motion(s);
-  look_at_drives(b, s, Phase::first, 0);
-  b.kernel(with.begin, Phase::first, 0);
-  if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
-  for (std::uint32_t k = 0; k < s.substeps; k++) {
-    if (k + 1 == s.substeps && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
-    if (k > 0) look_at_drives(b, s, Phase::biased, k);
-    b.kernel(with.integrate, Phase::biased, k);
-    if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
-    if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
-    // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
-    if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
-    if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
-    if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
-    // before what lasts of the contacts acts again: an impact is between velocities that bodies have
-    if (s.free_contacts && s.impacts)
-      for (int sweep = 0; sweep < constants::impact_sweeps; sweep++)
-        b.kernel(Kernel::contact_impact, sweep == 0 ? Phase::biased : Phase::relax, k);
-    if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
-    if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
-    if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
-    if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
-    if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
-    solve_free_joints(b, s, Phase::biased, k);
-    if (s.trees) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
-    if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
-    if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
-    if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
-    if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
-    solve_contacts(b, s, Phase::biased, k);
-    if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
-    if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
-    b.kernel(with.advance, Phase::biased, k);
-    if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
-    if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
-    solve_free_joints(b, s, Phase::relax, k);
-    if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
-    if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
-    solve_contacts(b, s, Phase::relax, k);
-  }
-  const std::uint32_t last = s.substeps - 1;
-  if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
-  if (s.contacts()) b.kernel(Kernel::contact_store, Phase::relax, last);
-  b.kernel(with.synchronise, Phase::relax, last);
-  b.results(last);
+  for (std::uint8_t octave = 0; octave < octave_count; octave++)
+    if (s.octaves >> octave & 1) substeps(b, s, octave);
+  b.results(plan.entries.back().substep);
   return plan;
 }
 

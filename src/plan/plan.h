@@ -11,6 +11,7 @@ namespace pcphys {
 /// Everything a plan depends on.
 struct PlanSignature {
   std::uint32_t substeps = 4;
+  std::uint32_t octaves = 1;  // bit k: some island is of octave k
   Integrator integrator = Integrator::verlet;
   std::array<Place, stage_count> places{};  // by Stage
   bool bodies = false;                      // some move

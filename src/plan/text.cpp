@@ -17,7 +17,7 @@ std::string_view stage_name(const PlanEntry& entry) {
   return entry.kind == PlanEntry::Kind::kernel ? name(schema(entry.kernel).stage) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
-  constexpr std::string_view names[phase_count] = {"first", "biased", "relax"};
+  constexpr std::string_view names[phase_count] = {"first", "biased", "relax", "last"};
   return names[std::size_t(entry.phase)];
 }
 
@@ -42,19 +42,20 @@ std::vector<std::string_view> writes(const PlanEntry& entry) { return accessed(e
 
 std::string to_text(const StepPlan& plan) {
   std::string text = "sub-steps " + std::to_string(plan.substeps) + "\n";
-  text += "sub  place stage      what                 phase   reads -> writes (B: waits for earlier writes)\n";
+  text += "sub     place stage      what                 phase   reads -> writes (B: waits for earlier writes)\n";
   for (const PlanEntry& e : plan.entries) {
     std::string line = std::to_string(e.substep);
-    pad(line, 5);
+    if (e.octave > 0) line += "/" + std::to_string(plan.substeps << e.octave);
+    pad(line, 8);
     line += name(e.place);
-    pad(line, 11);
+    pad(line, 14);
     line += stage_name(e);
-    pad(line, 22);
+    pad(line, 25);
     if (e.kind == PlanEntry::Kind::kernel) {
       line += kernel_name(e);
-      pad(line, 43);
+      pad(line, 46);
       line += phase_name(e);
-      pad(line, 51);
+      pad(line, 54);
       line += join(reads(e)) + " -> " + join(writes(e));
     } else {
       line += (e.kind == PlanEntry::Kind::upload ? "upload " : "download ") + std::string(buffer_name(e));

@@ -26,6 +26,8 @@ Place place_of(const StepSettings& s, Stage stage) {
 
 bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
 
+std::size_t info_index(const PlanEntry& entry) { return std::size_t{entry.octave} * phase_count + std::size_t(entry.phase); }
+
 /// The list or slot array behind a buffer that is no table's, or null.
 std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
   switch (buffer) {
@@ -53,14 +55,15 @@ bool of_contacts(Domain domain) {
   return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
 }
 bool of_joints(Domain domain) { return domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint; }
-std::span<const Range> ranges_of(Domain domain, const Schedule& schedule) {
-  if (domain == Domain::joint) return schedule.joints.ranges();
-  if (domain == Domain::free_joint) return schedule.joints.free_ranges();
-  if (domain == Domain::tree_joint) return schedule.joints.tree_ranges();
-  if (domain == Domain::tree) return schedule.trees.ranges();
-  if (domain == Domain::free_contact) return schedule.contacts.free_ranges();
-  if (domain == Domain::tree_contact) return schedule.contacts.tree_ranges();
-  return schedule.contacts.ranges();
+std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsigned octave) {
+  if (domain == Domain::body) return schedule.ranges(octave);
+  if (domain == Domain::joint) return schedule.joints.ranges(octave);
+  if (domain == Domain::free_joint) return schedule.joints.free_ranges(octave);
+  if (domain == Domain::tree_joint) return schedule.joints.tree_ranges(octave);
+  if (domain == Domain::tree) return schedule.trees.ranges(octave);
+  if (domain == Domain::free_contact) return schedule.contacts.free_ranges(octave);
+  if (domain == Domain::tree_contact) return schedule.contacts.tree_ranges(octave);
+  return schedule.contacts.ranges(octave);
 }
 std::size_t slots_of(Buffer buffer, Domain domain, const Schedule& schedule) {
   if (buffer == Buffer::contact_reach) return schedule.contacts.reach_slots();
@@ -187,27 +190,42 @@ Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& r
   return {};
 }
 
+std::span<const Range> Runner::of_octave(std::span<const Range> ranges, bool coloured) {
+  ranges_.clear();
+  for (const Range& range : ranges) {
+    if (range.begin == range.end) continue;
+    if (!coloured && !ranges_.empty() && ranges_.back().end == range.begin)
+      ranges_.back().end = range.end;
+    else
+      ranges_.push_back(range);
+  }
+  return ranges_;
+}
+
 Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport&) {
   const KernelSchema& k = schema(entry.kernel);
-  const Range moving{0, std::uint32_t(schedule.bodies.size())};
-  std::span<const Range> ranges(&moving, 1);
-  if (k.domain != Domain::body) ranges = ranges_of(k.domain, schedule);
-  const Range all{ranges.front().begin, ranges.back().end};
-  if (!needs_colours(k)) ranges = std::span<const Range>(&all, 1);
+  std::span<const Range> ranges = ranges_of(k.domain, schedule, entry.octave);
+  const Range all = ranges.empty() ? Range{0, 0} : Range{ranges.front().begin, ranges.back().end};
+  if (schedule.grouped())
+    ranges = of_octave(ranges, needs_colours(k));
+  else if (!needs_colours(k))
+    ranges = std::span<const Range>(&all, 1);
+  if (ranges.empty()) return {};
   if (entry.place == Place::cpu)
     for (const Access& a : k.accesses)
       if (a.write && a.buffer < Buffer::table_buffers) {
         keep(state, a.buffer);
         state.tables.touch(a.buffer);
       }
-  return at(entry.place).backend->run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
+  return at(entry.place).backend->run(entry.kernel, info_index(entry), ranges, entry.barrier);
 }
 
 Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
                    StepReport& report) {
+  const std::size_t info_count = plan.entries.empty() ? phase_count : (1u + plan.entries.back().octave) * phase_count;
   for (Place place : {Place::cpu, Place::gl})
     if (takes_part(place, settings))
-      if (Status ok = at(place).backend->set_infos(infos, phase_count); !ok) return ok;
+      if (Status ok = at(place).backend->set_infos(infos, info_count); !ok) return ok;
   auto began = Clock::now();
   for (std::size_t i = 0; i < plan.entries.size(); i++) {
     const PlanEntry& entry = plan.entries[i];

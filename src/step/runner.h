@@ -57,6 +57,10 @@ class Runner {
   Status kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report);
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
+  /// Without those that are empty; joined where they need not follow one another.
+  std::span<const Range> of_octave(std::span<const Range> ranges, bool coloured);
+
+  std::vector<Range> ranges_;         // of the kernel that runs
   std::unique_ptr<Workers> workers_;  // outlives the backends
   std::uint32_t threads_ = 0;         // that were asked for
   std::array<Device, 2> devices_;     // by Place

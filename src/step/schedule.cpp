@@ -1,6 +1,7 @@
 #include "step/schedule.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "pcphys/constants.h"
@@ -82,12 +83,22 @@ void ColouredSlots::follow(const WorldState& state, const TreeNodes& trees) {
     bodies_[row] = {state.bodies[row].index, state.responds(row) ? trees.unit(row) : Colouring::fixed_unit};
 }
 
+void ColouredSlots::group(OctaveOf of_bodies) {
+  of_bodies_ = of_bodies;
+  width_ = 0;
+}
+
 void ColouredSlots::pack(std::uint32_t width) {
   if (width_ == width) return;
   width_ = width;
   version_++;
-  pack_slots(colouring_, width, ends_, rows_, slots_);
-  if (any_with_trees()) reach_blocks_ = pack_paths(*trees_, width, tree_ranges().back().end, slots_.ends, paths_);
+  octaves_.clear();
+  if (!of_bodies_.octaves.empty())  // an end that stands has none
+    for (std::size_t i = 0; i < rows_.size(); i++)
+      octaves_.push_back(std::max(of_bodies_.octaves[ends_[2 * i]], of_bodies_.octaves[ends_[2 * i + 1]]));
+  pack_slots(colouring_, width, ends_, rows_, slots_, {octaves_, of_bodies_.count});
+  if (any_with_trees())
+    reach_blocks_ = pack_paths(*trees_, width, tree_ranges(of_bodies_.count - 1).back().end, slots_.ends, paths_);
 }
 
 namespace {
@@ -170,21 +181,28 @@ void TreeSlots::find_parallel(std::span<const JointLink> links) {
   }
 }
 
+void TreeSlots::group(OctaveOf of_bodies) {
+  of_bodies_ = of_bodies;
+  width_ = 0;
+}
+
 void TreeSlots::pack(std::uint32_t width) {
   if (width_ == width) return;
   width_ = width;
   version_++;
-  pack_trees(forest_, width, blocks_);
-  all_ = {0, blocks_.count()};
+  octaves_.clear();
+  if (!of_bodies_.octaves.empty())
+    for (std::size_t i = 0; i < forest_.trees(); i++) octaves_.push_back(of_bodies_.octaves[forest_.tree(i).back().body]);
+  pack_trees(forest_, width, blocks_, {octaves_, of_bodies_.count});
 }
 
 void Schedule::update_structure(const WorldState& state) {
-  bodies.clear();
+  rows_.clear();
   drag = gyroscopic = false;
   double lightest = 0, heaviest = 0;  // as inverse masses
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
     if (state.stands(row)) continue;
-    bodies.push_back(row);
+    rows_.push_back(row);
     drag |= state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0;
     const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4);
     gyroscopic |= inverse.x != inverse.y || inverse.y != inverse.z;
@@ -194,14 +212,30 @@ void Schedule::update_structure(const WorldState& state) {
     heaviest = heaviest > 0 ? std::min(heaviest, inverse_mass) : inverse_mass;
   }
   uneven = lightest >= constants::uneven_masses * heaviest && heaviest > 0;
-  moving = std::uint32_t(bodies.size());
-  bodies.resize((bodies.size() + padding - 1) / padding * padding, 0);
-  bodies_version++;
+  moving = std::uint32_t(rows_.size());
   joint_ends_.assign(state.joints.size(), {0, 0});
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     joint_ends_[row] = {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)};
   trees.build(state);
   joints.colour(state, joint_ends_, trees.closing(), 0, trees.loop_nodes(), trees.parallel());
+  group({});
+}
+
+void Schedule::group(std::span<const std::uint8_t> octaves) {
+  octaves_.assign(octaves.begin(), octaves.end());
+  const OctaveOf of{octaves_, octaves.empty() ? 1u : 1u + *std::ranges::max_element(octaves)};
+  bodies.clear();
+  body_ranges_.clear();
+  for (unsigned octave = 0; octave < of.count; octave++) {
+    const auto begin = std::uint32_t(bodies.size());
+    std::ranges::copy_if(rows_, std::back_inserter(bodies), [&](std::uint32_t row) { return of.is(row, octave); });
+    bodies.resize((bodies.size() + padding - 1) / padding * padding, 0);
+    body_ranges_.push_back({begin, std::uint32_t(bodies.size())});
+  }
+  bodies_version++;
+  joints.group(of);
+  contacts.group(of);
+  trees.group(of);
 }
 
 }  // namespace pcphys

@@ -29,16 +29,20 @@ class ColouredSlots {
               const TreeNodes& trees);
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::span<const std::uint32_t> rows,
               std::uint32_t kind, const TreeNodes& trees, std::span<const char> alone);
+  /// Which octave each body is of, by row; the span lasts until the next call.
+  void group(OctaveOf of_bodies);
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
   std::uint32_t colours() const { return colouring_.colours(); }
   std::uint32_t constraints() const { return colouring_.constraints(); }
   std::size_t slots() const { return slots_.order.size(); }
-  std::span<const Range> ranges() const { return slots_.ranges; }
+  std::span<const Range> ranges(unsigned octave) const {
+    return std::span(slots_.ranges).subspan(std::size_t{octave} * colours(), colours());
+  }
   /// Those of constraints with a body of a tree, and the others.
-  std::span<const Range> tree_ranges() const { return ranges().first(colouring_.leading_colours()); }
-  std::span<const Range> free_ranges() const { return ranges().subspan(colouring_.leading_colours()); }
+  std::span<const Range> tree_ranges(unsigned octave) const { return ranges(octave).first(colouring_.leading_colours()); }
+  std::span<const Range> free_ranges(unsigned octave) const { return ranges(octave).subspan(colouring_.leading_colours()); }
   /// How many of them have a body of a tree.
   std::uint32_t with_trees() const { return colouring_.offsets()[colouring_.leading_colours()]; }
   bool any_with_trees() const { return colouring_.leading_colours() > 0; }
@@ -71,6 +75,8 @@ class ColouredSlots {
   std::vector<std::uint16_t> kinds_;
   std::vector<ContactWork> works_;  // by row, of contacts where there are trees
   const TreeNodes* trees_ = nullptr;
+  OctaveOf of_bodies_;
+  std::vector<std::uint8_t> octaves_;  // of the constraints, where there are several
   std::uint32_t beside_trees_ = 0, reach_blocks_ = 0;
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
@@ -80,6 +86,8 @@ class ColouredSlots {
 class TreeSlots {
  public:
   void build(const WorldState& state);
+  /// As ColouredSlots::group.
+  void group(OctaveOf of_bodies);
   void pack(std::uint32_t width);
 
   const Forest& forest() const { return forest_; }
@@ -98,7 +106,7 @@ class TreeSlots {
   /// Springs between two points of which neither stands in a tree that answers them.
   std::uint32_t free_springs() const { return free_springs_; }
   std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
-  std::span<const Range> ranges() const { return {&all_, 1}; }
+  std::span<const Range> ranges(unsigned octave) const { return std::span(blocks_.ranges).subspan(octave, 1); }
   TreeBlocks& lists() { return blocks_; }
   std::uint64_t version() const { return version_; }
 
@@ -114,7 +122,8 @@ class TreeSlots {
   std::uint32_t free_springs_ = 0;
   std::vector<Pivot> pivots_;
   TreeBlocks blocks_;
-  Range all_{0, 0};
+  OctaveOf of_bodies_;
+  std::vector<std::uint8_t> octaves_;  // of the trees, where there are several
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
 };
@@ -124,8 +133,13 @@ class Schedule {
   /// Follows a change of the world's objects.
   void update_structure(const WorldState& state);
   void update_contacts(const WorldState& state) { contacts.colour(state, state.contacts.ends, 1, trees.nodes()); }
+  /// Sorts everything that moves by octave; `octaves` by body row, empty: all of octave 0. After each update_structure.
+  void group(std::span<const std::uint8_t> octaves);
+  /// Places in `bodies`.
+  std::span<const Range> ranges(unsigned octave) const { return std::span(body_ranges_).subspan(octave, 1); }
+  bool grouped() const { return body_ranges_.size() > 1; }
 
-  std::vector<std::uint32_t> bodies;      // rows that move, padded with row 0 to a multiple of `padding`
+  std::vector<std::uint32_t> bodies;      // rows that move; those of an octave padded with row 0 to a multiple of `padding`
   std::uint32_t moving = 0;               // without the padding
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
   bool uneven = false;                    // masses differ by more than constants::uneven_masses
@@ -137,6 +151,9 @@ class Schedule {
 
  private:
   std::vector<std::array<std::uint32_t, 2>> joint_ends_;
+  std::vector<std::uint32_t> rows_;  // those that move
+  std::vector<std::uint8_t> octaves_;
+  std::vector<Range> body_ranges_;
 };
 
 }  // namespace pcphys

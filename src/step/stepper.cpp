@@ -1,5 +1,6 @@
 // One step, readable on a screen: forces, contacts, schedule, plan, run.
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -10,7 +11,7 @@
 #include "pcphys/constants.h"
 #include "pcphys/step.h"
 #include "plan/infos.h"
-#include "plan/loads.h"
+#include "plan/octaves.h"
 #include "plan/plan.h"
 #include "step/processor_state.h"
 #include "step/runner.h"
@@ -24,16 +25,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::uint32_t most_substeps = 1000;
-
 Status check_settings(const StepSettings& s) {
   if (s.substeps < 1 || s.substeps > most_substeps)
     return Error{ErrorCode::bad_time_step,
                  "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
   if (Status ok = Workers::check(s.threads); !ok) return ok;
-  if (s.load_refinement < 1 || s.load_refinement > most_substeps)
-    return Error{ErrorCode::bad_argument, "The refinement for heavy loads is " + std::to_string(s.load_refinement) +
-                                              "; it must lie between 1 (never) and 1000."};
+  if (s.refinement < 1 || s.refinement > most_substeps)
+    return Error{ErrorCode::bad_argument,
+                 "The refinement of islands is " + std::to_string(s.refinement) + "; it must lie between 1 (never) and 1000."};
   for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
     if (!std::isfinite(x) || x < 0)
       return Error{ErrorCode::bad_argument,
@@ -75,7 +74,7 @@ struct Stepper::Inside {
   StepSettings settings;
   Detector detector;
   Schedule schedule;
-  Loads loads;
+  Octaves octaves;
   Runner runner;
   StepReport report;
   std::vector<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few
@@ -83,8 +82,8 @@ struct Stepper::Inside {
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   bool other = false;                                 // than those of the last step
-  InfoOf<float> infos_f[phase_count];
-  InfoOf<double> infos_d[phase_count];
+  InfoOf<float> infos_f[octave_count][phase_count];   // those of octaves in use
+  InfoOf<double> infos_d[octave_count][phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
   std::vector<Wrench> called;                   // what the callbacks answered in this step
   StepPlan no_plan;
@@ -125,12 +124,12 @@ struct Stepper::Inside {
   }
 
   const void* fill(const WorldState& s, double h) {
-    if (s.tables.precision() == Precision::f32) {
-      fill_infos(settings, s.gravity, h, s.last_substep, infos_f);
-      return infos_f;
-    }
-    fill_infos(settings, s.gravity, h, s.last_substep, infos_d);
-    return infos_d;
+    const auto fill = [&](auto& infos) -> const void* {
+      for (unsigned octave = 0; octave < octave_count; octave++)
+        if (octaves.used() >> octave & 1) fill_infos(settings, s.gravity, h, s.last_substep, infos[octave], octave);
+      return infos;
+    };
+    return s.tables.precision() == Precision::f32 ? fill(infos_f) : fill(infos_d);
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
@@ -200,7 +199,7 @@ struct Stepper::Inside {
 
   void update_contacts(const WorldState& s) {
     schedule.update_contacts(s);
-    if (schedule.uneven) loads.find(s, schedule.trees.nodes());
+    octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven);
   }
 
   void freeze_leaving(WorldState& s) {
@@ -223,9 +222,9 @@ struct Stepper::Inside {
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
+    if (octaves.choose(s, settings, dt) || other) schedule.group(octaves.of_bodies());
     PlanSignature wanted = signature(schedule);
-    if (schedule.uneven && settings.integrator != Integrator::seed)
-      wanted.substeps = std::min(most_substeps, settings.substeps * loads.refinement(s, settings, dt));
+    wanted.octaves = octaves.used();
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
@@ -246,7 +245,8 @@ struct Stepper::Inside {
     find_outside(s, schedule.bodies, outside);
     if (!outside.empty()) return {};
     s.last_substep = h;
-    report.substeps = wanted.substeps;
+    report.substeps = wanted.substeps << (std::bit_width(octaves.used()) - 1);
+    report.refined = octaves.refined();
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;

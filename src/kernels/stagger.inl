@@ -1,0 +1,60 @@
+// The stored velocity u is half a sub-step behind the position. With F the drag, a the acceleration, phi and phi2 of F h
+// (1 and 1/2 without drag) and e = e^(-F h), motion between impulses has
+//   u = v + h (phi2 - phi) / e (a - F v),   v = u + h (phi - phi2) / phi (a - F u)
+// where v is the velocity in phase with the position: then the first sub-step's u' = e u + a h phi is its exact mean
+// velocity phi v + a h phi2 (without drag u = v - a h / 2, the half kick; Hairer, Lubich, Wanner, Geometric
+// Numerical Integration I.1).
+// * A velocity that was just set is in phase.
+// * When the sub-step changes from h0 to h: back into phase by h0, out of it by h; and what impulses changed in
+//   the last sub-step shifts by (h0 - h) / (2 h0).
+// * The original's scheme (PC_SEED) knows no phase: p - p_last goes on as it is, also where the sub-step changes.
+// By how much the stored velocity changes; `half_change` is half of what the last sub-step changed in it.
+#ifdef PC_SEED
+// u + half change is the velocity that is read, of which the half change is what a host's new forces set aside
+PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change) {
+  Real stretch = pc_div(PC_INFO(h_before), PC_INFO(h)); precise Real more = stretch - PC_REAL(1.0);
+  precise Vec3 whole = velocity + half_change; precise Vec3 shift = half_change + whole * more;
+  return pc_select3(in_phase, half_change, shift);
+}
+#elif defined(PC_DRAG)
+PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a, Real drag) {
+  Real h = PC_INFO(h); Real share = PC_INFO(h_change);
+  Real before = PC_INFO(h_before);
+  precise Real x = drag * h; precise Real y = drag * before;
+  Decay now = pc_decay(x); Decay was = pc_decay(y);
+  precise Real back_gap = was.phi - was.phi2; precise Real back_time = pc_div(back_gap, was.phi) * before;
+  precise Vec3 back = (a - velocity * drag) * back_time;
+  precise Vec3 phased = velocity + back;
+  precise Real gap = now.phi2 - now.phi; precise Real time = pc_div(gap, now.e) * h;
+  Vec3 v = pc_select3(in_phase, velocity, phased);
+  precise Vec3 kick = (a - v * drag) * time;
+  precise Vec3 shift = back + kick + (half_change - back) * share;
+  Mask changes = pc_abs(share) > PC_REAL(0.0);
+  return pc_select3(in_phase, kick, pc_select3(changes, shift, pc_zero3()));
+}
+#else
+PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 half_change, Vec3 a) {
+  Real h = PC_INFO(h); Real share = PC_INFO(h_change);
+  precise Vec3 kick = a * (h * PC_REAL(-0.5));
+  precise Vec3 shift = half_change * share;
+  return pc_select3(in_phase, kick, shift);
+}
+#endif
+
+struct VelocityShift { Vec3 u; Vec3 l; };
+#ifndef PC_SEED
+PC_FN VelocityShift pc_velocity_shift(PC_IO Quad linear, Quad angular, Quad linear_change, Quad angular_change, Quad push, Quad turn) {
+  Mask dynamic_body = linear.s > PC_REAL(0.0); Mask in_phase = pc_and(angular.s < PC_REAL(0.0), dynamic_body);
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Vec3 acceleration = pc_madd(gravity, push.v, linear.s);
+  VelocityShift s;
+#ifdef PC_DRAG
+  s.u = pc_shift(PC_PASS in_phase, linear.v, linear_change.v, acceleration, push.s);
+  s.l = pc_shift(PC_PASS in_phase, angular.v, angular_change.v, turn.v, turn.s);
+#else
+  s.u = pc_shift(PC_PASS in_phase, linear_change.v, acceleration);
+  s.l = pc_shift(PC_PASS in_phase, angular_change.v, turn.v);
+#endif
+  return s;
+}
+#endif

@@ -1,0 +1,73 @@
+#include "plan/octaves.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace pcphys {
+
+void Islands::build(const WorldState& state) {
+  parent_.resize(state.bodies.size());
+  std::iota(parent_.begin(), parent_.end(), 0u);
+  const auto join_moving = [&](std::uint32_t a, std::uint32_t b) {
+    if (!state.stands(a) && !state.stands(b)) join(a, b);
+  };
+  for (const auto& [a, b] : state.contacts.ends) join_moving(a, b);
+  for (std::uint32_t row = 1; row < state.joints.size(); row++)
+    join_moving(state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b));
+}
+
+std::uint32_t Islands::root(std::uint32_t body) const {
+  while (parent_[body] != body) body = parent_[body];
+  return body;
+}
+
+void Islands::join(std::uint32_t a, std::uint32_t b) {
+  const auto find = [&](std::uint32_t body) {
+    for (; parent_[body] != body; body = parent_[body]) parent_[body] = parent_[parent_[body]];
+    return body;
+  };
+  a = find(a);
+  b = find(b);
+  parent_[std::max(a, b)] = std::min(a, b);
+}
+
+namespace {
+/// Within StepSettings::refinement and the most sub-steps of a step.
+std::uint8_t highest_octave(const StepSettings& settings) {
+  std::uint8_t octave = 0;
+  while (octave + 1u < octave_count && 2u << octave <= settings.refinement && settings.substeps << (octave + 1) <= most_substeps)
+    octave++;
+  return octave;
+}
+}  // namespace
+
+void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
+  uneven ? loads_.find(state, trees) : loads_.clear();
+}
+
+bool Octaves::choose(const WorldState& state, const StepSettings& settings, double dt) {
+  wanted_.clear();
+  if (settings.integrator != Integrator::seed) loads_.want(state, settings, dt, highest_octave(settings), wanted_);
+  before_.swap(of_bodies_);
+  of_bodies_.clear();
+  used_ = 1;
+  refined_ = 0;
+  if (!wanted_.empty()) {
+    islands_.build(state);
+    of_bodies_.assign(state.bodies.size(), 0);
+    for (const Wanted& w : wanted_) {
+      std::uint8_t& octave = of_bodies_[islands_.root(w.body)];
+      octave = std::max(octave, w.octave);
+    }
+    used_ = 0;
+    for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
+      if (state.stands(row)) continue;
+      of_bodies_[row] = of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
+      used_ |= 1u << of_bodies_[row];
+      refined_ += of_bodies_[row] > 0;
+    }
+  }
+  return !std::ranges::equal(before_, of_bodies_);
+}
+
+}  // namespace pcphys

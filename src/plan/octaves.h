@@ -1,0 +1,54 @@
+// Sub-step classes: an island of octave k makes 2^k times the sub-steps that the settings ask for, and all others go on as they
+// are (docs/substeps.md). Chosen before the step from what the world's tables hold, so that it is the same on any backend.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcphys/step.h"
+#include "plan/loads.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+class TreeNodes;
+
+/// Of a step, whatever asks for them.
+inline constexpr std::uint32_t most_substeps = 1000;
+
+/// Bodies that act on each other, by contacts or joints: a union-find. Kinematic bodies belong to islands, since what they carry
+/// follows their way from sub-step to sub-step; fixed ones do not.
+class Islands {
+ public:
+  void build(const WorldState& state);
+  /// The lowest row of the body's island.
+  std::uint32_t root(std::uint32_t body) const;
+
+ private:
+  void join(std::uint32_t a, std::uint32_t b);
+  std::vector<std::uint32_t> parent_;  // by body row
+};
+
+class Octaves {
+ public:
+  /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
+  void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
+  /// Of a step of `dt`. False: they are those of the step before.
+  bool choose(const WorldState& state, const StepSettings& settings, double dt);
+
+  /// By body row; empty: all are of octave 0.
+  std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
+  /// Bit k: some body that moves is of octave k.
+  std::uint32_t used() const { return used_; }
+  /// How many bodies are of a higher octave than 0.
+  std::uint32_t refined() const { return refined_; }
+
+ private:
+  Loads loads_;
+  Islands islands_;
+  std::vector<Wanted> wanted_;
+  std::vector<std::uint8_t> of_bodies_, before_;
+  std::uint32_t used_ = 1, refined_ = 0;
+};
+
+}  // namespace pcphys
