@@ -27,6 +27,7 @@ Json entry_json(const PlanEntry& entry) {
   }
   json["stage"] = std::string(stage_name(entry));
   json["kernel"] = std::string(kernel_name(entry));
+  json["octave"] = entry.octave;
   json["phase"] = std::string(phase_name(entry));
   json["barrier"] = entry.barrier;
   json["reads"] = names(reads(entry));

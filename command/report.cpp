@@ -105,6 +105,7 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"dt", setup.dt},
       {"substeps", setup.settings.substeps},
       {"substeps_last", outcome.last.substeps},
+      {"refined_last", outcome.last.refined},
       {"lanes", simulation.lanes},
       {"threads", setup.settings.threads},
       {"median_ms", median(outcome.times.step)},

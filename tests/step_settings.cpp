@@ -74,7 +74,7 @@ TEST_CASE("report: sub-steps that were made, more of them under a heavy load") {
     box.pose.position = {0, height, 0};
     box.density = density;
     (void)must(world.create_body(box));
-    Stepper stepper(with([=](StepSettings& s) { s.load_refinement = refinement; }));
+    Stepper stepper(with([=](StepSettings& s) { s.refinement = refinement; }));
     const StepReport& report = stepper.step(world, frame);
     REQUIRE(report);
     return report.substeps;
@@ -120,7 +120,7 @@ TEST_CASE("settings that are refused, by a step and by configure") {
       {with([](StepSettings& s) { s.push_speed = -1; }), ErrorCode::bad_argument, "must be finite and not below zero."},
       {with([](StepSettings& s) { s.restitution_threshold = -1; }), ErrorCode::bad_argument,
        "must be finite and not below zero."},
-      {with([](StepSettings& s) { s.load_refinement = 0; }), ErrorCode::bad_argument, "must lie between 1 (never) and 1000."},
+      {with([](StepSettings& s) { s.refinement = 0; }), ErrorCode::bad_argument, "must lie between 1 (never) and 1000."},
       {with([](StepSettings& s) { s.contact_margin = INFINITY; }), ErrorCode::bad_argument, "must be finite and not below zero."},
   };
   for (const Case& c : cases) {

@@ -1,5 +1,6 @@
 // Every tolerance and limit of the library, with its meaning.
 #pragma once
+#include <cstdint>
 
 namespace pcphys::constants {
 
@@ -43,6 +44,10 @@ inline constexpr double contact_preload = 1.75;
 /// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md): where it would be pressed in
 /// by more than the first share of the contact margin, they are to bring that down to the second.
 inline constexpr double uneven_masses = 16, heavy_overlap = 0.75, load_overlap = 0.025;
+/// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them, but in islands of more bodies
+/// than that no more than twice as many (docs/substeps.md).
+inline constexpr double largest_joint_turn = 0.5;
+inline constexpr std::uint32_t large_island = 256;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;

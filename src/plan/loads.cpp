@@ -29,7 +29,7 @@ void Loads::want(const WorldState& state, const StepSettings& settings, double d
     if (overlap <= constants::heavy_overlap * settings.contact_margin) continue;
     std::uint8_t octave = 0;
     for (; overlap > aim && octave < highest_octave; overlap /= 4) octave++;
-    if (octave > 0) wanted.push_back({u.body, octave});
+    if (octave > 0) wanted.push_back({u.body, octave, true});
   }
 }
 

@@ -5,17 +5,12 @@
 #include <vector>
 
 #include "pcphys/step.h"
+#include "plan/wanted.h"
 #include "world/state.h"
 
 namespace pcphys {
 
 class TreeNodes;
-
-/// The island of a body is to be of this octave at least.
-struct Wanted {
-  std::uint32_t body;  // row
-  std::uint8_t octave;
-};
 
 class Loads {
  public:

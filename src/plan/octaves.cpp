@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
+
+#include "pcphys/constants.h"
+#include "plan/infos.h"
+#include "plan/spins.h"
 
 namespace pcphys {
 
 void Islands::build(const WorldState& state) {
   parent_.resize(state.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0u);
+  size_.assign(parent_.size(), 1);
   const auto join_moving = [&](std::uint32_t a, std::uint32_t b) {
     if (!state.stands(a) && !state.stands(b)) join(a, b);
   };
@@ -28,7 +34,10 @@ void Islands::join(std::uint32_t a, std::uint32_t b) {
   };
   a = find(a);
   b = find(b);
-  parent_[std::max(a, b)] = std::min(a, b);
+  if (a == b) return;
+  if (a > b) std::swap(a, b);
+  parent_[b] = a;
+  size_[a] += size_[b];
 }
 
 namespace {
@@ -45,9 +54,11 @@ void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, b
   uneven ? loads_.find(state, trees) : loads_.clear();
 }
 
-bool Octaves::choose(const WorldState& state, const StepSettings& settings, double dt) {
+bool Octaves::choose(const WorldState& state, const Forest& forest, const StepSettings& settings, double dt) {
   wanted_.clear();
-  if (settings.integrator != Integrator::seed) loads_.want(state, settings, dt, highest_octave(settings), wanted_);
+  const std::uint8_t highest = settings.integrator == Integrator::seed ? 0 : highest_octave(settings);
+  loads_.want(state, settings, dt, highest, wanted_);
+  want_for_spins(state, forest, substep_length(dt, settings.substeps), highest, wanted_);
   before_.swap(of_bodies_);
   of_bodies_.clear();
   used_ = 1;
@@ -56,8 +67,9 @@ bool Octaves::choose(const WorldState& state, const StepSettings& settings, doub
     islands_.build(state);
     of_bodies_.assign(state.bodies.size(), 0);
     for (const Wanted& w : wanted_) {
-      std::uint8_t& octave = of_bodies_[islands_.root(w.body)];
-      octave = std::max(octave, w.octave);
+      const std::uint32_t root = islands_.root(w.body);
+      const bool whole = w.any_size || islands_.size(root) <= constants::large_island;
+      of_bodies_[root] = std::max(of_bodies_[root], whole ? w.octave : std::uint8_t{1});
     }
     used_ = 0;
     for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {

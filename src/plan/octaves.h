@@ -11,6 +11,7 @@
 
 namespace pcphys {
 
+class Forest;
 class TreeNodes;
 
 /// Of a step, whatever asks for them.
@@ -23,10 +24,12 @@ class Islands {
   void build(const WorldState& state);
   /// The lowest row of the body's island.
   std::uint32_t root(std::uint32_t body) const;
+  /// How many bodies the island of that root has.
+  std::uint32_t size(std::uint32_t root) const { return size_[root]; }
 
  private:
   void join(std::uint32_t a, std::uint32_t b);
-  std::vector<std::uint32_t> parent_;  // by body row
+  std::vector<std::uint32_t> parent_, size_;  // by body row
 };
 
 class Octaves {
@@ -34,7 +37,7 @@ class Octaves {
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
   /// Of a step of `dt`. False: they are those of the step before.
-  bool choose(const WorldState& state, const StepSettings& settings, double dt);
+  bool choose(const WorldState& state, const Forest& forest, const StepSettings& settings, double dt);
 
   /// By body row; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }

@@ -1,0 +1,31 @@
+#include "plan/spins.h"
+
+#include <algorithm>
+
+#include "pcphys/constants.h"
+#include "plan/forest.h"
+
+namespace pcphys {
+
+void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+                    std::vector<Wanted>& wanted) {
+  const double most = constants::largest_joint_turn / h;
+  for (std::size_t i = 0; i < forest.trees(); i++) {
+    const std::span<const TreeNode> tree = forest.tree(i);
+    if (tree.front().flipped) continue;  // turns on a pivot
+    for (const TreeNode& node : tree) {
+      const std::uint32_t row = node.body;
+      if (!state.responds(row)) continue;
+      // no faster than the momentum about the axis of the least moment: spares most bodies the turn into their frame
+      const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4), momentum = state.momentum_of_rotation(row);
+      const double largest = std::max({inverse.x, inverse.y, inverse.z});
+      if (largest * largest * dot(momentum, momentum) <= most * most) continue;
+      double turn = length(state.angular_velocity(row)) / most;
+      std::uint8_t octave = 0;
+      for (; turn > 1 && octave < highest_octave; turn /= 2) octave++;
+      if (octave > 0) wanted.push_back({row, octave, false});
+    }
+  }
+}
+
+}  // namespace pcphys

@@ -1,0 +1,189 @@
+// Pins sub-step classes (docs/substeps.md): an island under a heavy load, or with joints that turn far, makes more sub-steps, and
+// no other island feels it by a bit; what is remembered from step to step does not depend on the class; the same bits in any
+// number of lanes and threads, on GL and in all mixes.
+#include <cmath>
+
+#include "support_world.h"
+
+using namespace worldtest;
+
+namespace {
+
+BodyDef box(Vec3 position, Vec3 half, double density) {
+  BodyDef def;
+  def.shapes = {ShapeDef::box(half)};
+  def.pose.position = position;
+  def.density = density;
+  return def;
+}
+
+/// A box under one `ratio` times as heavy.
+std::vector<BodyId> add_tower(World& world, Vec3 foot, double ratio) {
+  const Vec3 half{0.5, 0.5, 0.5};
+  return {must(world.create_body(box(foot + Vec3{0, 0.5, 0}, half, 10))),
+          must(world.create_body(box(foot + Vec3{0, 1.5, 0}, half, 10 * ratio)))};
+}
+
+/// Links of 0.4 m from `top` down, the lower ones spinning; a ring where `closed`.
+std::vector<BodyId> add_links(World& world, Vec3 top, int count, double spin, bool closed = false) {
+  std::vector<BodyId> links;
+  for (int i = 0; i < count; i++) {
+    BodyDef def = box(top - Vec3{0, 0.2 + 0.4 * i, 0}, {0.05, 0.2, 0.08}, 500);
+    if (i > 0) def.angular_velocity = {spin, 0.3 * spin, -0.5 * spin};
+    def.linear_drag = 0.2;
+    def.angular_drag = 0.1;
+    links.push_back(must(world.create_body(def)));
+    if (i == 0) continue;
+    JointDef joint;
+    joint.a = links[std::size_t(i - 1)];
+    joint.b = links.back();
+    joint.frame_a.position = {0, -0.2, 0};
+    joint.frame_b.position = {0, 0.2, 0};
+    (void)must(world.create_joint(joint));
+  }
+  if (!closed) return links;
+  JointDef last;
+  last.a = links.back();
+  last.b = links.front();
+  last.frame_a.position = {0.4, -0.2, 0};
+  last.frame_b.position = {0.4, -0.2 - 0.4 * (count - 1), 0};
+  (void)must(world.create_joint(last));
+  return links;
+}
+
+struct Yard {
+  World world;
+  std::vector<BodyId> tower, chain, pile;
+
+  explicit Yard(Precision precision, double ratio = 1000, double spin = 400) : world({precision}) {
+    (void)must(world.create_body(fixed_box({0, -0.5, 0}, {20, 0.5, 20})));
+    tower = add_tower(world, {}, ratio);
+    chain = add_links(world, {6, 9, 0}, 4, spin, true);
+    pile = {must(world.create_body(box({-6, 0.3, 0}, {0.3, 0.3, 0.5}, 100))),
+            must(world.create_body(box({-6, 0.95, 0.1}, {0.3, 0.3, 0.4}, 120))),
+            must(world.create_body(ball({-6.2, 2, 0}, 0.4)))};
+  }
+};
+
+}  // namespace
+
+TEST_CASE("octaves: what each island of a world asks for") {
+  Yard yard(Precision::f32);
+  Stepper stepper;
+  const StepReport& report = stepper.step(yard.world, frame);
+  REQUIRE(report);
+  CHECK(report.substeps == 64);
+  CHECK(report.refined == 6);  // the tower and the ring, not the pile
+  StepSettings never;
+  never.refinement = 1;
+  REQUIRE(stepper.configure(never));
+  REQUIRE(stepper.step(yard.world, frame));
+  CHECK(report.substeps == 4);
+  CHECK(report.refined == 0);
+}
+
+TEST_CASE("octaves: islands do not feel each other's, by a bit") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    Yard both(precision), light(precision, 2, 400), still(precision, 1000, 0);
+    Stepper a, b, c;
+    for (int i = 0; i < 90; i++) {
+      run(both.world, a, 1);
+      run(light.world, b, 1);
+      run(still.world, c, 1);
+      CHECK(states(both.world, both.pile) == states(light.world, light.pile));
+      CHECK(states(both.world, both.pile) == states(still.world, still.pile));
+      CHECK(states(both.world, both.chain) == states(light.world, light.chain));
+      CHECK(states(both.world, both.tower) == states(still.world, still.tower));
+    }
+  }
+}
+
+TEST_CASE("octaves: equal hashes in lanes, threads, on GL and in all mixes") {
+  require_gl();
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    INFO((precision == Precision::f32 ? "float" : "double"));
+    const auto hashes_of = [&](const StepSettings& settings, int steps) {
+      Yard yard(precision);
+      Stepper stepper(settings);
+      std::vector<std::uint64_t> all;
+      for (int i = 0; i < steps; i++) {
+        run(yard.world, stepper, 1);
+        all.push_back(yard.world.hash());
+      }
+      return all;
+    };
+    const auto wanted = hashes_of(lanes(1), 60);
+    CHECK(hashes_of(lanes(4), 60) == wanted);
+    CHECK(hashes_of(lanes(0), 60) == wanted);
+    StepSettings threads = lanes(1);
+    threads.threads = 3;
+    CHECK(hashes_of(threads, 60) == wanted);
+    const std::vector<std::uint64_t> first(wanted.begin(), wanted.begin() + 8);
+    for (const Mix& mix : mixes()) {
+      INFO(mix.text());
+      CHECK(hashes_of(mix.settings(), 8) == first);
+    }
+  }
+}
+
+TEST_CASE("octaves: a snapshot goes on alike, whatever octaves came before") {
+  Yard yard(Precision::f64);
+  Stepper stepper;
+  run(yard.world, stepper, 20);
+  const std::vector<std::byte> middle = yard.world.snapshot();
+  run(yard.world, stepper, 20);
+  const std::uint64_t wanted = yard.world.hash();
+  must(yard.world.restore(middle));
+  Stepper other;
+  run(yard.world, other, 20);
+  CHECK(yard.world.hash() == wanted);
+}
+
+TEST_CASE("octaves: coming and going keeps the motion") {
+  // free links with a spin that drag takes out; without gravity and linear drag their centre goes straight on
+  World world({Precision::f64, {}});
+  const std::vector<BodyId> links = add_links(world, {}, 4, 300);
+  for (const BodyId link : links) {
+    must(world.set_drag(link, 0, 2));
+    must(world.set_velocity(link, {3, -2, 1}));
+  }
+  const Vec3 momentum = world.momentum();
+  Stepper stepper;
+  std::vector<std::uint32_t> seen;
+  for (int i = 0; i < 240; i++) {
+    const StepReport& report = stepper.step(world, frame);
+    REQUIRE(report);
+    if (seen.empty() || seen.back() != report.substeps) seen.push_back(report.substeps);
+    CHECK(length(world.momentum() - momentum) < 1e-11 * length(momentum));
+  }
+  CHECK(seen.front() > 4);
+  CHECK(seen.back() == 4);
+  CHECK(seen.size() >= 3);  // by and by
+}
+
+TEST_CASE("octaves: a kinematic body joins what it carries") {
+  World world;
+  BodyDef belt = fixed_box({0, -0.5, 0}, {20, 0.5, 20});
+  belt.kind = BodyKind::kinematic;
+  belt.velocity = {0.5, 0, 0};
+  (void)must(world.create_body(belt));
+  (void)add_tower(world, {}, 1000);
+  const BodyId far = must(world.create_body(box({6, 0.3, 0}, {0.3, 0.3, 0.3}, 100)));
+  Stepper stepper;
+  const StepReport& report = stepper.step(world, frame);
+  REQUIRE(report);
+  CHECK(report.refined == 4);  // the belt too
+  run(world, stepper, 120);
+  CHECK(std::fabs(world.velocity(far)->x - 0.5) < 1e-3);
+  CHECK(std::fabs(world.pose(far)->position.x - 6 - 121 * frame * 0.5) < 0.05);
+}
+
+TEST_CASE("octaves: large islands make no more than twice the sub-steps for their spins") {
+  World world({Precision::f32, {}});
+  (void)add_links(world, {}, 300, 300);
+  Stepper stepper;
+  const StepReport& report = stepper.step(world, frame);
+  REQUIRE(report);
+  CHECK(report.substeps == 8);
+  CHECK(report.refined == 300);
+}
