@@ -18,7 +18,7 @@ PC_FN Real pc_pace(Real own, Real x, Real y, Real z) {
   precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum) * PC_REAL(1.5); return pc_min(pace, PC_REAL(1.0));
 }
 PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Real preload) {
-  precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, pc_times_real(mass, preload)) - now) * pace; return pc_snap(next);
+  precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, pc_times_preload(mass, preload)) - now) * pace; return pc_snap(next);
 }
 
 // `v`: the twist before the visit; `r`: impulses after the visit's one round.

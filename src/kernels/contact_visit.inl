@@ -7,13 +7,14 @@
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint with a preload: it lets go of a share of
 // what goes beyond an impulse that a few weights of the body's own make (`preload`, a velocity), so that what lies alone does not
 // sink. With bodies of trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
-PC_FN Real pc_times_real(Real a, Real b) { precise Real r = a * b; return r; }
 #ifdef PC_MEAN
 // (of a contact that is left alone, with a scale of 0, none: it would take up a share of what it held before)
-#define pc_held(i, mass) pc_times_real(PC_LD(contact_impulses, m, IMPULSE_MEAN + i), mass_scale)
+PC_FN Real pc_mean_held(PC_IO Slot m, uint i, Real mass_scale) { precise Real r = PC_LD(contact_impulses, m, IMPULSE_MEAN + i) * mass_scale; return r; }
+#define pc_held(i, mass) pc_mean_held(PC_PASS m, i, mass_scale)
 #define PC_PRELOAD
 #else
-#define pc_held(i, mass) pc_times_real(mass, preload)
+PC_FN Real pc_times_preload(Real mass, Real preload) { precise Real r = mass * preload; return r; }
+#define pc_held(i, mass) pc_times_preload(mass, preload)
 #define PC_PRELOAD , Real preload
 #endif
 PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held) {

@@ -78,9 +78,12 @@ void Forest::grow() {
   }
 }
 
-void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
+namespace {
+
+/// Trees of each shape, in the order of the forest.
+std::vector<std::vector<std::size_t>> by_shape(const Forest& forest) {
   std::map<std::vector<std::uint32_t>, std::size_t> shapes;  // parents and sides of all nodes
-  std::vector<std::vector<std::size_t>> alike;               // trees of each shape, in the order of the forest
+  std::vector<std::vector<std::size_t>> alike;
   std::vector<std::uint32_t> shape;
   for (std::size_t i = 0; i < forest.trees(); i++) {
     shape.clear();
@@ -89,11 +92,23 @@ void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
     if (is_new) alike.emplace_back();
     alike[at->second].push_back(i);
   }
+  return alike;
+}
+
+}  // namespace
+
+std::uint32_t most_alike(const Forest& forest) {
+  std::size_t most = 0;
+  for (const std::vector<std::size_t>& trees : by_shape(forest)) most = std::max(most, trees.size());
+  return std::uint32_t(most);
+}
+
+void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out) {
   out.blocks.clear();
   out.parents.clear();
   out.ends.clear();
   out.order.clear();
-  for (const std::vector<std::size_t>& trees : alike)
+  for (const std::vector<std::size_t>& trees : by_shape(forest))
     for (std::size_t begin = 0; begin < trees.size(); begin += width) {
       const std::size_t lanes = std::min<std::size_t>(width, trees.size() - begin), count = forest.tree(trees[begin]).size();
       out.blocks.push_back(std::uint32_t(out.parents.size()));

@@ -62,6 +62,8 @@ struct TreeBlocks {
 
   std::uint32_t count() const { return std::uint32_t(blocks.size() / 2); }
 };
+/// How many trees the most common shape has.
+std::uint32_t most_alike(const Forest& forest);
 void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out);
 
 }  // namespace pcphys

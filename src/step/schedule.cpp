@@ -132,6 +132,7 @@ void TreeSlots::build(const WorldState& state) {
   std::ranges::sort(closing_);
   pivots_ = find_pivots(forest_, state);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
+  alike_ = most_alike(forest_);
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
   find_drives(state, links);
   width_ = 0;

@@ -98,6 +98,8 @@ class TreeSlots {
   /// Springs between two points of which neither stands in a tree that answers them.
   std::uint32_t free_springs() const { return free_springs_; }
   std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
+  /// How many trees of one shape there are, of the shape of which there are most.
+  std::uint32_t alike() const { return alike_; }
   std::span<const Range> ranges() const { return {&all_, 1}; }
   TreeBlocks& lists() { return blocks_; }
   std::uint64_t version() const { return version_; }
@@ -111,7 +113,7 @@ class TreeSlots {
   std::vector<char> parallel_;
   std::vector<std::uint32_t> closing_;
   bool drives_ = false, closing_drives_ = false;
-  std::uint32_t free_springs_ = 0;
+  std::uint32_t free_springs_ = 0, alike_ = 0;
   std::vector<Pivot> pivots_;
   TreeBlocks blocks_;
   Range all_{0, 0};
