@@ -150,14 +150,13 @@ TEST_CASE("trees: spins of up to 100 rad/s, 0.4 rad a sub-step") {
 
 TEST_CASE("trees: wilder spins stay finite") {
   for (const Mode& mode : precisions())
-    for (double spin : {300.0, 1000.0, 4000.0}) check_whips(mode, spin, infinite, infinite);
+    for (double spin : {4000.0, 20000.0}) check_whips(mode, spin, infinite, infinite);
 }
 
-// Measured at 300 rad/s, 1.25 rad a sub-step: separations to 1.63 m, energy to 69 times the start's (single 1.45 m, 17
-// times); before the stiffness was scaled by what the sub-step resolves, 0.63 m and 13 times. It falls below the start's
-// again.
-TEST_CASE("trees: spins of 300 rad/s hold together and gain no energy" * doctest::may_fail()) {
-  for (const Mode& mode : precisions()) check_whips(mode, 300, 10 * millimetre, 0.1);
+// With four sub-steps for all they came apart by 1.63 m and had 69 times their energy for a while.
+TEST_CASE("trees: spins of 300 and 1000 rad/s hold together and gain no energy") {
+  for (const Mode& mode : precisions())
+    for (double spin : {300.0, 1000.0}) check_whips(mode, spin, 10 * millimetre, 0);
 }
 
 // A closing pin at a radian and more a sub-step has no solution near the tangent. What comes of it leaves the range of numbers, or

@@ -7,6 +7,12 @@ namespace {
 
 constexpr std::uint32_t widths[] = {1, 4, 8, 32};
 
+TreeShapes shapes_of(const Forest& forest) {
+  TreeShapes shapes;
+  shapes.build(forest);
+  return shapes;
+}
+
 /// Every tree stands in one lane of one block of its shape, in the order of the forest among those of its shape; all
 /// other lanes hold rows 0, and no block could have been left out.
 void check_blocks(const Forest& f, std::uint32_t width, const TreeBlocks& blocks) {
@@ -78,7 +84,7 @@ TEST_CASE("tree blocks: equal ragdolls share blocks, whatever else there is") {
   for (const std::uint32_t width : widths) {
     CAPTURE(width);
     TreeBlocks blocks;
-    pack_trees(f, width, blocks);
+    pack_trees(f, shapes_of(f), width, blocks);
     check_blocks(f, width, blocks);
     const std::uint32_t of_each = (5 + width - 1) / width;
     CHECK(blocks.count() == 2 * of_each);
@@ -93,7 +99,7 @@ TEST_CASE("tree blocks: the side of a joint's bodies is part of a shape") {
     i == 0 ? g.join(a, b) : g.join(b, a);
   }
   TreeBlocks blocks;
-  pack_trees(g.forest(), 4, blocks);
+  pack_trees(g.forest(), shapes_of(g.forest()), 4, blocks);
   CHECK(blocks.count() == 2);
   CHECK(blocks.parents == List{0, 0, 0, 1});
 }
@@ -101,7 +107,7 @@ TEST_CASE("tree blocks: the side of a joint's bodies is part of a shape") {
 TEST_CASE("tree blocks: of no trees none") {
   TreeBlocks blocks;
   blocks.blocks = blocks.parents = blocks.ends = {1, 2};
-  pack_trees(Graph{}.forest(), 8, blocks);
+  pack_trees(Graph{}.forest(), {}, 8, blocks);
   CHECK(blocks.count() == 0);
   CHECK(blocks.parents.empty());
   CHECK(blocks.ends.empty());
@@ -124,8 +130,26 @@ TEST_CASE("tree blocks: random graphs") {
     CAPTURE(i);
     check_forest(g, f);
     for (const std::uint32_t width : widths) {
-      pack_trees(f, width, blocks);
+      pack_trees(f, shapes_of(f), width, blocks);
       check_blocks(f, width, blocks);
     }
   }
+}
+
+TEST_CASE("tree blocks: octaves have blocks of their own, lowest first") {
+  Graph g;
+  for (int tree = 0; tree < 5; tree++) g.join(g.body(1), g.body(1));
+  const Forest f = g.forest();
+  const std::vector<std::uint8_t> octaves = {1, 0, 1, 2, 0};
+  TreeBlocks blocks;
+  pack_trees(f, shapes_of(f), 4, blocks, {octaves, 4});
+  REQUIRE(blocks.count() == 3);
+  REQUIRE(blocks.ranges.size() == 4);
+  const std::uint32_t ends[] = {1, 2, 3, 3};
+  for (std::size_t octave = 0; octave < 4; octave++) CHECK(blocks.ranges[octave].end == ends[octave]);
+  CHECK(blocks.order[0] == 1 + f.first(1));
+  CHECK(blocks.order[1] == 1 + f.first(4));
+  CHECK(blocks.order[2] == 0);
+  CHECK(blocks.order[2 * 4] == 1 + f.first(0));
+  CHECK(blocks.order[4 * 4] == 1 + f.first(3));
 }

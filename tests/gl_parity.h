@@ -87,7 +87,7 @@ template <class Scalar> SlotLayout lay_out_reach(const State<Scalar>& state, std
 template <class Scalar>
 SlotLayout layout_of(Buffer buffer, const State<Scalar>& state, std::size_t width, const TreeLayout& trees) {
   if (buffer == Buffer::contact_reach) return lay_out_reach(state, width);
-  if (buffer == Buffer::tree_rows) return {std::vector<std::size_t>(trees.slots.begin(), trees.slots.end()), trees.size};
+  if (is_tree_rows(buffer)) return {std::vector<std::size_t>(trees.slots.begin(), trees.slots.end()), trees.size};
   return {{}, state.reals[std::size_t(buffer)].size() / std::max(1u, schema(buffer).reals)};
 }
 

@@ -25,9 +25,10 @@ using namespace pcphys;
 
 inline Table table_of(Buffer buffer) { return schema(buffer).table; }
 inline bool is_index(Buffer buffer) { return schema(buffer).reals == 0; }
+inline bool is_tree_rows(Buffer buffer) { return buffer == Buffer::tree_rows || buffer == Buffer::tree_drive_rows; }
 inline bool is_rows(Buffer buffer) {
   return buffer == Buffer::contact_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows ||
-         buffer == Buffer::tree_rows || buffer == Buffer::contact_reach;
+         is_tree_rows(buffer) || buffer == Buffer::contact_reach;
 }
 inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || buffer == Buffer::joint_ends; }
 
@@ -294,7 +295,8 @@ template <class Scalar> void Maker<Scalar>::trees() {
   for (const Buffer buffer : {Buffer::node_operator, Buffer::node_response, Buffer::node_pending})
     state_.reals[std::size_t(buffer)].resize(state_.nodes.rows() * schema(buffer).reals);
   for (std::size_t tree = 0; tree < state_.trees.trees(); tree++) assemble(state_.trees.tree(tree));
-  state_.reals[std::size_t(Buffer::tree_rows)].resize(lay_out(state_.trees, 1).size * schema(Buffer::tree_rows).reals);
+  for (const Buffer buffer : {Buffer::tree_rows, Buffer::tree_drive_rows})
+    state_.reals[std::size_t(buffer)].resize(lay_out(state_.trees, 1).size * schema(buffer).reals);
 }
 
 template <class Scalar> void Maker<Scalar>::infos() {
@@ -341,7 +343,7 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   rows[std::size_t(Table::contact)] = 1 + (colour_count * contact_blocks + tree_colour_count * tree_blocks) * 32;
   for (std::size_t i = 0; i < buffer_count; i++) {
     const Buffer buffer = Buffer(i);
-    if (buffer == Buffer::tree_rows || table_of(buffer) == Table::node) continue;  // as many as nodes, below
+    if (is_tree_rows(buffer) || table_of(buffer) == Table::node) continue;  // as many as nodes, below
     if (buffer == Buffer::contact_reach) continue;                                 // when the contacts' bodies are known
     const std::uint32_t slots = buffer == Buffer::joint_rows ? coloured_joints : rows[std::size_t(table_of(buffer))] - 1;
     if (!is_index(buffer))

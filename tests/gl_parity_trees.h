@@ -71,7 +71,9 @@ struct TreeLayout {
 inline TreeLayout lay_out(const Forest& forest, std::uint32_t width) {
   TreeLayout layout;
   TreeBlocks& lists = layout.lists;
-  pack_trees(forest, width, lists);
+  TreeShapes shapes;
+  shapes.build(forest);
+  pack_trees(forest, shapes, width, lists);
   layout.size = lists.parents.size() * width;
   for (std::uint32_t block = 0; block < lists.count(); block++) {
     const std::uint32_t first = lists.blocks[2 * block], count = lists.blocks[2 * block + 1];

@@ -89,11 +89,14 @@ TEST_CASE("lanes: 1, 4 and 8 in float have equal hashes over 600 steps") {
   }
 }
 
+// From about step 90 on blocks hold idle contacts beside others, some of which a blow closes within their sub-step while they still
+// have the mean of what they held before.
 TEST_CASE("lanes: a heap of ragdolls, in which blocks mix contacts of all kinds") {
   const Case heap{"ragdolls", 20, 0};
   const auto wanted = hashes(heap, Precision::f32, lanes(1), 180);
   CHECK(hashes(heap, Precision::f32, lanes(4), 180) == wanted);
   CHECK(hashes(heap, Precision::f32, lanes(8), 180) == wanted);
+  CHECK(hashes(heap, Precision::f64, lanes(4), 180) == hashes(heap, Precision::f64, lanes(1), 180));
 }
 
 TEST_CASE("lanes: 1 and 4 in double have equal hashes over 600 steps") {

@@ -70,8 +70,7 @@ inline constexpr double cross_share = 0.9;
 inline constexpr double row_mass_most = 1000;
 /// A contact with a joint tree that holds nothing is left alone in a sub-step while its points would have to be brought together by this and the
 /// speeds of its bodies besides [m/s].
-/// (None is for now: where some contacts of a block are idle, 4 and 8 lanes do not have the bits of one; 0.5 was meant.)
-inline constexpr double idle_speed = 1e18;
+inline constexpr double idle_speed = 0.5;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

@@ -1,4 +1,6 @@
 // The CPU backend: kernels run in place on the world's tables, in the lane count that was chosen.
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,18 @@
 namespace pcphys {
 namespace {
 
+/// The compiled kernels of that many lanes, or null where the build or the processor has none.
+const CpuKernels* find_kernels(Precision precision, std::uint32_t lanes) {
+  const bool f64 = precision == Precision::f64;
+  if (lanes == 1) return f64 ? &cpu_kernels_d1 : &cpu_kernels_f1;
+#ifdef PCPHYS_HAVE_X86_LANES
+  if (lanes == 4 && f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_d4;
+  if (lanes == 4 && !f64 && __builtin_cpu_supports("sse4.2")) return &cpu_kernels_f4;
+  if (lanes == 8 && !f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_f8;
+#endif
+  return nullptr;
+}
+
 class CpuBackend final : public Backend {
  public:
   CpuBackend(const CpuKernels& kernels, const Workers* workers) : kernels_(kernels), workers_(workers) {}
@@ -18,6 +32,12 @@ class CpuBackend final : public Backend {
     return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes";
   }
   std::uint32_t width() const override { return kernels_.lanes; }
+  std::uint32_t choose_tree_width(std::uint32_t alike) override {
+    const std::array<const CpuKernels*, 3> narrowest = {find_kernels(precision(), 1), find_kernels(precision(), 4), &kernels_};
+    tree_kernels_ = *std::ranges::find_if(
+        narrowest, [&](const CpuKernels* k) { return k == &kernels_ || (k && k->lanes < kernels_.lanes && k->lanes >= alike); });
+    return tree_kernels_->lanes;
+  }
 
   Status attach(Buffer buffer, void* host, std::size_t) override {
     buffers_[std::size_t(buffer)] = host;
@@ -37,10 +57,12 @@ class CpuBackend final : public Backend {
   }
   Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool) override {
     const std::size_t stride = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
-    const std::uint32_t unit = schema(kernel).domain == Domain::body ? kernels_.lanes : 1;  // what no piece may cut
+    const Domain domain = schema(kernel).domain;
+    const std::uint32_t unit = domain == Domain::body ? kernels_.lanes : 1;  // what no piece may cut
+    const CpuKernels& kernels = domain == Domain::tree ? *tree_kernels_ : kernels_;
     for (const Range& range : ranges) {
       const auto part = [&](std::uint32_t begin, std::uint32_t end) {
-        kernels_.run[std::size_t(kernel)](
+        kernels.run[std::size_t(kernel)](
             {buffers_.data(), infos_ + info * stride, range.begin + begin * unit, range.begin + end * unit});
       };
       const std::uint32_t count = (range.end - range.begin) / unit;
@@ -53,24 +75,15 @@ class CpuBackend final : public Backend {
  private:
   static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
 
+  Precision precision() const { return kernels_.f64 ? Precision::f64 : Precision::f32; }
+
   const CpuKernels& kernels_;
+  const CpuKernels* tree_kernels_ = &kernels_;
   const Workers* workers_;
   std::array<void*, buffer_count> buffers_{};
   std::array<AlignedBytes, buffer_count> scratch_;
   const std::byte* infos_ = nullptr;
 };
-
-/// The compiled kernels of that many lanes, or null where the build or the processor has none.
-const CpuKernels* find_kernels(Precision precision, std::uint32_t lanes) {
-  const bool f64 = precision == Precision::f64;
-  if (lanes == 1) return f64 ? &cpu_kernels_d1 : &cpu_kernels_f1;
-#ifdef PCPHYS_HAVE_X86_LANES
-  if (lanes == 4 && f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_d4;
-  if (lanes == 4 && !f64 && __builtin_cpu_supports("sse4.2")) return &cpu_kernels_f4;
-  if (lanes == 8 && !f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_f8;
-#endif
-  return nullptr;
-}
 
 }  // namespace
 

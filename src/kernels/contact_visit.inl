@@ -8,7 +8,9 @@
 // what goes beyond an impulse that a few weights of the body's own make (`preload`, a velocity), so that what lies alone does not
 // sink. With bodies of trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
 #ifdef PC_MEAN
-#define pc_held(i, mass) PC_LD(contact_impulses, m, IMPULSE_MEAN + i)
+// (of a contact that is left alone, with a scale of 0, none: it would take up a share of what it held before)
+PC_FN Real pc_mean_held(PC_IO Slot m, uint i, Real mass_scale) { precise Real r = PC_LD(contact_impulses, m, IMPULSE_MEAN + i) * mass_scale; return r; }
+#define pc_held(i, mass) pc_mean_held(PC_PASS m, i, mass_scale)
 #define PC_PRELOAD
 #else
 PC_FN Real pc_times_preload(Real mass, Real preload) { precise Real r = mass * preload; return r; }

@@ -19,7 +19,8 @@ PC_ROWS(contact, contact_impulses, 16)
 PC_ROWS(contact, rolling_impulses, 4)
 PC_ROWS(contact, contact_reach, 12)
 PC_ROWS(joint, joint_rows, 96)
-PC_ROWS(joint, tree_rows, 204)
+PC_ROWS(joint, tree_rows, 168)
+PC_ROWS(joint, tree_drive_rows, 36)
 #endif
 
 #ifdef PC_KERNEL
@@ -51,10 +52,10 @@ PC_KERNEL(tree_joint_solve_driven, tree_joint, joints, PC_READ(joint_paths) PC_R
 PC_KERNEL(tree_joint_arms, tree_joint, joints, PC_READ(joint_paths) PC_READ(pose) PC_WRITE(joint_rows))
 PC_KERNEL(joint_keep, joint, joints, PC_READ(joint_order) PC_WRITE(joint_impulse))
 PC_KERNEL(tree_prepare, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(joint_frame) PC_READ(joint_impulse) PC_WRITE(tree_rows))
-PC_KERNEL(tree_drive_rates, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(motion) PC_WRITE(tree_rows))
-PC_KERNEL(tree_drives, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(joint_frame) PC_READ(joint_drive) PC_WRITE(tree_rows))
+PC_KERNEL(tree_drive_rates, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(motion) PC_WRITE(tree_drive_rows))
+PC_KERNEL(tree_drives, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(joint_frame) PC_READ(joint_drive) PC_READ(tree_rows) PC_WRITE(tree_drive_rows))
 PC_KERNEL(tree_solve, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
-PC_KERNEL(tree_solve_driven, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
+PC_KERNEL(tree_solve_driven, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(tree_drive_rows) PC_WRITE(motion))
 PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse))
 PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_keep, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_WRITE(joint_impulse))

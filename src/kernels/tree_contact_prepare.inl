@@ -29,7 +29,7 @@ PC_FN Mask pc_idles(PC_IO Slot m, Meeting now) {
   for (uint i = 0u; i < 3u; i++) held = pc_max(held, pc_abs(PC_LD(contact_impulses, m, IMPULSE_T + i)));
   Real room = pc_min(pc_min(pc_room(PC_PASS m, 0u, now.twist, now.shift), pc_room(PC_PASS m, 1u, now.twist, now.shift)), pc_min(pc_room(PC_PASS m, 2u, now.twist, now.shift), pc_room(PC_PASS m, 3u, now.twist, now.shift)));
   precise Real fast = pc_length(now.a.v) + pc_length(now.b.v) + PC_INFO(idle_speed);
-  return pc_and(room > fast, held < PC_TINY);
+  return pc_select(held > PC_REAL(0.0), PC_REAL(0.0), room) > fast;
 }
 
 PC_FN void pc_fill_reach(PC_IO Way w, Slot m, bool turns, Arms arms, Vec3 n, Vec3 t1, Vec3 t2) {

@@ -1,47 +1,48 @@
 // Motors and springs of a tree's joints inside its factor: soft rows on the relative rotation, as the angle rows are. A motor is a
 // locked row of the wanted speed until it needs more than its torque; then it is that torque, found like the limits that act.
 #include "drive_terms.inl"
+#include "tree_drive_rows.inl"
 
-PC_FN Mask pc_has_drive(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_DRIVE) > PC_REAL(0.5); }
+PC_FN Mask pc_has_drive(PC_IO Slot n) { return PC_LD(tree_drive_rows, n, DRIVE_IS) > PC_REAL(0.5); }
 
 // A joint with a motor or a spring, not in its first sub-step: what it turns would be slowed by a floor for pins of unknown stiffness.
-PC_FN Mask pc_drive_lasts(PC_IO Slot n) { return pc_and(pc_has_drive(PC_PASS n), PC_LD(tree_rows, n, TREE_DRIVE_FRESH) < PC_REAL(0.5)); }
+PC_FN Mask pc_drive_lasts(PC_IO Slot n) { return pc_and(pc_has_drive(PC_PASS n), PC_LD(tree_drive_rows, n, DRIVE_FRESH) < PC_REAL(0.5)); }
 
 // Before the first round: rates at the prediction. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_drive_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_drive(PC_PASS n))) return;  // lint: allow (nothing reads them otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-  for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_DRIVE_RATE + i, pc_dot(pc_ld3_tree(PC_PASS n, TREE_DRIVE_AXIS + i * 3u), turn));
-  PC_ST(tree_rows, n, TREE_MOTOR_ON, PC_REAL(2.0));
+  for (uint i = 0u; i < 3u; i++) PC_ST(tree_drive_rows, n, DRIVE_RATE + i, pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + i * 3u), turn));
+  PC_ST(tree_drive_rows, n, MOTOR_ON, PC_REAL(2.0));
 }
 
 // The motor: adds its stiffness where it holds, and answers its impulse at the prediction. `answer`: of both sides about its axis.
 PC_FN Real pc_motor_push(PC_IO Slot n, Vec3 axis, Sym3 loose, Real answer) {
-  Real most = PC_LD(tree_rows, n, TREE_MOTOR_MOST); Real on = PC_LD(tree_rows, n, TREE_MOTOR_ON); Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
-  precise Real beyond = PC_LD(tree_rows, n, TREE_DRIVE_RATE) - PC_LD(tree_rows, n, TREE_MOTOR_SPEED);
+  Real most = PC_LD(tree_drive_rows, n, MOTOR_MOST); Real on = PC_LD(tree_drive_rows, n, MOTOR_ON); Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
+  precise Real beyond = PC_LD(tree_drive_rows, n, DRIVE_RATE) - PC_LD(tree_drive_rows, n, MOTOR_SPEED);
   // not known yet: by what it would take without loads
   precise Real need = pc_abs(beyond) * pc_inverse_or_zero(answer); Real side = pc_select(beyond > zero, -one, one);
   Real state = pc_select(on > PC_REAL(1.5), pc_select(need > most, side, zero), on); Mask holds = pc_and(most > zero, pc_abs(state) < PC_REAL(0.5));
   precise Real lock = PC_INFO(lock_stiffness) * pc_inverse_or_zero(pc_dot(axis, pc_sym_mul(loose, axis))); Real stiffness = pc_select(holds, lock, zero);
-  PC_ST(tree_rows, n, TREE_MOTOR_ON, state); PC_ST(tree_rows, n, TREE_MOTOR_STIFFNESS, stiffness);
+  PC_ST(tree_drive_rows, n, MOTOR_ON, state); PC_ST(tree_drive_rows, n, MOTOR_STIFFNESS, stiffness);
   precise Real pull = stiffness * beyond - state * most; return pull;
 }
-// D with motor and spring in it. Afterwards TREE_DRIVE_PUSH is the couple that they lack at the prediction.
+// D with motor and spring in it. Afterwards DRIVE_PUSH is the couple that they lack at the prediction.
 PC_FN Sym3 pc_with_drives(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
   Sym3 above = pc_sym_inverse(pc_lds_tree(PC_PASS up, TREE_BODY)); Sym3 freedom = bare; Vec3 push = pc_zero3(); Mask driven = pc_has_drive(PC_PASS n); Real zero = PC_REAL(0.0);
-  Real h = PC_INFO(h); Real kick = PC_LD(tree_rows, n, TREE_DRIVE_KICK); Real stiffness = PC_LD(tree_rows, n, TREE_DRIVE_STIFFNESS); Real damping = PC_LD(tree_rows, n, TREE_DRIVE_DAMPING);
+  Real h = PC_INFO(h); Real kick = PC_LD(tree_drive_rows, n, DRIVE_KICK); Real stiffness = PC_LD(tree_drive_rows, n, DRIVE_STIFFNESS); Real damping = PC_LD(tree_drive_rows, n, DRIVE_DAMPING);
   for (uint i = 0u; i < 3u; i++) {
-    Vec3 axis = pc_ld3_tree(PC_PASS n, TREE_DRIVE_AXIS + i * 3u);
+    Vec3 axis = pc_ld3_drive(PC_PASS n, DRIVE_AXIS + i * 3u);
     precise Real answer = pc_dot(axis, pc_sym_mul(loose, axis)) + pc_dot(axis, pc_sym_mul(above, axis));
-    DriveRow r = pc_drive_row(h, kick, stiffness, damping, PC_LD(tree_rows, n, TREE_DRIVE_AWAY + i), PC_LD(tree_rows, n, TREE_DRIVE_LAST + i), answer);
-    precise Real pull = r.push + r.gamma * PC_LD(tree_rows, n, TREE_DRIVE_RATE + i);
+    DriveRow r = pc_drive_row(h, kick, stiffness, damping, PC_LD(tree_drive_rows, n, DRIVE_AWAY + i), PC_LD(tree_drive_rows, n, DRIVE_LAST + i), answer);
+    precise Real pull = r.push + r.gamma * PC_LD(tree_drive_rows, n, DRIVE_RATE + i);
     freedom = pc_sym_outer(freedom, axis, pc_select(driven, r.gamma, zero)); push = pc_madd(push, axis, pull);
     if (i == 0u) {
       Real motor = pc_motor_push(PC_PASS n, axis, loose, answer); push = pc_madd(push, axis, motor);
-      freedom = pc_sym_outer(freedom, axis, pc_select(driven, PC_LD(tree_rows, n, TREE_MOTOR_STIFFNESS), zero));
+      freedom = pc_sym_outer(freedom, axis, pc_select(driven, PC_LD(tree_drive_rows, n, MOTOR_STIFFNESS), zero));
     }
   }
-  pc_st3_tree(PC_PASS n, TREE_DRIVE_PUSH, pc_select3(driven, push, pc_zero3())); return freedom;
+  pc_st3_drive(PC_PASS n, DRIVE_PUSH, pc_select3(driven, push, pc_zero3())); return freedom;
 }
 
 // After a sweep: a motor that would need more than its torque gets that; in the first round one that is past its speed holds it. 1
@@ -50,12 +51,12 @@ PC_FN Real pc_drive_revise(PC_IO Slot n, Slot up, Real may_hold) {
   Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0); Mask driven = pc_has_drive(PC_PASS n);
   if (!PC_ANY(driven)) return zero;  // lint: allow (nothing changes otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-  Real most = PC_LD(tree_rows, n, TREE_MOTOR_MOST); Real on = PC_LD(tree_rows, n, TREE_MOTOR_ON);
-  precise Real beyond = PC_LD(tree_rows, n, TREE_DRIVE_RATE) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_DRIVE_AXIS), turn) - PC_LD(tree_rows, n, TREE_MOTOR_SPEED);
-  precise Real impulse = -PC_LD(tree_rows, n, TREE_MOTOR_STIFFNESS) * beyond; precise Real past = beyond * on;
+  Real most = PC_LD(tree_drive_rows, n, MOTOR_MOST); Real on = PC_LD(tree_drive_rows, n, MOTOR_ON);
+  precise Real beyond = PC_LD(tree_drive_rows, n, DRIVE_RATE) + pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS), turn) - PC_LD(tree_drive_rows, n, MOTOR_SPEED);
+  precise Real impulse = -PC_LD(tree_drive_rows, n, MOTOR_STIFFNESS) * beyond; precise Real past = beyond * on;
   Mask has = pc_and(driven, most > zero);
   Mask yields = pc_and(has, pc_and(pc_abs(on) < PC_REAL(0.5), pc_abs(impulse) > most));
   Mask holds = pc_and(pc_and(has, may_hold > PC_REAL(0.5)), past > zero);
-  PC_ST(tree_rows, n, TREE_MOTOR_ON, pc_select(yields, pc_select(impulse > zero, one, -one), pc_select(holds, zero, on)));
+  PC_ST(tree_drive_rows, n, MOTOR_ON, pc_select(yields, pc_select(impulse > zero, one, -one), pc_select(holds, zero, on)));
   return pc_select(pc_or(yields, holds), one, zero);
 }

@@ -1,7 +1,7 @@
 // After tree_prepare, where a joint of a tree has a motor or a spring: axes, distance from rest, coefficients, in units of the
 // tree's mass. tree_solve_driven puts them into the factor (tree_drive.inl).
 #include "tree_rows.inl"
-#include "tree_store.inl"
+#include "tree_drive_rows.inl"
 #include "drive_terms.inl"
 
 PC_FN void pc_tree_drive(PC_IO Slot n, Slot up, uint b, Index joint, Quad power) {
@@ -16,23 +16,23 @@ PC_FN void pc_tree_drive(PC_IO Slot n, Slot up, uint b, Index joint, Quad power)
   Quaternion fb; fb.v = pc_select3(flipped, fp.v, fc.v); fb.w = pc_select(flipped, fp.w, fc.w);
   DriveFrame f = pc_drive_frame(fa, fb, pc_quaternion(rest.v, rest.s));
   // velocities of b against a are those of the child against the parent, or their opposites: so are the axes
-  pc_st3_tree(PC_PASS n, TREE_DRIVE_AXIS, pc_scale(f.x, flip)); pc_st3_tree(PC_PASS n, TREE_DRIVE_AXIS + 3u, pc_scale(f.y, flip)); pc_st3_tree(PC_PASS n, TREE_DRIVE_AXIS + 6u, pc_scale(f.z, flip));
-  pc_st3_tree(PC_PASS n, TREE_DRIVE_AWAY, pc_select3(driven, f.away, pc_zero3()));
-  Vec3 last = pc_sub(pc_ld3_tree(PC_PASS n, TREE_DRIVE_SPIN), pc_ld3_tree(PC_PASS up, TREE_DRIVE_SPIN));
+  pc_st3_drive(PC_PASS n, DRIVE_AXIS, pc_scale(f.x, flip)); pc_st3_drive(PC_PASS n, DRIVE_AXIS + 3u, pc_scale(f.y, flip)); pc_st3_drive(PC_PASS n, DRIVE_AXIS + 6u, pc_scale(f.z, flip));
+  pc_st3_drive(PC_PASS n, DRIVE_AWAY, pc_select3(driven, f.away, pc_zero3()));
+  Vec3 last = pc_sub(pc_ld3_drive(PC_PASS n, DRIVE_SPIN), pc_ld3_drive(PC_PASS up, DRIVE_SPIN));
   precise Real l0 = pc_dot(f.x, last) * flip; precise Real l1 = pc_dot(f.y, last) * flip; precise Real l2 = pc_dot(f.z, last) * flip;
-  pc_st3_tree(PC_PASS n, TREE_DRIVE_LAST, Vec3(l0, l1, l2));
-  Real fresh = pc_max(PC_LD(tree_rows, n, TREE_DRIVE_FRESH), PC_LD(tree_rows, up, TREE_DRIVE_FRESH)); precise Real kick = PC_INFO(h) * (one - fresh * PC_REAL(0.5));
+  pc_st3_drive(PC_PASS n, DRIVE_LAST, Vec3(l0, l1, l2));
+  Real fresh = pc_max(PC_LD(tree_drive_rows, n, DRIVE_FRESH), PC_LD(tree_drive_rows, up, DRIVE_FRESH)); precise Real kick = PC_INFO(h) * (one - fresh * PC_REAL(0.5));
   Real share = pc_select(driven, pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)), zero);
   precise Real most = drive.v.y * kick * share; precise Real stiffness = drive.v.z * share; precise Real damping = drive.s * share;
-  PC_ST(tree_rows, n, TREE_DRIVE_KICK, pc_select(driven, kick, zero)); PC_ST(tree_rows, n, TREE_MOTOR_SPEED, pc_select(driven, drive.v.x, zero)); PC_ST(tree_rows, n, TREE_MOTOR_MOST, most);
-  PC_ST(tree_rows, n, TREE_DRIVE_STIFFNESS, stiffness); PC_ST(tree_rows, n, TREE_DRIVE_DAMPING, damping);
+  PC_ST(tree_drive_rows, n, DRIVE_KICK, pc_select(driven, kick, zero)); PC_ST(tree_drive_rows, n, MOTOR_SPEED, pc_select(driven, drive.v.x, zero)); PC_ST(tree_drive_rows, n, MOTOR_MOST, most);
+  PC_ST(tree_drive_rows, n, DRIVE_STIFFNESS, stiffness); PC_ST(tree_drive_rows, n, DRIVE_DAMPING, damping);
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
   for (uint k = 1u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Index joint = PC_ENDS(tree_ends, n, 1u); Quad power = PC_GATHER(joint_drive, joint, 2u);
-    Mask driven = power.v.x > PC_REAL(0.5); PC_ST(tree_rows, n, TREE_DRIVE, pc_select(driven, PC_REAL(1.0), PC_REAL(0.0)));
+    Mask driven = power.v.x > PC_REAL(0.5); PC_ST(tree_drive_rows, n, DRIVE_IS, pc_select(driven, PC_REAL(1.0), PC_REAL(0.0)));
     if (PC_ANY(driven)) pc_tree_drive(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), pc_is_flipped(PC_PASS t, k), joint, power);  // lint: allow (nothing reads them otherwise)
   }
 }

@@ -1,5 +1,7 @@
 // The same as joint_keep, of joints that stand in trees.
+#define PC_NO_PARENTS
 #include "tree_shape.inl"
+#undef PC_NO_PARENTS
 #include "remembered.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {

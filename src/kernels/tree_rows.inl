@@ -37,22 +37,6 @@ const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows
 const uint TREE_TOUCH = 154u;   // largest load of a contact on the body in this sub-step
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
-// motor and spring of the joint (tree_drive.inl); written where a tree has any
-const uint TREE_DRIVE = 168u;   // 1 where there is one
-const uint TREE_DRIVE_KICK = 169u;  // time over which it acts
-const uint TREE_DRIVE_FRESH = 170u; // 1 where the body's velocity was just set
-const uint TREE_MOTOR_ON = 171u;    // 0: it holds its speed; 1 and -1: it gives its torque; 2: not known yet
-const uint TREE_DRIVE_SPIN = 172u;  // angular velocity before the sub-step's forces
-const uint TREE_MOTOR_STIFFNESS = 175u;
-const uint TREE_DRIVE_AXIS = 176u;  // of a's joint frame, turned like TREE_AXIS
-const uint TREE_DRIVE_AWAY = 185u;  // rotation vector from rest along them
-const uint TREE_DRIVE_LAST = 188u;  // rates along them: of the last sub-step
-const uint TREE_DRIVE_STIFFNESS = 191u;
-const uint TREE_DRIVE_DAMPING = 192u;
-const uint TREE_MOTOR_SPEED = 193u;
-const uint TREE_MOTOR_MOST = 194u;  // its largest impulse
-const uint TREE_DRIVE_RATE = 195u;  // and at the prediction
-const uint TREE_DRIVE_PUSH = 198u;
 const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
 // from tree_respond on, in places that are free by then: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
 const uint TREE_FACTOR = TREE_INERTIA;
@@ -73,11 +57,3 @@ PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
 }
 // Whether any lane's joint has angle rows. Skipping them changes no bit: where there are none they are zeros.
 PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(0.5); }
-// where a tree's nodes stand, and its topology
-#ifndef PC_NO_PARENTS
-PC_FN uint pc_parent(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) >> 1u; }
-// whether the tree is one body that a pin holds to a fixed one: it turns about the pin (pivot_turn.inl)
-PC_FN uint pc_is_pivot(PC_IO Tree t) { return PC_UINT(tree_parents, t.first) & 1u; }
-// whether the joint's body a is the child
-PC_FN uint pc_is_flipped(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) & 1u; }
-#endif

@@ -1,3 +1,10 @@
-// A lane's tree: its first node and how many there are.
+// Where a tree's nodes stand, and its topology.
 struct Tree { uint first; uint count; };
 PC_FN Tree pc_tree(PC_IO Slot m) { uint block = PC_BLOCK(m); uint at = block * 2u; Tree t; t.first = PC_UINT(tree_blocks, at); t.count = PC_UINT(tree_blocks, at + 1u); return t; }
+#ifndef PC_NO_PARENTS
+PC_FN uint pc_parent(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) >> 1u; }
+// whether the tree is one body that a pin holds to a fixed one: it turns about the pin (pivot_turn.inl)
+PC_FN uint pc_is_pivot(PC_IO Tree t) { return PC_UINT(tree_parents, t.first) & 1u; }
+// whether the joint's body a is the child
+PC_FN uint pc_is_flipped(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) & 1u; }
+#endif

@@ -18,7 +18,7 @@ PC_FN Six pc_w_mul(PC_IO Slot n, Vec3 t) {
 PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
   precise Vec3 t = f.a + pc_cross(f.l, rc);
 #ifdef PC_DRIVES
-  if (PC_ANY(pc_has_drive(PC_PASS n))) t = pc_sub(t, pc_select3(pc_has_drive(PC_PASS n), pc_ld3_tree(PC_PASS n, TREE_DRIVE_PUSH), pc_zero3()));  // lint: allow (zeros otherwise)
+  if (PC_ANY(pc_has_drive(PC_PASS n))) t = pc_sub(t, pc_select3(pc_has_drive(PC_PASS n), pc_ld3_drive(PC_PASS n, DRIVE_PUSH), pc_zero3()));  // lint: allow (zeros otherwise)
 #endif
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return t;  // lint: allow (zeros otherwise)
   precise Real s0 = PC_LD(tree_rows, n, TREE_SPRING) * PC_LD(tree_rows, n, TREE_RATE) * limits;

@@ -78,41 +78,57 @@ void Forest::grow() {
   }
 }
 
-namespace {
-/// Blocks of trees of one shape.
-void pack_alike(const Forest& forest, std::span<const std::size_t> trees, std::uint32_t width, TreeBlocks& out) {
-  for (std::size_t begin = 0; begin < trees.size(); begin += width) {
-    const std::size_t lanes = std::min<std::size_t>(width, trees.size() - begin), count = forest.tree(trees[begin]).size();
-    out.blocks.push_back(std::uint32_t(out.parents.size()));
-    out.blocks.push_back(std::uint32_t(count));
-    for (std::size_t k = 0; k < count; k++) {
-      const TreeNode& like = forest.tree(trees[begin])[k];
-      out.parents.push_back(like.parent << 1 | std::uint32_t(like.flipped));
-      const std::size_t at = out.ends.size();
-      out.ends.resize(at + 2 * width, 0);
-      out.order.resize(at / 2 + width, 0);
-      for (std::size_t lane = 0; lane < lanes; lane++) {
-        const TreeNode& node = forest.tree(trees[begin + lane])[k];
-        out.ends[at + lane] = node.body;
-        out.ends[at + width + lane] = node.joint;
-        out.order[at / 2 + lane] = 1 + forest.first(trees[begin + lane]) + std::uint32_t(k);
-      }
-    }
-  }
-}
-}  // namespace
-
-void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out, OctaveOf of) {
-  std::map<std::vector<std::uint32_t>, std::size_t> shapes;  // octave, then parents and sides of all nodes
-  std::vector<std::vector<std::size_t>> alike;               // trees of each shape, in the order of the forest
+void TreeShapes::build(const Forest& forest) {
+  std::map<std::vector<std::uint32_t>, std::size_t> shapes;  // parents and sides of all nodes
+  std::vector<std::vector<std::uint32_t>> alike;
   std::vector<std::uint32_t> shape;
-  for (std::size_t i = 0; i < forest.trees(); i++) {
-    shape.assign(1, of.octaves.empty() ? 0 : of.octaves[i]);
+  for (std::uint32_t i = 0; i < forest.trees(); i++) {
+    shape.clear();
     for (const TreeNode& node : forest.tree(i)) shape.push_back(node.parent << 1 | std::uint32_t(node.flipped));
     const auto [at, is_new] = shapes.try_emplace(shape, alike.size());
     if (is_new) alike.emplace_back();
     alike[at->second].push_back(i);
   }
+  trees_.clear();
+  begin_.assign(1, 0);
+  for (const std::vector<std::uint32_t>& trees : alike) {
+    trees_.insert(trees_.end(), trees.begin(), trees.end());
+    begin_.push_back(std::uint32_t(trees_.size()));
+  }
+}
+
+std::uint32_t TreeShapes::most_alike() const {
+  std::size_t most = 0;
+  for (std::size_t shape = 0; shape < count(); shape++) most = std::max(most, trees(shape).size());
+  return std::uint32_t(most);
+}
+
+namespace {
+
+/// A block like a tree, of lanes that are padding.
+void add_block(std::span<const TreeNode> like, std::uint32_t width, TreeBlocks& out) {
+  out.blocks.push_back(std::uint32_t(out.parents.size()));
+  out.blocks.push_back(std::uint32_t(like.size()));
+  for (const TreeNode& node : like) out.parents.push_back(node.parent << 1 | std::uint32_t(node.flipped));
+  out.ends.resize(out.parents.size() * 2 * width, 0);
+  out.order.resize(out.parents.size() * width, 0);
+}
+
+/// Puts a tree into a lane of the last block.
+void fill_lane(const Forest& forest, std::uint32_t i, std::uint32_t lane, std::uint32_t width, TreeBlocks& out) {
+  const std::span<const TreeNode> tree = forest.tree(i);
+  const std::size_t first = out.parents.size() - tree.size();
+  for (std::size_t k = 0; k < tree.size(); k++) {
+    std::uint32_t* const ends = &out.ends[(first + k) * 2 * width];
+    ends[lane] = tree[k].body;
+    ends[width + lane] = tree[k].joint;
+    out.order[(first + k) * width + lane] = 1 + forest.first(i) + std::uint32_t(k);
+  }
+}
+
+}  // namespace
+
+void pack_trees(const Forest& forest, const TreeShapes& shapes, std::uint32_t width, TreeBlocks& out, OctaveOf of) {
   out.blocks.clear();
   out.parents.clear();
   out.ends.clear();
@@ -120,8 +136,15 @@ void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out, Octa
   out.ranges.assign(of.count, {0, 0});
   for (unsigned octave = 0; octave < of.count; octave++) {
     out.ranges[octave].begin = out.count();
-    for (const std::vector<std::size_t>& trees : alike)
-      if (of.is(trees.front(), octave)) pack_alike(forest, trees, width, out);
+    for (std::size_t shape = 0; shape < shapes.count(); shape++) {
+      std::uint32_t lane = 0;
+      for (const std::uint32_t i : shapes.trees(shape)) {
+        if (!of.is(i, octave)) continue;
+        if (lane == 0) add_block(forest.tree(i), width, out);
+        fill_lane(forest, i, lane, width, out);
+        lane = (lane + 1) % width;
+      }
+    }
     out.ranges[octave].end = out.count();
   }
 }

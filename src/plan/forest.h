@@ -66,7 +66,24 @@ struct TreeBlocks {
 
   std::uint32_t count() const { return std::uint32_t(blocks.size() / 2); }
 };
+
+/// Which trees of a forest have one shape: one topology, and joints the same way round.
+class TreeShapes {
+ public:
+  void build(const Forest& forest);
+  std::size_t count() const { return begin_.size() - 1; }
+  /// Trees of a shape, in the order of the forest.
+  std::span<const std::uint32_t> trees(std::size_t shape) const {
+    return std::span(trees_).subspan(begin_[shape], begin_[shape + 1] - begin_[shape]);
+  }
+  /// How many there are of the shape of which there are most.
+  std::uint32_t most_alike() const;
+
+ private:
+  std::vector<std::uint32_t> trees_, begin_{0};
+};
+
 /// `of`: by tree.
-void pack_trees(const Forest& forest, std::uint32_t width, TreeBlocks& out, OctaveOf of = {});
+void pack_trees(const Forest& forest, const TreeShapes& shapes, std::uint32_t width, TreeBlocks& out, OctaveOf of = {});
 
 }  // namespace pcphys

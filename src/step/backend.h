@@ -28,6 +28,8 @@ class Backend {
   virtual std::string device() const = 0;
   /// Slots side by side in arrays of structures of arrays.
   virtual std::uint32_t width() const = 0;
+  /// Of kernels of trees, from now on: no wider than `width()`, nor than what `alike` trees of one shape fill.
+  virtual std::uint32_t choose_tree_width(std::uint32_t alike) { return (void)alike, width(); }
 
   /// Where the host keeps a buffer (world tables, index lists) and how long it is. Called again when either
   /// changed. The CPU works in place; the GPU sizes its copy (growing by half, keeping nothing).

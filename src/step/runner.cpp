@@ -152,7 +152,10 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
     const KernelSchema& k = schema(entry.kernel);
     if (of_joints(k.domain)) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
     if (of_contacts(k.domain)) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
-    if (k.domain == Domain::tree) schedule.trees.pack(at(place_of(settings, k.stage)).backend->width());
+    if (k.domain == Domain::tree) {
+      Backend& backend = *at(place_of(settings, k.stage)).backend;
+      schedule.trees.pack(backend.choose_tree_width(schedule.trees.alike()));
+    }
     for (const Access& a : k.accesses) {
       bool& done = bound[std::size_t(entry.place)][std::size_t(a.buffer)];
       if (done) continue;

@@ -143,6 +143,8 @@ void TreeSlots::build(const WorldState& state) {
   std::ranges::sort(closing_);
   pivots_ = find_pivots(forest_, state);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
+  shapes_.build(forest_);
+  alike_ = shapes_.most_alike();
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
   find_drives(state, links);
   width_ = 0;
@@ -193,7 +195,7 @@ void TreeSlots::pack(std::uint32_t width) {
   octaves_.clear();
   if (!of_bodies_.octaves.empty())
     for (std::size_t i = 0; i < forest_.trees(); i++) octaves_.push_back(of_bodies_.octaves[forest_.tree(i).back().body]);
-  pack_trees(forest_, width, blocks_, {octaves_, of_bodies_.count});
+  pack_trees(forest_, shapes_, width, blocks_, {octaves_, of_bodies_.count});
 }
 
 void Schedule::update_structure(const WorldState& state) {

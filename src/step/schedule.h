@@ -106,6 +106,8 @@ class TreeSlots {
   /// Springs between two points of which neither stands in a tree that answers them.
   std::uint32_t free_springs() const { return free_springs_; }
   std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
+  /// How many trees of one shape there are, of the shape of which there are most.
+  std::uint32_t alike() const { return alike_; }
   std::span<const Range> ranges(unsigned octave) const { return std::span(blocks_.ranges).subspan(octave, 1); }
   TreeBlocks& lists() { return blocks_; }
   std::uint64_t version() const { return version_; }
@@ -119,8 +121,9 @@ class TreeSlots {
   std::vector<char> parallel_;
   std::vector<std::uint32_t> closing_;
   bool drives_ = false, closing_drives_ = false;
-  std::uint32_t free_springs_ = 0;
+  std::uint32_t free_springs_ = 0, alike_ = 0;
   std::vector<Pivot> pivots_;
+  TreeShapes shapes_;
   TreeBlocks blocks_;
   OctaveOf of_bodies_;
   std::vector<std::uint8_t> octaves_;  // of the trees, where there are several
