@@ -189,7 +189,7 @@ Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& r
 
 Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport&) {
   const KernelSchema& k = schema(entry.kernel);
-  const Range moving{0, std::uint32_t(schedule.bodies.size())};
+  const Range moving{0, schedule.padded_to(at(entry.place).backend->width())};
   std::span<const Range> ranges(&moving, 1);
   if (k.domain != Domain::body) ranges = ranges_of(k.domain, schedule);
   const Range all{ranges.front().begin, ranges.back().end};

@@ -127,6 +127,8 @@ class Schedule {
 
   std::vector<std::uint32_t> bodies;      // rows that move, padded with row 0 to a multiple of `padding`
   std::uint32_t moving = 0;               // without the padding
+  /// How far into `bodies` a backend of `width` lanes goes.
+  std::uint32_t padded_to(std::uint32_t width) const { return (moving + width - 1) / width * width; }
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
   bool uneven = false;                    // masses differ by more than constants::uneven_masses
   std::uint64_t bodies_version = 0;
