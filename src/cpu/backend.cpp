@@ -12,12 +12,15 @@ namespace {
 
 class CpuBackend final : public Backend {
  public:
-  CpuBackend(const CpuKernels& kernels, const Workers* workers) : kernels_(kernels), workers_(workers) {}
+  /// `one`: kernels of one lane, for what has nothing beside it; or null.
+  CpuBackend(const CpuKernels& kernels, const CpuKernels* one, const Workers* workers)
+      : kernels_(kernels), one_(one), workers_(workers) {}
 
   std::string device() const override {
     return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes";
   }
   std::uint32_t width() const override { return kernels_.lanes; }
+  bool takes_one() const override { return one_ != nullptr; }
 
   Status attach(Buffer buffer, void* host, std::size_t) override {
     buffers_[std::size_t(buffer)] = host;
@@ -35,16 +38,20 @@ class CpuBackend final : public Backend {
     infos_ = static_cast<const std::byte*>(infos);
     return {};
   }
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool) override {
-    const std::size_t stride = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
-    const std::uint32_t unit = schema(kernel).domain == Domain::body ? kernels_.lanes : 1;  // what no piece may cut
+  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool) override {
+    const CpuKernels& kernels = lanes == kernels_.lanes ? kernels_ : *one_;
+    const auto part = kernels.run[std::size_t(kernel)];
+    const std::byte* with = infos_ + info * (kernels.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>));
+    const bool alone = !workers_ || workers_->threads() == 1;
+    const std::uint32_t unit = schema(kernel).domain == Domain::body ? lanes : 1;  // what no piece may cut
     for (const Range& range : ranges) {
-      const auto part = [&](std::uint32_t begin, std::uint32_t end) {
-        kernels_.run[std::size_t(kernel)](
-            {buffers_.data(), infos_ + info * stride, range.begin + begin * unit, range.begin + end * unit});
-      };
-      const std::uint32_t count = (range.end - range.begin) / unit;
-      workers_ ? workers_->run(count, grain, part) : part(0, count);
+      if (alone) {
+        part({buffers_.data(), with, range.begin, range.end});
+        continue;
+      }
+      workers_->run((range.end - range.begin + unit - 1) / unit, grain, [&](std::uint32_t begin, std::uint32_t end) {
+        part({buffers_.data(), with, range.begin + begin * unit, range.begin + end * unit});
+      });
     }
     return {};
   }
@@ -54,6 +61,7 @@ class CpuBackend final : public Backend {
   static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
 
   const CpuKernels& kernels_;
+  const CpuKernels* one_;
   const Workers* workers_;
   std::array<void*, buffer_count> buffers_{};
   std::array<AlignedBytes, buffer_count> scratch_;
@@ -85,7 +93,8 @@ Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint
                                              (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)"
                                                                           : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
                                              " for this processor; use lanes 0 for the widest it has."};
-  return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels, workers));
+  const CpuKernels* one = lanes == 0 ? find_kernels(precision, 1) : nullptr;
+  return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels, one, workers));
 }
 
 }  // namespace pcphys

@@ -20,11 +20,8 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 }  // namespace
 
-double substep_length(double dt, std::uint32_t substeps) { return dt / substeps; }
-
-template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep, InfoOf<Scalar> (&infos)[phase_count]) {
-  const double ratio = last_substep > 0 ? h / last_substep : 1;
+template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count]) {
+  const double h = from.h, ratio = from.last_substep > 0 ? h / from.last_substep : 1;
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
   const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
@@ -33,18 +30,18 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   biased = {};
   biased.h = Scalar(h);
   biased.inverse_h = Scalar(1 / h);
-  biased.gravity_x = Scalar(gravity.x);
-  biased.gravity_y = Scalar(gravity.y);
-  biased.gravity_z = Scalar(gravity.z);
+  biased.gravity_x = Scalar(from.gravity.x);
+  biased.gravity_y = Scalar(from.gravity.y);
+  biased.gravity_z = Scalar(from.gravity.z);
   biased.h_before = Scalar(h);
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
-  biased.contact_preload = Scalar(constants::contact_preload * length(gravity) * h);
+  biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
   biased.tree_contact_rate = Scalar(of_tree.rate);
   biased.tree_contact_impulse_scale = Scalar(of_tree.impulse_scale);
   biased.mean_share = Scalar(constants::mean_impulse_share);
-  biased.push_speed = Scalar(settings.push_speed);
+  biased.push_speed = Scalar(from.push_speed);
   biased.joint_rate = Scalar(joint.rate);
   biased.joint_mass_scale = Scalar(joint.mass_scale);
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
@@ -57,7 +54,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   biased.tree_damping = Scalar(constants::tree_damping);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
-  biased.restitution_threshold = Scalar(settings.restitution_threshold);
+  biased.restitution_threshold = Scalar(from.restitution_threshold);
   biased.rounding = Scalar(constants::rest_roundings) * std::numeric_limits<Scalar>::epsilon();
 
   InfoOf<Scalar>& first = infos[unsigned(Phase::first)];
@@ -74,7 +71,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
-template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);
-template void fill_infos<double>(const StepSettings&, Vec3, double, double, InfoOf<double> (&)[phase_count]);
+template void fill_infos<float>(const InfoInputs&, InfoOf<float> (&)[phase_count]);
+template void fill_infos<double>(const InfoInputs&, InfoOf<double> (&)[phase_count]);
 
 }  // namespace pcphys

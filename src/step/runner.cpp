@@ -19,11 +19,6 @@ Timer timer_of(const PlanEntry& entry) {
   return timer_of(schema(entry.kernel).stage);
 }
 
-Place place_of(const StepSettings& s, Stage stage) {
-  const Place places[stage_count] = {s.integrate, s.joints, s.impulses};
-  return places[std::size_t(stage)];
-}
-
 bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
 
 /// The list or slot array behind a buffer that is no table's, or null.
@@ -53,6 +48,17 @@ bool of_contacts(Domain domain) {
   return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
 }
 bool of_joints(Domain domain) { return domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint; }
+/// Whether there are no two of a domain to put side by side.
+bool single(Domain domain, const Schedule& schedule) {
+  if (domain == Domain::body) return schedule.moving == 1;
+  if (domain == Domain::tree) return schedule.trees.single();
+  return (of_joints(domain) ? schedule.joints : schedule.contacts).single();
+}
+void pack(Domain domain, std::uint32_t lanes, Schedule& schedule) {
+  if (of_joints(domain)) schedule.joints.pack(lanes);
+  if (of_contacts(domain)) schedule.contacts.pack(lanes);
+  if (domain == Domain::tree) schedule.trees.pack(lanes);
+}
 std::span<const Range> ranges_of(Domain domain, const Schedule& schedule) {
   if (domain == Domain::joint) return schedule.joints.ranges();
   if (domain == Domain::free_joint) return schedule.joints.free_ranges();
@@ -107,6 +113,8 @@ Status Runner::prepare(const StepSettings& s, Precision precision) {
     if (!made) return made.error();
     d = {};
     d.backend = std::move(*made);
+    d.width = d.backend->width();
+    d.takes_one = d.backend->takes_one();
     d.precision = precision;
     d.lanes = s.lanes;
     d.index = s.device;
@@ -141,28 +149,20 @@ Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes)
   return d.backend->attach(buffer, host, bytes);
 }
 
-Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule) {
-  std::array<std::array<bool, buffer_count>, 2> bound{};
-  std::array<bool, kernel_count> seen{};  // most come in every sub-step
-  for (const PlanEntry& entry : plan.entries) {
-    if (entry.kind != PlanEntry::Kind::kernel || std::exchange(seen[std::size_t(entry.kernel)], true)) continue;
-    const KernelSchema& k = schema(entry.kernel);
-    if (of_joints(k.domain)) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
-    if (of_contacts(k.domain)) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
-    if (k.domain == Domain::tree) schedule.trees.pack(at(place_of(settings, k.stage)).backend->width());
-    for (const Access& a : k.accesses) {
-      bool& done = bound[std::size_t(entry.place)][std::size_t(a.buffer)];
-      if (done) continue;
-      done = true;
-      Status ok;
-      if (a.buffer < Buffer::table_buffers)
-        ok = attach(entry.place, a.buffer, state.tables.bytes(a.buffer).data(), state.tables.bytes(a.buffer).size());
-      else if (std::vector<std::uint32_t>* list = list_of(a.buffer, schedule))
-        ok = attach(entry.place, a.buffer, list->data(), list->size() * 4);
+Status Runner::bind(const StepPlan& plan, WorldState& state, Schedule& schedule) {
+  for (const PlanBinding& b : plan.bindings) {
+    Status ok;
+    if (b.buffer < Buffer::table_buffers) {
+      AlignedBytes& rows = state.tables.bytes(b.buffer);
+      ok = attach(b.place, b.buffer, rows.data(), rows.size());
+    } else {
+      pack(b.domain, lanes(b.place, b.domain, schedule), schedule);
+      if (std::vector<std::uint32_t>* list = list_of(b.buffer, schedule))
+        ok = attach(b.place, b.buffer, list->data(), list->size() * 4);
       else
-        ok = at(entry.place).backend->reserve(a.buffer, slots_of(a.buffer, k.domain, schedule));
-      if (!ok) return ok;
+        ok = at(b.place).backend->reserve(b.buffer, slots_of(b.buffer, b.domain, schedule));
     }
+    if (!ok) return ok;
   }
   return {};
 }
@@ -180,27 +180,35 @@ Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& r
   Device& d = at(Place::gl);
   Copy& copy = d.copies[std::size_t(entry.buffer)];
   report.transfer_bytes += copy.bytes;
-  keep(state, entry.buffer);
   if (Status ok = d.backend->download(entry.buffer); !ok) return ok;
   state.tables.touch(entry.buffer);
   copy.version = state.tables.version(entry.buffer) + 1;
   return {};
 }
 
-Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport&) {
+std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule) {
+  const Device& d = at(place);
+  return d.takes_one && single(domain, schedule) ? 1 : d.width;
+}
+
+Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule) {
   const KernelSchema& k = schema(entry.kernel);
-  const Range moving{0, schedule.padded_to(at(entry.place).backend->width())};
+  const Range moving{0, schedule.moving};
   std::span<const Range> ranges(&moving, 1);
   if (k.domain != Domain::body) ranges = ranges_of(k.domain, schedule);
   const Range all{ranges.front().begin, ranges.back().end};
-  if (!needs_colours(k)) ranges = std::span<const Range>(&all, 1);
-  if (entry.place == Place::cpu)
+  if (ranges.size() > 1 && !needs_colours(k)) ranges = std::span<const Range>(&all, 1);
+  if (gl_ && entry.place == Place::cpu)
     for (const Access& a : k.accesses)
-      if (a.write && a.buffer < Buffer::table_buffers) {
-        keep(state, a.buffer);
-        state.tables.touch(a.buffer);
-      }
-  return at(entry.place).backend->run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
+      if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
+  return at(entry.place)
+      .backend->run(entry.kernel, std::size_t(entry.phase), ranges, lanes(entry.place, k.domain, schedule), entry.barrier);
+}
+
+Status Runner::entry(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report) {
+  if (entry.kind == PlanEntry::Kind::kernel) return kernel(entry, state, schedule);
+  if (entry.kind == PlanEntry::Kind::download) return transfer(entry, state, report);
+  return upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
 }
 
 Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
@@ -208,24 +216,22 @@ Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldStat
   for (Place place : {Place::cpu, Place::gl})
     if (takes_part(place, settings))
       if (Status ok = at(place).backend->set_infos(infos, phase_count); !ok) return ok;
-  auto began = Clock::now();
+  for (const Buffer buffer : plan.overwritten) {
+    keep(state, buffer);
+    if (!gl_) state.tables.touch(buffer);  // else kernel by kernel, as devices follow them
+  }
+  Clock::time_point began;
+  if (settings.timings) began = Clock::now();
   for (std::size_t i = 0; i < plan.entries.size(); i++) {
-    const PlanEntry& entry = plan.entries[i];
-    Status ok;
-    if (entry.kind == PlanEntry::Kind::kernel)
-      ok = kernel(entry, state, schedule, report);
-    else if (entry.kind == PlanEntry::Kind::download)
-      ok = transfer(entry, state, report);
-    else
-      ok = upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
-    if (!ok) return ok;
-    const bool last_of_kind = i + 1 == plan.entries.size() || timer_of(plan.entries[i + 1]) != timer_of(entry) ||
-                              plan.entries[i + 1].place != entry.place;
-    if (!settings.timings || !last_of_kind) continue;
+    const PlanEntry& e = plan.entries[i];
+    if (Status ok = entry(e, state, schedule, report); !ok) return ok;
+    if (!settings.timings) continue;
+    const PlanEntry* next = i + 1 < plan.entries.size() ? &plan.entries[i + 1] : nullptr;
+    if (next && timer_of(*next) == timer_of(e) && next->place == e.place) continue;
     if (gl_)
       if (Status done = at(Place::gl).backend->finish(); !done) return done;
     const auto now = Clock::now();
-    report.ms[std::size_t(timer_of(entry))] += std::chrono::duration<double, std::milli>(now - began).count();
+    report.ms[std::size_t(timer_of(e))] += std::chrono::duration<double, std::milli>(now - began).count();
     began = now;
   }
   if (gl_)

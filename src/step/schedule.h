@@ -32,6 +32,8 @@ class ColouredSlots {
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
+  /// Whether no colour has two, so that lanes would stand empty.
+  bool single() const { return colouring_.colours() == colouring_.constraints(); }
   std::uint32_t colours() const { return colouring_.colours(); }
   std::uint32_t constraints() const { return colouring_.constraints(); }
   std::size_t slots() const { return slots_.order.size(); }
@@ -82,6 +84,7 @@ class TreeSlots {
   void build(const WorldState& state);
   void pack(std::uint32_t width);
 
+  bool single() const { return forest_.trees() == 1; }
   const Forest& forest() const { return forest_; }
   /// As contacts see them, and as joints that close loops do.
   const TreeNodes& nodes() const { return nodes_; }
@@ -125,10 +128,9 @@ class Schedule {
   void update_structure(const WorldState& state);
   void update_contacts(const WorldState& state) { contacts.colour(state, state.contacts.ends, 1, trees.nodes()); }
 
-  std::vector<std::uint32_t> bodies;      // rows that move, padded with row 0 to a multiple of `padding`
-  std::uint32_t moving = 0;               // without the padding
-  /// How far into `bodies` a backend of `width` lanes goes.
-  std::uint32_t padded_to(std::uint32_t width) const { return (moving + width - 1) / width * width; }
+  std::vector<std::uint32_t> bodies;  // rows that move, padded with row 0 to a multiple of `padding`
+  std::uint32_t moving = 0;           // without the padding
+  std::span<const std::uint32_t> moving_bodies() const { return std::span(bodies).first(moving); }
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
   bool uneven = false;                    // masses differ by more than constants::uneven_masses
   std::uint64_t bodies_version = 0;

@@ -73,6 +73,7 @@ const char* name(Timer timer) {
 
 struct Stepper::Inside {
   StepSettings settings;
+  bool checked = false;  // the settings
   Detector detector;
   Schedule schedule;
   Loads loads;
@@ -83,6 +84,7 @@ struct Stepper::Inside {
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   bool other = false;                                 // than those of the last step
+  InfoInputs infos_from;                              // of the next two
   InfoOf<float> infos_f[phase_count];
   InfoOf<double> infos_d[phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
@@ -91,6 +93,7 @@ struct Stepper::Inside {
   Clock::time_point began;
 
   void lap(Timer timer) {
+    if (!settings.timings) return;
     const auto now = Clock::now();
     report.ms[std::size_t(timer)] += std::chrono::duration<double, std::milli>(now - began).count();
     began = now;
@@ -111,6 +114,7 @@ struct Stepper::Inside {
     s.gyroscopic = from.gyroscopic;
     s.trees = from.trees.forest().trees() > 0;
     s.pivots = !from.trees.pivots().empty();
+    s.pivots_alone = s.pivots && from.trees.pivots().size() == from.moving;
     s.free_joints = from.joints.any_without_trees();
     s.tree_joints = from.joints.any_with_trees();
     s.tree_drives = from.trees.drives();
@@ -125,12 +129,13 @@ struct Stepper::Inside {
   }
 
   const void* fill(const WorldState& s, double h) {
-    if (s.tables.precision() == Precision::f32) {
-      fill_infos(settings, s.gravity, h, s.last_substep, infos_f);
-      return infos_f;
+    const InfoInputs from(settings, s.gravity, h, s.last_substep);
+    if (!(from == infos_from)) {
+      fill_infos(from, infos_f);
+      fill_infos(from, infos_d);
+      infos_from = from;
     }
-    fill_infos(settings, s.gravity, h, s.last_substep, infos_d);
-    return infos_d;
+    return s.tables.precision() == Precision::f32 ? static_cast<const void*>(infos_f) : infos_d;
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
@@ -166,7 +171,8 @@ struct Stepper::Inside {
   Status step(World& world, double dt) {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
-    if (ok) ok = check_settings(settings);
+    if (ok && !checked) ok = check_settings(settings);
+    checked = bool(ok);
     if (ok) ok = check_finite(s.gravity, "gravity of the world");
     if (ok) ok = runner.prepare(settings, s.tables.precision());
     if (ok) ok = call_back(world);
@@ -180,7 +186,7 @@ struct Stepper::Inside {
       if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
       if (ok) (void)undo(s, {});
       // others may have met it: those that leave the range by themselves are to blame, where there are any
-      find_leaving(s, schedule.bodies, dt, leaving);
+      find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
       if (leaving.empty()) return ok;
       freeze_leaving(s);
@@ -239,11 +245,11 @@ struct Stepper::Inside {
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
-    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
+    if (ok = runner.bind(*plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
     if (ok = runner.run(settings, *plan, s, schedule, fill(s, h), report); !ok) return undo(s, ok);
-    find_outside(s, schedule.bodies, outside);
+    find_outside(s, schedule.moving_bodies(), outside);
     if (!outside.empty()) return {};
     s.last_substep = h;
     report.substeps = wanted.substeps;
@@ -281,6 +287,7 @@ Stepper& Stepper::operator=(Stepper&&) noexcept = default;
 Status Stepper::configure(const StepSettings& settings) {
   if (Status ok = check_settings(settings); !ok) return ok;
   inside_->settings = settings;
+  inside_->checked = true;
   return {};
 }
 const StepSettings& Stepper::settings() const { return inside_->settings; }
