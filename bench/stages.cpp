@@ -69,8 +69,9 @@ class Bench {
     wanted.restitution = found_.restitution;
     if (wanted.trees) state().tables.resize(Table::node, schedule_.trees.nodes().rows());
     plan_ = make_plan(wanted);
-    fill_infos(settings_, world_.gravity(), substep_length(dt, settings_.substeps), state().last_substep, infos_f_);
-    fill_infos(settings_, world_.gravity(), substep_length(dt, settings_.substeps), state().last_substep, infos_d_);
+    const InfoInputs from(settings_, world_.gravity(), substep_length(dt, settings_.substeps), state().last_substep);
+    fill_infos(from, infos_f_);
+    fill_infos(from, infos_d_);
     if (auto status = runner_.prepare(settings_, variant.precision); !status) return status;
     if (auto status = bind(); !status) return status;
     return run(plan_);
@@ -78,7 +79,7 @@ class Bench {
 
   Status broad() { return detector_.find_pairs(state(), dt, options_); }
   Status narrow() { return detector_.find_contacts(state(), dt, options_, found_); }
-  Status bind() { return runner_.bind(settings_, plan_, state(), schedule_); }
+  Status bind() { return runner_.bind(plan_, state(), schedule_); }
   /// Colours and layout of contacts, as after a step in which other pairs touch.
   Status lay_out() {
     schedule_.update_contacts(state());

@@ -50,14 +50,15 @@ Status run_plan(const StepSettings& settings, const StepPlan& plan, double dt, W
   static Runner runner;  // keeps its backends: a GL context is slow to make
   InfoOf<float> single[phase_count];
   InfoOf<double> twice[phase_count];
-  fill_infos(settings, {}, dt, 0, single);
-  fill_infos(settings, {}, dt, 0, twice);
+  const InfoInputs from(settings, {}, dt, 0);
+  fill_infos(from, single);
+  fill_infos(from, twice);
   const void* infos = world.precision() == Precision::f64 ? static_cast<const void*>(twice) : single;
   StepReport report;
   const FlushSubnormals flush;
   runner.forget();
   if (auto status = runner.prepare(settings, world.precision()); !status) return status;
-  if (auto status = runner.bind(settings, plan, s, schedule); !status) return status;
+  if (auto status = runner.bind(plan, s, schedule); !status) return status;
   return runner.run(settings, plan, s, schedule, infos, report);
 }
 

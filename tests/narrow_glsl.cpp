@@ -38,6 +38,7 @@ std::string program(bool twofold) {
 #define Index uint
 #define PC_FN
 #define PC_INOUT(T) inout T
+#define PC_ANY(mask) (mask)
 Real pc_select(bool m, Real a, Real b) { return m ? a : b; }
 bool pc_and(bool a, bool b) { return a && b; }
 bool pc_or(bool a, bool b) { return a || b; }

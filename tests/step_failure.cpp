@@ -48,8 +48,8 @@ class FailingBackend final : public Backend {
   Status set_infos(const void* infos, std::size_t count) override {
     return perhaps([&] { return gl_->set_infos(infos, count); });
   }
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) override {
-    return perhaps([&] { return gl_->run(kernel, info, ranges, barrier); });
+  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool barrier) override {
+    return perhaps([&] { return gl_->run(kernel, info, ranges, lanes, barrier); });
   }
   Status finish() override {
     return perhaps([&] { return gl_->finish(); });

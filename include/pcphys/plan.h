@@ -27,6 +27,7 @@ inline constexpr unsigned octave_count = 10;
 
 enum class Kernel : std::uint8_t;
 enum class Buffer : std::uint8_t;
+enum class Domain : std::uint8_t;
 
 struct PlanEntry {
   enum class Kind : std::uint8_t { kernel, upload, download };
@@ -46,10 +47,20 @@ struct LeftOut {
   friend bool operator==(const LeftOut&, const LeftOut&) = default;
 };
 
+/// A buffer that kernels of the plan use, and what the first of them runs over.
+struct PlanBinding {
+  Place place = Place::cpu;
+  Buffer buffer{};
+  Domain domain{};
+  friend bool operator==(const PlanBinding&, const PlanBinding&) = default;
+};
+
 struct StepPlan {
   std::uint32_t substeps = 0;  // of octave 0
   std::vector<PlanEntry> entries;
   std::vector<LeftOut> left_out;
+  std::vector<PlanBinding> bindings;  // each buffer of each place once
+  std::vector<Buffer> overwritten;    // in the host's tables
   friend bool operator==(const StepPlan&, const StepPlan&) = default;
 };
 

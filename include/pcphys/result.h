@@ -2,6 +2,7 @@
 // No function of the library throws across its border.
 #pragma once
 #include <cassert>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -70,20 +71,22 @@ template <class T> class [[nodiscard]] Result {
   std::variant<T, Error> content_;
 };
 
-/// Success, or an error.
+/// Success, or an error. Success is a null pointer: a step hands on dozens of these.
 template <> class [[nodiscard]] Result<void> {
  public:
   Result() = default;
-  Result(Error error) : error_(std::move(error)) {}
+  Result(Error error) {
+    if (error.code != ErrorCode::none) error_ = std::make_shared<const Error>(std::move(error));
+  }
 
-  explicit operator bool() const { return error_.code == ErrorCode::none; }
+  explicit operator bool() const { return !error_; }
   const Error& error() const {
     assert(!*this);
-    return error_;
+    return *error_;
   }
 
  private:
-  Error error_;
+  std::shared_ptr<const Error> error_;
 };
 
 using Status = Result<void>;

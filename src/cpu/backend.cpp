@@ -1,6 +1,4 @@
 // The CPU backend: kernels run in place on the world's tables, in the lane count that was chosen.
-#include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
@@ -26,17 +24,21 @@ const CpuKernels* find_kernels(Precision precision, std::uint32_t lanes) {
 
 class CpuBackend final : public Backend {
  public:
-  CpuBackend(const CpuKernels& kernels, const Workers* workers) : kernels_(kernels), workers_(workers) {}
+  /// `narrower`: also kernels of fewer lanes, for what would leave lanes empty.
+  CpuBackend(const CpuKernels& kernels, bool narrower, const Workers* workers) : kernels_(kernels), workers_(workers) {
+    if (!narrower) return;
+    for (std::uint32_t lanes : {1u, 4u})
+      if (lanes < kernels.lanes) narrower_.push_back(find_kernels(kernels.f64 ? Precision::f64 : Precision::f32, lanes));
+  }
 
   std::string device() const override {
     return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes";
   }
   std::uint32_t width() const override { return kernels_.lanes; }
-  std::uint32_t choose_tree_width(std::uint32_t alike) override {
-    const std::array<const CpuKernels*, 3> narrowest = {find_kernels(precision(), 1), find_kernels(precision(), 4), &kernels_};
-    tree_kernels_ = *std::ranges::find_if(
-        narrowest, [&](const CpuKernels* k) { return k == &kernels_ || (k && k->lanes < kernels_.lanes && k->lanes >= alike); });
-    return tree_kernels_->lanes;
+  std::uint32_t width_for(std::uint32_t count) const override {
+    for (const CpuKernels* k : narrower_)
+      if (count <= k->lanes) return k->lanes;
+    return width();
   }
 
   Status attach(Buffer buffer, void* host, std::size_t) override {
@@ -55,18 +57,22 @@ class CpuBackend final : public Backend {
     infos_ = static_cast<const std::byte*>(infos);
     return {};
   }
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool) override {
-    const std::size_t stride = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
-    const Domain domain = schema(kernel).domain;
-    const std::uint32_t unit = domain == Domain::body ? kernels_.lanes : 1;  // what no piece may cut
-    const CpuKernels& kernels = domain == Domain::tree ? *tree_kernels_ : kernels_;
+  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool) override {
+    const CpuKernels* kernels = &kernels_;
+    for (const CpuKernels* k : narrower_)
+      if (k->lanes == lanes) kernels = k;
+    const auto part = kernels->run[std::size_t(kernel)];
+    const std::byte* with = infos_ + info * (kernels->f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>));
+    const bool alone = !workers_ || workers_->threads() == 1;
+    const std::uint32_t unit = schema(kernel).domain == Domain::body ? lanes : 1;  // what no piece may cut
     for (const Range& range : ranges) {
-      const auto part = [&](std::uint32_t begin, std::uint32_t end) {
-        kernels.run[std::size_t(kernel)](
-            {buffers_.data(), infos_ + info * stride, range.begin + begin * unit, range.begin + end * unit});
-      };
-      const std::uint32_t count = (range.end - range.begin) / unit;
-      workers_ ? workers_->run(count, grain, part) : part(0, count);
+      if (alone) {
+        part({buffers_.data(), with, range.begin, range.end});
+        continue;
+      }
+      workers_->run((range.end - range.begin + unit - 1) / unit, grain, [&](std::uint32_t begin, std::uint32_t end) {
+        part({buffers_.data(), with, range.begin + begin * unit, range.begin + end * unit});
+      });
     }
     return {};
   }
@@ -75,10 +81,8 @@ class CpuBackend final : public Backend {
  private:
   static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
 
-  Precision precision() const { return kernels_.f64 ? Precision::f64 : Precision::f32; }
-
   const CpuKernels& kernels_;
-  const CpuKernels* tree_kernels_ = &kernels_;
+  std::vector<const CpuKernels*> narrower_;  // ascending
   const Workers* workers_;
   std::array<void*, buffer_count> buffers_{};
   std::array<AlignedBytes, buffer_count> scratch_;
@@ -98,7 +102,7 @@ Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint
                                              (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)"
                                                                           : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
                                              " for this processor; use lanes 0 for the widest it has."};
-  return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels, workers));
+  return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels, lanes == 0, workers));
 }
 
 }  // namespace pcphys

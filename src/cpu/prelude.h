@@ -51,7 +51,9 @@ PC_INLINE bool pc_any(Mask m) { return m; }
 PC_INLINE Mask pc_some(Index i) { return i.i != 0; }
 #else
 #include "cpu/lanes.h"
+PC_INLINE bool pc_any(Mask m) { return pc_mask_bits(m) != 0; }
 #endif
+#define PC_ANY(mask) pc_any(mask)
 
 struct Vec3 {
   Real x, y, z;
@@ -63,10 +65,6 @@ struct Vec3 {
 };
 
 #include "kernels/math.inl"
-
-#if PC_LANES > 1
-PC_INLINE bool pc_any(Mask m) { return pc_mask_bits(m) != 0; }
-#endif
 
 PC_INLINE Index pc_each(const uint* list, Slot, uint i) { return pc_index(list + i); }
 
@@ -169,4 +167,3 @@ PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uin
 #define PC_EACH(buffer, slot, i) pc_each(io.buffer, slot, i)
 #define PC_NODE(slot, node) pc_node(slot, node)
 #define PC_IS(flag) pc_mask(flag)
-#define PC_ANY(mask) pc_any(mask)

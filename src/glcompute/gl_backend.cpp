@@ -33,7 +33,7 @@ class GlBackend final : public Backend {
   Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
   Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
   Status set_infos(const void* infos, std::size_t count) override;
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) override;
+  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t, bool barrier) override;
   Status finish() override;
 
  private:
@@ -188,7 +188,7 @@ void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::
   }
 }
 
-Status GlBackend::run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) {
+Status GlBackend::run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t, bool barrier) {
   if (Status status = hold(); !status) return status;
   if (Status status = bind(kernel, info); !status) {
     release();

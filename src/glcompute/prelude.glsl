@@ -17,6 +17,7 @@
 #define PC_FN
 #define PC_FN_LARGE
 #define PC_INOUT(T) inout T
+#define PC_ANY(mask) (mask)
 #define PC_IO
 #define PC_PASS
 
@@ -61,4 +62,3 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 #define PC_EACH(buffer, slot, i) io_##buffer[(i) + (slot).lane]
 #define PC_NODE(slot, node) Slot(node, (slot).lane)
 #define PC_IS(flag) ((flag) != 0u)
-#define PC_ANY(mask) (mask)

@@ -20,12 +20,18 @@ PC_FN Quaternion pc_change(Turn world, Quaternion q, Turn body) {
   return pc_quaternion(both_v, both_w);
 }
 
-// Turns the body by rate * time * (its momentum along `axis`) about its own axis: appends to the turn, and Pi follows.
 struct Spin { Turn turn; Vec3 pi; };
+PC_FN Spin pc_spin_select(Mask m, Spin a, Spin b) {
+  Spin r; r.turn.q.v = pc_select3(m, a.turn.q.v, b.turn.q.v); r.turn.q.w = pc_select(m, a.turn.q.w, b.turn.q.w);
+  r.turn.fall = pc_select(m, a.turn.fall, b.turn.fall); r.pi = pc_select3(m, a.pi, b.pi); return r;
+}
+// Turns the body by rate * time * (its momentum along `axis`) about its own axis: appends to the turn, and Pi follows. Of two
+// equal moments one is the middle one, and about the other's axis nothing turns.
 PC_FN Spin pc_body_turn(Spin s, Vec3 axis, Real rate, Real time) {
-  precise Real angle = pc_dot(axis, s.pi) * rate * time;
+  precise Real angle = pc_dot(axis, s.pi) * rate * time; Mask turns = pc_nonzero(angle);
+  if (!PC_ANY(turns)) return s;  // lint: allow (other lanes keep what they have)
   Turn r = pc_axis_turn(axis, angle);
-  Spin o; o.turn = pc_turn_mul(s.turn, r); o.pi = pc_rotate(pc_conjugate(r.q), s.pi); return o;
+  Spin o; o.turn = pc_turn_mul(s.turn, r); o.pi = pc_rotate(pc_conjugate(r.q), s.pi); return pc_spin_select(turns, o, s);
 }
 
 // How many equal parts of less than half a radian each a fast turn is made of, 16 at most.
@@ -34,10 +40,6 @@ PC_FN Real pc_parts(Real angle) {
 }
 PC_FN Spin pc_strang(Spin s, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_time, Real time) {
   return pc_body_turn(pc_body_turn(pc_body_turn(s, a, rate_a, half_time), c, rate_c, time), a, rate_a, half_time);
-}
-PC_FN Spin pc_spin_select(Mask m, Spin a, Spin b) {
-  Spin r; r.turn.q.v = pc_select3(m, a.turn.q.v, b.turn.q.v); r.turn.q.w = pc_select(m, a.turn.q.w, b.turn.q.w);
-  r.turn.fall = pc_select(m, a.turn.fall, b.turn.fall); r.pi = pc_select3(m, a.pi, b.pi); return r;
 }
 PC_FN Vec3 pc_times(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
 // Turns the body by what brings its energy back to that of the momentum `before`, the shortest way: along Pi x w, of which

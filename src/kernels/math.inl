@@ -1,6 +1,6 @@
 // Arithmetic shared by all kernels: common subset of C++20 and GLSL 4.30.
 //
-// The backend defines Real, Mask, Vec3, Index, Slot, PC_FN, PC_INOUT, PC_REAL, pc_select, pc_and, pc_or,
+// The backend defines Real, Mask, Vec3, Index, Slot, PC_FN, PC_INOUT, PC_REAL, PC_ANY, pc_select, pc_and, pc_or,
 // pc_abs, pc_div, pc_sqrt. Rules, which tools/check_kernels.py enforces: every arithmetic result stands in
 // a `precise` local (an empty macro in C++), sums are written left to right, no built-in vector functions,
 // no operator /, constants through PC_REAL. Only then do CPU and GPU agree to the bit.
@@ -56,6 +56,13 @@ PC_FN Vec3 pc_unit_or_zero(Vec3 a) { return pc_scale(a, pc_inverse_or_zero(pc_le
 #else
 #define PC_TINY PC_REAL(1e-18)
 #endif
+// Anything but zero; what is no number, too.
+#ifdef PC_DOUBLE
+#define PC_LEAST PC_REAL(2.2250738585072014e-308)
+#else
+#define PC_LEAST PC_REAL(1.1754943508222875e-38)
+#endif
+PC_FN Mask pc_nonzero(Real x) { return pc_select(pc_abs(x) < PC_LEAST, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); }
 PC_FN Real pc_snap(Real x) { return pc_select(pc_abs(x) < PC_TINY, PC_REAL(0.0), x); }
 PC_FN Vec3 pc_snap3(Vec3 a) { return Vec3(pc_snap(a.x), pc_snap(a.y), pc_snap(a.z)); }
 
@@ -125,28 +132,35 @@ struct SinCos { Real sine; Real cosine; Real fall; };
 // Cody-Waite reduction by pi/2 in three parts, then minimax polynomials on [-pi/4, pi/4] (the coefficients
 // of the Cephes library, S. Moshier; single and double). |x| up to 1e4.
 // Beyond 3e4 the angle is cut off: the reduction has no digits left there, and the result must stay finite.
+// Less than a quarter turn has nothing to be taken out of it: the same bits, less work.
 PC_FN SinCos pc_sincos(Real angle) {
-  Real x = pc_clamp(angle, PC_REAL(-30000.0), PC_REAL(30000.0));
-  precise Real turns = x * PC_REAL(0.63661977236758134308);
-  Real k = pc_round(turns);
+  Real r = angle; Real k = PC_REAL(0.0); Mask far = pc_abs(angle) > PC_REAL(0.75);
+  if (PC_ANY(far)) {  // lint: allow (the rest of an angle that is not far is itself)
+    Real x = pc_clamp(angle, PC_REAL(-30000.0), PC_REAL(30000.0));
+    precise Real turns = x * PC_REAL(0.63661977236758134308); k = pc_round(turns);
 #ifdef PC_DOUBLE
-  precise Real r0 = x - k * PC_REAL(1.57079632673412561417);
-  precise Real r1 = r0 - k * PC_REAL(6.07710050630396597660e-11);
-  precise Real r = r1 - k * PC_REAL(2.02226624879595063154e-21);
+    precise Real r0 = x - k * PC_REAL(1.57079632673412561417);
+    precise Real r1 = r0 - k * PC_REAL(6.07710050630396597660e-11);
+    precise Real r2 = r1 - k * PC_REAL(2.02226624879595063154e-21); r = r2;
+#else
+    precise Real r0 = x - k * PC_REAL(1.5703125);
+    precise Real r1 = r0 - k * PC_REAL(4.8375129699707031e-4);
+    precise Real r2 = r1 - k * PC_REAL(7.5497899548918822e-8); r = r2;
+#endif
+  }
   precise Real z = r * r;
+#ifdef PC_DOUBLE
   precise Real s0 = ((((PC_REAL(1.58962301576546568060e-10) * z - PC_REAL(2.50507477628578072866e-8)) * z + PC_REAL(2.75573136213857245213e-6)) * z - PC_REAL(1.98412698295895385996e-4)) * z + PC_REAL(8.33333333332211858878e-3)) * z - PC_REAL(1.66666666666666307295e-1);
   precise Real c0 = ((((PC_REAL(2.08757008419747316778e-9) - PC_REAL(1.13585365213876817300e-11) * z) * z - PC_REAL(2.75573141792967388112e-7)) * z + PC_REAL(2.48015872888517045348e-5)) * z - PC_REAL(1.38888888888730564116e-3)) * z + PC_REAL(4.16666666666665929218e-2);
 #else
-  precise Real r0 = x - k * PC_REAL(1.5703125);
-  precise Real r1 = r0 - k * PC_REAL(4.8375129699707031e-4);
-  precise Real r = r1 - k * PC_REAL(7.5497899548918822e-8);
-  precise Real z = r * r;
   precise Real s0 = (PC_REAL(8.3321608736e-3) - PC_REAL(1.9515295891e-4) * z) * z - PC_REAL(1.6666654611e-1);
   precise Real c0 = (PC_REAL(2.443315711809948e-5) * z - PC_REAL(1.388731625493765e-3)) * z + PC_REAL(4.166664568298827e-2);
 #endif
   precise Real s = r + r * z * s0;
   precise Real fallen = z * z * c0 - PC_REAL(0.5) * z;
   precise Real c = PC_REAL(1.0) + fallen;
+  SinCos o; o.sine = s; o.cosine = c; o.fall = fallen;
+  if (!PC_ANY(far)) return o;  // lint: allow (quadrant 0)
   // quadrant: k mod 4 in {-2, -1, 0, 1, 2}
   precise Real quarter = k * PC_REAL(0.25); Real whole = pc_round(quarter); precise Real quadrant = k - whole * PC_REAL(4.0);
   precise Real off_odd = pc_abs(quadrant) - PC_REAL(1.0);
@@ -158,7 +172,7 @@ PC_FN SinCos pc_sincos(Real angle) {
   Mask negate_cosine = pc_or(opposite, quadrant > PC_REAL(0.5));
   Real cosine = pc_select(negate_cosine, -q, q); precise Real below = cosine - PC_REAL(1.0);
   Mask near = pc_abs(quadrant) < PC_REAL(0.5);
-  SinCos o; o.sine = pc_select(negate_sine, -p, p); o.cosine = cosine; o.fall = pc_select(near, fallen, below); return o;
+  o.sine = pc_select(negate_sine, -p, p); o.cosine = cosine; o.fall = pc_select(near, fallen, below); return o;
 }
 
 // A rotation, and w - 1 beside its w: what it changes is then known to the last digit however small it is.
@@ -173,6 +187,9 @@ PC_FN Turn pc_axis_turn(Vec3 axis, Real angle) {
 PC_FN Turn pc_turn(Vec3 vector) {
   Vec3 phi = pc_snap3(vector);
   Real angle = pc_length(phi);
+  if (!PC_ANY(pc_nonzero(angle))) {  // lint: allow (what the rest makes of none)
+    Turn r; r.q = pc_quaternion(pc_zero3(), PC_REAL(1.0)); r.fall = PC_REAL(0.0); return r;
+  }
   return pc_axis_turn(pc_scale(phi, pc_inverse_or_zero(angle)), angle);
 }
 // What two turns change together: (1 + a) (1 + b) - 1 = a + b + a b.
@@ -215,6 +232,9 @@ PC_FN Real pc_angle(Real y, Real x) {
 // cancellation: a velocity that is changed by its loss keeps the digits that multiplying by e would drop.
 struct Decay { Real e; Real loss; Real phi; Real phi2; };
 PC_FN Decay pc_decay(Real drag_times_h) {
+  if (!PC_ANY(pc_nonzero(drag_times_h))) {  // lint: allow (what the rest makes of none)
+    Decay none; none.e = PC_REAL(1.0); none.loss = PC_REAL(0.0); none.phi = PC_REAL(1.0); none.phi2 = PC_REAL(0.5); return none;
+  }
   Real x = pc_min(drag_times_h, PC_REAL(60.0));
   precise Real y0 = x * PC_REAL(0.015625);
   precise Real p2 = (((((((((((PC_REAL(7.6471637318198164759e-13) * y0 - PC_REAL(1.1470745597729724714e-11)) * y0 + PC_REAL(1.6059043836821614599e-10)) * y0 - PC_REAL(2.0876756987868098979e-9)) * y0 + PC_REAL(2.5052108385441718775e-8)) * y0 - PC_REAL(2.7557319223985890653e-7)) * y0 + PC_REAL(2.7557319223985890653e-6)) * y0 - PC_REAL(2.4801587301587301587e-5)) * y0 + PC_REAL(1.9841269841269841270e-4)) * y0 - PC_REAL(1.3888888888888888889e-3)) * y0 + PC_REAL(8.3333333333333333333e-3)) * y0 - PC_REAL(4.1666666666666666667e-2)) * y0 + PC_REAL(1.6666666666666666667e-1);
@@ -231,11 +251,13 @@ PC_FN Decay pc_decay(Real drag_times_h) {
   }
   precise Real loss = x * phi;
   precise Real gentle = PC_REAL(1.0) - loss;
+  Decay d; d.e = pc_select(x < PC_REAL(1.0), gentle, e); d.loss = loss; d.phi = phi; d.phi2 = phi2;
   // beyond 60, e is no more than it is there; phi and phi2 go on falling
   Mask beyond = drag_times_h > x;
-  Real far_phi = pc_div(loss, pc_max(drag_times_h, x));
-  precise Real rest = PC_REAL(1.0) - far_phi;
-  Real far_phi2 = pc_div(rest, pc_max(drag_times_h, x));
-  Decay d; d.e = pc_select(x < PC_REAL(1.0), gentle, e); d.loss = loss;
-  d.phi = pc_select(beyond, far_phi, phi); d.phi2 = pc_select(beyond, far_phi2, phi2); return d;
+  if (PC_ANY(beyond)) {  // lint: allow (other lanes keep what they have)
+    Real far = pc_max(drag_times_h, x); Real far_phi = pc_div(loss, far);
+    precise Real rest = PC_REAL(1.0) - far_phi;
+    d.phi = pc_select(beyond, far_phi, phi); d.phi2 = pc_select(beyond, pc_div(rest, far), phi2);
+  }
+  return d;
 }

@@ -12,5 +12,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Six velocity = pc_ld6_tree(PC_PASS n, TREE_X); Six way = pc_ld6_tree(PC_PASS n, TREE_F);
   precise Real square = moved.s + PC_LD(tree_rows, n, TREE_C); Mask exists = linear.s > PC_REAL(0.0);
   PC_SCATTER_IF(exists, motion, body, 0u, pc_quad(velocity.l, linear.s)); PC_SCATTER_IF(exists, motion, body, 1u, pc_quad(velocity.a, angular.s));
-  PC_SCATTER_IF(exists, delta, body, 0u, pc_quad(pc_add(moved.v, way.l), square)); PC_SCATTER_IF(exists, delta, body, 1u, pc_quad(pc_add(rotated.v, way.a), rotated.s));
+  PC_SCATTER_IF(exists, delta, body, 0u, pc_quad(pc_add(moved.v, way.l), square)); PC_SCATTER_IF(exists, delta, body, 1u, pc_quad(pc_add(rotated.v, way.a), PC_REAL(0.0)));
 }

@@ -19,6 +19,8 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change) {
 #elif defined(PC_DRAG)
 PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a, Real drag) {
   Real h = PC_INFO(h); Real share = PC_INFO(h_change);
+  Mask changes = pc_nonzero(share);
+  if (!PC_ANY(pc_or(in_phase, changes))) return pc_zero3();  // lint: allow (other lanes keep what they have)
   Real before = PC_INFO(h_before);
   precise Real x = drag * h; precise Real y = drag * before;
   Decay now = pc_decay(x); Decay was = pc_decay(y);
@@ -29,7 +31,6 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a
   Vec3 v = pc_select3(in_phase, velocity, phased);
   precise Vec3 kick = (a - v * drag) * time;
   precise Vec3 shift = back + kick + (half_change - back) * share;
-  Mask changes = pc_abs(share) > PC_REAL(0.0);
   return pc_select3(in_phase, kick, pc_select3(changes, shift, pc_zero3()));
 }
 #else

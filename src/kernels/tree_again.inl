@@ -70,7 +70,14 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Slot n = PC_NODE(m, t.first + k); pc_remember_joint(PC_PASS t, n, k); pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
     pc_st3_tree(PC_PASS n, TREE_C, pc_closing(PC_PASS pc_ld3_tree(PC_PASS n, TREE_GAP)));
   }
-  if (pc_is_pivot(PC_PASS t) == 1u) pc_st3_tree(PC_PASS PC_NODE(m, t.first + 1u), TREE_C, pc_zero3());  // pivot_turn closes it
+  if (pc_is_pivot(PC_PASS t) == 1u) {  // pivot_turn closes it: a sweep of nothing
+    for (uint k = 0u; k < 2u; k++) {
+      Slot n = PC_NODE(m, t.first + k); Vec3 none = pc_zero3(); Six still = pc_six(none, none);
+      pc_st6_tree(PC_PASS n, TREE_F, still); pc_st6_tree(PC_PASS n, TREE_X, still); pc_st3_tree(PC_PASS n, TREE_C, none);
+      pc_st3_tree(PC_PASS n, TREE_PUSH, none); pc_st3_tree(PC_PASS n, TREE_CHANGE, none); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, none);
+    }
+    return;
+  }
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
   pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
   for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }

@@ -44,6 +44,7 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
   Sym6 rest; rest.l = pc_sym_sub(h.l, pc_products(w0, w1, w2, u0, u1, u2)); rest.a = pc_sym_sub(h.a, pc_products(w3, w4, w5, u3, u4, u5));
   rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(w0, u3), pc_dot(w0, u4), pc_dot(w0, u5))), pc_sub(h.c.b, Vec3(pc_dot(w1, u3), pc_dot(w1, u4), pc_dot(w1, u5))), pc_sub(h.c.c, Vec3(pc_dot(w2, u3), pc_dot(w2, u4), pc_dot(w2, u5))));
   pc_sts_tree(PC_PASS n, TREE_A, rest.l); pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c);
+  if (!PC_ANY(PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0))) return;  // lint: allow (of a fixed root it is not used)
   pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
 }
 PC_FN void pc_factor(PC_IO Slot m, Tree t) {
@@ -54,8 +55,11 @@ PC_FN void pc_factor(PC_IO Slot m, Tree t) {
   }
   for (uint i = 1u; i < t.count; i++) { uint k = t.count - i; pc_factor_node(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k))); }
   // a fixed root answers nothing
-  Slot root = PC_NODE(m, t.first); Sym6 h = pc_sym6_inverse(pc_ldh_tree(PC_PASS root, TREE_H)); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
-  Sym6 r; Sym3 none = pc_diagonal(PC_REAL(0.0)); r.l = pc_sym_select(free, h.l, none); r.a = pc_sym_select(free, h.a, none);
-  r.c = pc_mat3(pc_select3(free, h.c.a, z), pc_select3(free, h.c.b, z), pc_select3(free, h.c.c, z));
+  Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
+  Sym6 r; Sym3 none = pc_diagonal(PC_REAL(0.0)); r.l = none; r.c = pc_mat3(z, z, z); r.a = none;
+  if (PC_ANY(free)) {  // lint: allow (other lanes keep what they have)
+    Sym6 h = pc_sym6_inverse(pc_ldh_tree(PC_PASS root, TREE_H)); r.l = pc_sym_select(free, h.l, none); r.a = pc_sym_select(free, h.a, none);
+    r.c = pc_mat3(pc_select3(free, h.c.a, z), pc_select3(free, h.c.b, z), pc_select3(free, h.c.c, z));
+  }
   pc_sth_tree(PC_PASS root, TREE_H, r);
 }

@@ -87,7 +87,10 @@ PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted) {
     Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
     Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
     Quad moments = pc_quad(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), PC_LD(tree_rows, n, TREE_MOMENTS + 3u));
-    Quaternion turn = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, h), pc_conjugate(q));
+    Quaternion turn = pc_quaternion(pc_zero3(), PC_REAL(0.0)); precise Real spin = pc_abs(b.l.x) + pc_abs(b.l.y) + pc_abs(b.l.z); Mask turns = pc_nonzero(spin);
+    if (PC_ANY(turns)) {  // lint: allow (other lanes keep what they have)
+      Quaternion spun = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, h), pc_conjugate(q)); turn = pc_quaternion(pc_select3(turns, spun.v, turn.v), pc_select(turns, spun.w, turn.w));
+    }
     pc_st3_tree(PC_PASS n, TREE_TURN, pc_select3(wanted, turn.v, pc_ld3_tree(PC_PASS n, TREE_TURN))); PC_ST(tree_rows, n, TREE_TURN + 3u, pc_select(wanted, turn.w, PC_LD(tree_rows, n, TREE_TURN + 3u)));
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, pc_angular_velocity(b)));
   }

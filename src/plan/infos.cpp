@@ -20,13 +20,8 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 }  // namespace
 
-double substep_length(double dt, std::uint32_t substeps) { return dt / substeps; }
-
-template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double world_h, double last_substep,
-                InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
-  const double times = double(1u << octave), h = world_h / times;
-  const double before = last_substep > 0 ? last_substep : world_h;
+template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
+  const double h = from.h / double(1u << octave);
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
   const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
@@ -35,18 +30,18 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double world_h, doub
   biased = {};
   biased.h = Scalar(h);
   biased.inverse_h = Scalar(1 / h);
-  biased.gravity_x = Scalar(gravity.x);
-  biased.gravity_y = Scalar(gravity.y);
-  biased.gravity_z = Scalar(gravity.z);
+  biased.gravity_x = Scalar(from.gravity.x);
+  biased.gravity_y = Scalar(from.gravity.y);
+  biased.gravity_z = Scalar(from.gravity.z);
   biased.h_before = Scalar(h);
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
-  biased.contact_preload = Scalar(constants::contact_preload * length(gravity) * h);
+  biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
   biased.tree_contact_rate = Scalar(of_tree.rate);
   biased.tree_contact_impulse_scale = Scalar(of_tree.impulse_scale);
   biased.mean_share = Scalar(constants::mean_impulse_share);
-  biased.push_speed = Scalar(settings.push_speed);
+  biased.push_speed = Scalar(from.push_speed);
   biased.joint_rate = Scalar(joint.rate);
   biased.joint_mass_scale = Scalar(joint.mass_scale);
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
@@ -59,20 +54,20 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double world_h, doub
   biased.tree_damping = Scalar(constants::tree_damping);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
-  biased.restitution_threshold = Scalar(settings.restitution_threshold);
+  biased.restitution_threshold = Scalar(from.restitution_threshold);
   biased.rounding = Scalar(constants::rest_roundings) * std::numeric_limits<Scalar>::epsilon();
 
-  const auto change = [&](Phase phase, double from, double to) {
+  const auto change = [&](Phase phase, double before, double after) {
     InfoOf<Scalar>& info = infos[unsigned(phase)];
     info = biased;
-    info.h = Scalar(to);
-    info.inverse_h = Scalar(1 / to);
-    info.h_change = Scalar(1 - to / from);
-    info.h_before = Scalar(from);
-    info.impulse_ratio = Scalar(to / from);
+    info.h = Scalar(after);
+    info.inverse_h = Scalar(1 / after);
+    info.h_change = Scalar(1 - after / before);
+    info.h_before = Scalar(before);
+    info.impulse_ratio = Scalar(after / before);
   };
-  change(Phase::first, before, h);
-  change(Phase::last, h, world_h);
+  change(Phase::first, from.last_substep > 0 ? from.last_substep : from.h, h);
+  change(Phase::last, h, from.h);
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
@@ -82,7 +77,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double world_h, doub
   relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
-template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count], unsigned);
-template void fill_infos<double>(const StepSettings&, Vec3, double, double, InfoOf<double> (&)[phase_count], unsigned);
+template void fill_infos<float>(const InfoInputs&, InfoOf<float> (&)[phase_count], unsigned);
+template void fill_infos<double>(const InfoInputs&, InfoOf<double> (&)[phase_count], unsigned);
 
 }  // namespace pcphys

@@ -8,12 +8,25 @@
 namespace pcphys {
 
 /// [s]
-double substep_length(double dt, std::uint32_t substeps);
+inline double substep_length(double dt, std::uint32_t substeps) { return dt / substeps; }
 
-/// One block a phase, by Phase. `h`: the world's sub-step, of octave 0; `last_substep`: of the step before, 0 if there was
-/// none [s]. What is remembered from step to step is of the world's sub-step.
-template <class Scalar>
-void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep, InfoOf<Scalar> (&infos)[phase_count],
-                unsigned octave = 0);
+/// All that they follow from.
+struct InfoInputs {
+  InfoInputs() = default;
+  /// `h`: the world's sub-step, of octave 0; `last_substep`: of the step before, 0 if there was none [s].
+  InfoInputs(const StepSettings& settings, Vec3 gravity, double h, double last_substep)
+      : gravity(gravity),
+        h(h),
+        last_substep(last_substep),
+        push_speed(settings.push_speed),
+        restitution_threshold(settings.restitution_threshold) {}
+
+  Vec3 gravity;
+  double h = 0, last_substep = 0, push_speed = 0, restitution_threshold = 0;
+  friend bool operator==(const InfoInputs&, const InfoInputs&) = default;
+};
+
+/// One block a phase, by Phase, for islands of an octave. What is remembered from step to step is of the world's sub-step.
+template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave = 0);
 
 }  // namespace pcphys

@@ -1,6 +1,6 @@
 #include "plan/plan.h"
 
-#include <algorithm>
+#include <utility>
 
 #include "pcphys/constants.h"
 
@@ -28,8 +28,11 @@ class Builder {
     if (barrier) settle();
     plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep, octave_});
     for (const Access& a : k.accesses) {
+      if (!std::exchange(bound_[std::size_t(a.buffer)][std::size_t(place)], true))
+        plan_.bindings.push_back({place, a.buffer, k.domain});
       if (place == Place::gl) (a.write ? written_ : read_)[std::size_t(a.buffer)] = true;
       if (!a.write) continue;
+      if (place == Place::cpu) overwrite(a.buffer);
       current_[std::size_t(a.buffer)][0] = place == Place::cpu;
       current_[std::size_t(a.buffer)][1] = place == Place::gl;
       host_wrote_[std::size_t(a.buffer)] |= place == Place::cpu;
@@ -52,7 +55,13 @@ class Builder {
     here = true;
     const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
     plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep, octave_});
-    if (kind == PlanEntry::Kind::download) settle();
+    if (kind == PlanEntry::Kind::upload) return;
+    overwrite(buffer);
+    settle();
+  }
+  void overwrite(Buffer buffer) {
+    if (buffer < Buffer::table_buffers && !std::exchange(overwritten_[std::size_t(buffer)], true))
+      plan_.overwritten.push_back(buffer);
   }
   void settle() {
     written_.fill(false);
@@ -64,7 +73,8 @@ class Builder {
   std::uint8_t octave_ = 0;
   std::array<std::array<bool, 2>, buffer_count> current_{};  // by Place
   std::array<bool, buffer_count> written_{}, read_{};        // on GL since the last barrier
-  std::array<bool, buffer_count> host_wrote_{};
+  std::array<bool, buffer_count> host_wrote_{}, overwritten_{};
+  std::array<std::array<bool, 2>, buffer_count> bound_{};  // by Place
 };
 
 void leave_out(const PlanSignature& s, StepPlan& plan) {
@@ -78,6 +88,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
+  if (s.pivots_alone) out("free motion", "every body that moves turns about a pin");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
@@ -149,7 +160,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   solve_contacts(b, s, Phase::biased, k);
   if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
-  b.kernel(with.advance, Phase::biased, k);
+  if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
   if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
   solve_free_joints(b, s, Phase::relax, k);

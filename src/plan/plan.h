@@ -19,6 +19,7 @@ struct PlanSignature {
   bool gyroscopic = false;                  // some body has unequal moments
   bool trees = false;                       // joints that stand in a tree
   bool pivots = false;                      // trees of one body that turns about its pin
+  bool pivots_alone = false;                // and no other body moves
   bool free_joints = false;                 // joints that close a loop, of bodies whose trees do not answer
   bool tree_joints = false;                 // and of bodies whose trees do
   bool tree_drives = false;                 // motors or springs of joints that stand in a tree

@@ -14,8 +14,8 @@ namespace pcphys {
 
 class Workers;
 
-/// Positions in `bodies` for the body domain (multiples of `width()`, the list is padded with row 0),
-/// blocks of `width()` slots for joints and contacts.
+/// Positions in `bodies` for the body domain (a backend may go on to the next multiple of its lanes, the list is padded with
+/// row 0); blocks of as many slots as there are lanes for joints and contacts.
 struct Range {
   std::uint32_t begin, end;
 };
@@ -26,15 +26,15 @@ class Backend {
 
   /// "cpu, 8 lanes" or the GL renderer's name.
   virtual std::string device() const = 0;
-  /// Slots side by side in arrays of structures of arrays.
+  /// The most slots side by side in arrays of structures of arrays.
   virtual std::uint32_t width() const = 0;
-  /// Of kernels of trees, from now on: no wider than `width()`, nor than what `alike` trees of one shape fill.
-  virtual std::uint32_t choose_tree_width(std::uint32_t alike) { return (void)alike, width(); }
+  /// How many it puts side by side where there are no more than `count`.
+  virtual std::uint32_t width_for(std::uint32_t count) const { return (void)count, width(); }
 
   /// Where the host keeps a buffer (world tables, index lists) and how long it is. Called again when either
   /// changed. The CPU works in place; the GPU sizes its copy (growing by half, keeping nothing).
   virtual Status attach(Buffer buffer, void* host, std::size_t bytes) = 0;
-  /// Scratch of the solver: `slots` rows of a PC_ROWS buffer, a multiple of `width()`. Never transferred.
+  /// Scratch of the solver: `slots` rows of a PC_ROWS buffer, a multiple of the lanes. Never transferred.
   virtual Status reserve(Buffer buffer, std::size_t slots) = 0;
 
   /// Host to device and back, the whole buffer; nothing to do on the CPU.
@@ -44,14 +44,15 @@ class Backend {
   /// All info blocks of a step, `count` times InfoOf<Scalar>, in the precision of the world.
   virtual Status set_infos(const void* infos, std::size_t count) = 0;
   /// Runs a kernel with info block `info` over the ranges, one after the other: each may read what the one
-  /// before wrote (the colours of a constraint graph). `barrier`: it also reads what an earlier run wrote.
-  virtual Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, bool barrier) = 0;
+  /// before wrote (the colours of a constraint graph). `lanes`: one of `width_for`. `barrier`: it also reads
+  /// what an earlier run wrote.
+  virtual Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool barrier) = 0;
   /// Waits until all that was asked for is done, so that a clock around it tells the time it took.
   virtual Status finish() = 0;
 };
 
-/// lanes: 1, 4 or 8 (f32), 1 or 4 (f64); 0 picks the widest that the processor has. `workers`: to share loops among; they
-/// outlive the backend.
+/// lanes: 1, 4 or 8 (f32), 1 or 4 (f64); 0 picks the widest that the processor has, and narrower ones where those
+/// would stand empty. `workers`: to share loops among; they outlive the backend.
 Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint32_t lanes, const Workers* workers = nullptr);
 
 /// device: index into the EGL devices, -1 for the first that works. `host_context`: use the context that is

@@ -19,11 +19,6 @@ Timer timer_of(const PlanEntry& entry) {
   return timer_of(schema(entry.kernel).stage);
 }
 
-Place place_of(const StepSettings& s, Stage stage) {
-  const Place places[stage_count] = {s.integrate, s.joints, s.impulses};
-  return places[std::size_t(stage)];
-}
-
 bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
 
 std::size_t info_index(const PlanEntry& entry) { return std::size_t{entry.octave} * phase_count + std::size_t(entry.phase); }
@@ -55,6 +50,17 @@ bool of_contacts(Domain domain) {
   return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
 }
 bool of_joints(Domain domain) { return domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint; }
+/// How many of a domain may stand side by side.
+std::uint32_t side_by_side(Domain domain, const Schedule& schedule) {
+  if (domain == Domain::body) return schedule.moving;
+  if (domain == Domain::tree) return schedule.trees.side_by_side();
+  return (of_joints(domain) ? schedule.joints : schedule.contacts).side_by_side();
+}
+void pack(Domain domain, std::uint32_t lanes, Schedule& schedule) {
+  if (of_joints(domain)) schedule.joints.pack(lanes);
+  if (of_contacts(domain)) schedule.contacts.pack(lanes);
+  if (domain == Domain::tree) schedule.trees.pack(lanes);
+}
 std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsigned octave) {
   if (domain == Domain::body) return schedule.ranges(octave);
   if (domain == Domain::joint) return schedule.joints.ranges(octave);
@@ -144,31 +150,20 @@ Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes)
   return d.backend->attach(buffer, host, bytes);
 }
 
-Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule) {
-  std::array<std::array<bool, buffer_count>, 2> bound{};
-  std::array<bool, kernel_count> seen{};  // most come in every sub-step
-  for (const PlanEntry& entry : plan.entries) {
-    if (entry.kind != PlanEntry::Kind::kernel || std::exchange(seen[std::size_t(entry.kernel)], true)) continue;
-    const KernelSchema& k = schema(entry.kernel);
-    if (of_joints(k.domain)) schedule.joints.pack(at(place_of(settings, k.stage)).backend->width());
-    if (of_contacts(k.domain)) schedule.contacts.pack(at(place_of(settings, k.stage)).backend->width());
-    if (k.domain == Domain::tree) {
-      Backend& backend = *at(place_of(settings, k.stage)).backend;
-      schedule.trees.pack(backend.choose_tree_width(schedule.trees.alike()));
-    }
-    for (const Access& a : k.accesses) {
-      bool& done = bound[std::size_t(entry.place)][std::size_t(a.buffer)];
-      if (done) continue;
-      done = true;
-      Status ok;
-      if (a.buffer < Buffer::table_buffers)
-        ok = attach(entry.place, a.buffer, state.tables.bytes(a.buffer).data(), state.tables.bytes(a.buffer).size());
-      else if (std::vector<std::uint32_t>* list = list_of(a.buffer, schedule))
-        ok = attach(entry.place, a.buffer, list->data(), list->size() * 4);
+Status Runner::bind(const StepPlan& plan, WorldState& state, Schedule& schedule) {
+  for (const PlanBinding& b : plan.bindings) {
+    Status ok;
+    if (b.buffer < Buffer::table_buffers) {
+      AlignedBytes& rows = state.tables.bytes(b.buffer);
+      ok = attach(b.place, b.buffer, rows.data(), rows.size());
+    } else {
+      pack(b.domain, lanes(b.place, b.domain, schedule), schedule);
+      if (std::vector<std::uint32_t>* list = list_of(b.buffer, schedule))
+        ok = attach(b.place, b.buffer, list->data(), list->size() * 4);
       else
-        ok = at(entry.place).backend->reserve(a.buffer, slots_of(a.buffer, k.domain, schedule));
-      if (!ok) return ok;
+        ok = at(b.place).backend->reserve(b.buffer, slots_of(b.buffer, b.domain, schedule));
     }
+    if (!ok) return ok;
   }
   return {};
 }
@@ -186,11 +181,14 @@ Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& r
   Device& d = at(Place::gl);
   Copy& copy = d.copies[std::size_t(entry.buffer)];
   report.transfer_bytes += copy.bytes;
-  keep(state, entry.buffer);
   if (Status ok = d.backend->download(entry.buffer); !ok) return ok;
   state.tables.touch(entry.buffer);
   copy.version = state.tables.version(entry.buffer) + 1;
   return {};
+}
+
+std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule) {
+  return at(place).backend->width_for(side_by_side(domain, schedule));
 }
 
 std::span<const Range> Runner::of_octave(std::span<const Range> ranges, bool coloured) {
@@ -205,22 +203,26 @@ std::span<const Range> Runner::of_octave(std::span<const Range> ranges, bool col
   return ranges_;
 }
 
-Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport&) {
+Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule) {
   const KernelSchema& k = schema(entry.kernel);
   std::span<const Range> ranges = ranges_of(k.domain, schedule, entry.octave);
   const Range all = ranges.empty() ? Range{0, 0} : Range{ranges.front().begin, ranges.back().end};
   if (schedule.grouped())
     ranges = of_octave(ranges, needs_colours(k));
-  else if (!needs_colours(k))
+  else if (ranges.size() > 1 && !needs_colours(k))
     ranges = std::span<const Range>(&all, 1);
   if (ranges.empty()) return {};
-  if (entry.place == Place::cpu)
+  if (gl_ && entry.place == Place::cpu)
     for (const Access& a : k.accesses)
-      if (a.write && a.buffer < Buffer::table_buffers) {
-        keep(state, a.buffer);
-        state.tables.touch(a.buffer);
-      }
-  return at(entry.place).backend->run(entry.kernel, info_index(entry), ranges, entry.barrier);
+      if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
+  return at(entry.place)
+      .backend->run(entry.kernel, info_index(entry), ranges, lanes(entry.place, k.domain, schedule), entry.barrier);
+}
+
+Status Runner::entry(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report) {
+  if (entry.kind == PlanEntry::Kind::kernel) return kernel(entry, state, schedule);
+  if (entry.kind == PlanEntry::Kind::download) return transfer(entry, state, report);
+  return upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
 }
 
 Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
@@ -229,24 +231,22 @@ Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldStat
   for (Place place : {Place::cpu, Place::gl})
     if (takes_part(place, settings))
       if (Status ok = at(place).backend->set_infos(infos, info_count); !ok) return ok;
-  auto began = Clock::now();
+  for (const Buffer buffer : plan.overwritten) {
+    keep(state, buffer);
+    if (!gl_) state.tables.touch(buffer);  // else kernel by kernel, as devices follow them
+  }
+  Clock::time_point began;
+  if (settings.timings) began = Clock::now();
   for (std::size_t i = 0; i < plan.entries.size(); i++) {
-    const PlanEntry& entry = plan.entries[i];
-    Status ok;
-    if (entry.kind == PlanEntry::Kind::kernel)
-      ok = kernel(entry, state, schedule, report);
-    else if (entry.kind == PlanEntry::Kind::download)
-      ok = transfer(entry, state, report);
-    else
-      ok = upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
-    if (!ok) return ok;
-    const bool last_of_kind = i + 1 == plan.entries.size() || timer_of(plan.entries[i + 1]) != timer_of(entry) ||
-                              plan.entries[i + 1].place != entry.place;
-    if (!settings.timings || !last_of_kind) continue;
+    const PlanEntry& e = plan.entries[i];
+    if (Status ok = entry(e, state, schedule, report); !ok) return ok;
+    if (!settings.timings) continue;
+    const PlanEntry* next = i + 1 < plan.entries.size() ? &plan.entries[i + 1] : nullptr;
+    if (next && timer_of(*next) == timer_of(e) && next->place == e.place) continue;
     if (gl_)
       if (Status done = at(Place::gl).backend->finish(); !done) return done;
     const auto now = Clock::now();
-    report.ms[std::size_t(timer_of(entry))] += std::chrono::duration<double, std::milli>(now - began).count();
+    report.ms[std::size_t(timer_of(e))] += std::chrono::duration<double, std::milli>(now - began).count();
     began = now;
   }
   if (gl_)

@@ -19,7 +19,7 @@ class Runner {
   /// Makes the backends that the settings ask for, keeping those that still fit.
   Status prepare(const StepSettings& settings, Precision precision);
   /// Everything a plan binds: lists and colours packed for their backends, buffers attached.
-  Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
+  Status bind(const StepPlan& plan, WorldState& state, Schedule& schedule);
   Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
              StepReport& report);
 
@@ -45,7 +45,7 @@ class Runner {
   struct Device {
     std::unique_ptr<Backend> backend;
     Precision precision = Precision::f32;
-    std::uint32_t lanes = 0;
+    std::uint32_t lanes = 0;  // that were asked for
     int index = -1;
     bool host_context = false;
     std::array<Copy, buffer_count> copies{};
@@ -54,7 +54,9 @@ class Runner {
   Device& at(Place place) { return devices_[std::size_t(place)]; }
   Status attach(Place place, Buffer buffer, void* host, std::size_t bytes);
   Status upload(Buffer buffer, std::uint64_t version, StepReport& report);
-  Status kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report);
+  std::uint32_t lanes(Place place, Domain domain, const Schedule& schedule);
+  Status entry(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report);
+  Status kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule);
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
   /// Without those that are empty; joined where they need not follow one another.

@@ -71,6 +71,9 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
     beside_trees_ += trees.is_large(ends[row][0]) || trees.is_large(ends[row][1]);
   }
   colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);
+  side_by_side_ = 0;
+  for (std::uint32_t c = 0; c < colouring_.colours(); c++)
+    side_by_side_ = std::max(side_by_side_, std::uint32_t(colouring_.of_colour(c).size()));
   width_ = 0;
 }
 
@@ -231,8 +234,8 @@ void Schedule::group(std::span<const std::uint8_t> octaves) {
   for (unsigned octave = 0; octave < of.count; octave++) {
     const auto begin = std::uint32_t(bodies.size());
     std::ranges::copy_if(rows_, std::back_inserter(bodies), [&](std::uint32_t row) { return of.is(row, octave); });
-    bodies.resize((bodies.size() + padding - 1) / padding * padding, 0);
     body_ranges_.push_back({begin, std::uint32_t(bodies.size())});
+    bodies.resize((bodies.size() + padding - 1) / padding * padding, 0);
   }
   bodies_version++;
   joints.group(of);

@@ -34,6 +34,8 @@ class ColouredSlots {
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
+  /// How many the largest colour has.
+  std::uint32_t side_by_side() const { return side_by_side_; }
   std::uint32_t colours() const { return colouring_.colours(); }
   std::uint32_t constraints() const { return colouring_.constraints(); }
   std::size_t slots() const { return slots_.order.size(); }
@@ -77,7 +79,7 @@ class ColouredSlots {
   const TreeNodes* trees_ = nullptr;
   OctaveOf of_bodies_;
   std::vector<std::uint8_t> octaves_;  // of the constraints, where there are several
-  std::uint32_t beside_trees_ = 0, reach_blocks_ = 0;
+  std::uint32_t beside_trees_ = 0, reach_blocks_ = 0, side_by_side_ = 0;
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
 };
@@ -107,7 +109,7 @@ class TreeSlots {
   std::uint32_t free_springs() const { return free_springs_; }
   std::size_t slots() const { return blocks_.parents.size() * width_; }  // one a node and lane
   /// How many trees of one shape there are, of the shape of which there are most.
-  std::uint32_t alike() const { return alike_; }
+  std::uint32_t side_by_side() const { return alike_; }
   std::span<const Range> ranges(unsigned octave) const { return std::span(blocks_.ranges).subspan(octave, 1); }
   TreeBlocks& lists() { return blocks_; }
   std::uint64_t version() const { return version_; }
@@ -142,8 +144,9 @@ class Schedule {
   std::span<const Range> ranges(unsigned octave) const { return std::span(body_ranges_).subspan(octave, 1); }
   bool grouped() const { return body_ranges_.size() > 1; }
 
-  std::vector<std::uint32_t> bodies;      // rows that move; those of an octave padded with row 0 to a multiple of `padding`
-  std::uint32_t moving = 0;               // without the padding
+  std::vector<std::uint32_t> bodies;  // rows that move; those of an octave padded with row 0 to a multiple of `padding`
+  std::uint32_t moving = 0;           // without the padding
+  std::span<const std::uint32_t> moving_bodies() const { return std::span(bodies).first(body_ranges_.back().end); }
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
   bool uneven = false;                    // masses differ by more than constants::uneven_masses
   std::uint64_t bodies_version = 0;

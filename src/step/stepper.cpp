@@ -72,6 +72,7 @@ const char* name(Timer timer) {
 
 struct Stepper::Inside {
   StepSettings settings;
+  bool checked = false;  // the settings
   Detector detector;
   Schedule schedule;
   Octaves octaves;
@@ -82,7 +83,9 @@ struct Stepper::Inside {
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   bool other = false;                                 // than those of the last step
-  InfoOf<float> infos_f[octave_count][phase_count];   // those of octaves in use
+  InfoInputs infos_from;                              // of the next three
+  std::uint32_t infos_of = 0;                         // octaves, as bits
+  InfoOf<float> infos_f[octave_count][phase_count];
   InfoOf<double> infos_d[octave_count][phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
   std::vector<Wrench> called;                   // what the callbacks answered in this step
@@ -90,6 +93,7 @@ struct Stepper::Inside {
   Clock::time_point began;
 
   void lap(Timer timer) {
+    if (!settings.timings) return;
     const auto now = Clock::now();
     report.ms[std::size_t(timer)] += std::chrono::duration<double, std::milli>(now - began).count();
     began = now;
@@ -110,6 +114,7 @@ struct Stepper::Inside {
     s.gyroscopic = from.gyroscopic;
     s.trees = from.trees.forest().trees() > 0;
     s.pivots = !from.trees.pivots().empty();
+    s.pivots_alone = s.pivots && from.trees.pivots().size() == from.moving;
     s.free_joints = from.joints.any_without_trees();
     s.tree_joints = from.joints.any_with_trees();
     s.tree_drives = from.trees.drives();
@@ -124,12 +129,16 @@ struct Stepper::Inside {
   }
 
   const void* fill(const WorldState& s, double h) {
-    const auto fill = [&](auto& infos) -> const void* {
-      for (unsigned octave = 0; octave < octave_count; octave++)
-        if (octaves.used() >> octave & 1) fill_infos(settings, s.gravity, h, s.last_substep, infos[octave], octave);
-      return infos;
-    };
-    return s.tables.precision() == Precision::f32 ? fill(infos_f) : fill(infos_d);
+    const InfoInputs from(settings, s.gravity, h, s.last_substep);
+    if (!(from == infos_from)) infos_of = 0;
+    infos_from = from;
+    for (unsigned octave = 0; octave < octave_count; octave++) {
+      if (!(octaves.used() >> octave & 1) || infos_of >> octave & 1) continue;
+      fill_infos(from, infos_f[octave], octave);
+      fill_infos(from, infos_d[octave], octave);
+      infos_of |= 1u << octave;
+    }
+    return s.tables.precision() == Precision::f32 ? static_cast<const void*>(infos_f) : infos_d;
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
@@ -165,7 +174,8 @@ struct Stepper::Inside {
   Status step(World& world, double dt) {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
-    if (ok) ok = check_settings(settings);
+    if (ok && !checked) ok = check_settings(settings);
+    checked = bool(ok);
     if (ok) ok = check_finite(s.gravity, "gravity of the world");
     if (ok) ok = runner.prepare(settings, s.tables.precision());
     if (ok) ok = call_back(world);
@@ -179,7 +189,7 @@ struct Stepper::Inside {
       if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
       if (ok) (void)undo(s, {});
       // others may have met it: those that leave the range by themselves are to blame, where there are any
-      find_leaving(s, schedule.bodies, dt, leaving);
+      find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
       if (leaving.empty()) return ok;
       freeze_leaving(s);
@@ -238,11 +248,11 @@ struct Stepper::Inside {
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
-    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
+    if (ok = runner.bind(*plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
     if (ok = runner.run(settings, *plan, s, schedule, fill(s, h), report); !ok) return undo(s, ok);
-    find_outside(s, schedule.bodies, outside);
+    find_outside(s, schedule.moving_bodies(), outside);
     if (!outside.empty()) return {};
     s.last_substep = h;
     report.substeps = wanted.substeps << (std::bit_width(octaves.used()) - 1);
@@ -281,6 +291,7 @@ Stepper& Stepper::operator=(Stepper&&) noexcept = default;
 Status Stepper::configure(const StepSettings& settings) {
   if (Status ok = check_settings(settings); !ok) return ok;
   inside_->settings = settings;
+  inside_->checked = true;
   return {};
 }
 const StepSettings& Stepper::settings() const { return inside_->settings; }

@@ -39,7 +39,7 @@ template <class Scalar> struct Body {
 template <class Out> void collect(std::span<const std::uint32_t> bodies, std::vector<std::uint32_t>& rows, const Out& out) {
   rows.clear();
   for (const std::uint32_t row : bodies)
-    if (row != 0 && out(row)) rows.push_back(row);
+    if (out(row)) rows.push_back(row);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace pcphys {
 
-/// Of `bodies` (rows; 0 pads) those whose numbers are out of range.
+/// Of `bodies` those whose numbers are out of range.
 void find_outside(const WorldState& state, std::span<const std::uint32_t> bodies, std::vector<std::uint32_t>& outside);
 /// Those that would be after `dt` under gravity and their own forces alone.
 void find_leaving(const WorldState& state, std::span<const std::uint32_t> bodies, double dt, std::vector<std::uint32_t>& leaving);

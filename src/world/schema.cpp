@@ -68,9 +68,9 @@ const KernelSchema& schema(Kernel kernel) { return kernel_schemas[std::size_t(ke
 std::span<const PropertySchema> properties() { return property_schemas; }
 
 bool holds(Buffer buffer, Role role) {
-  static const auto roles = [] {
+  static constexpr auto roles = [] {
     std::array<unsigned, buffer_count> bits{};
-    for (const PropertySchema& p : properties()) bits[std::size_t(p.buffer)] |= 1u << unsigned(p.role);
+    for (const PropertySchema& p : property_schemas) bits[std::size_t(p.buffer)] |= 1u << unsigned(p.role);
     return bits;
   }();
   return roles[std::size_t(buffer)] >> unsigned(role) & 1u;
