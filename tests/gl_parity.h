@@ -75,10 +75,11 @@ template <class Scalar> SlotLayout lay_out_reach(const State<Scalar>& state, std
   for (std::uint32_t slot = 0; slot < count; slot++) {
     const std::uint32_t *own = &single[single[slot]], *block = &packed[packed[slot / width]];  // heads: see tree_path.inl
     const auto count = [](const std::uint32_t* head, std::size_t side) { return std::size_t{2} * head[4 + side] + head[side]; };
+    for (std::size_t k = 0; k < 2; k++) layout.slots.push_back((block[7] + k) * width + slot % width);  // of how the sides meet
     for (std::size_t turns = 0; turns < 2; turns++)
       for (std::size_t side = 0; side < 2; side++)
         for (std::size_t k = 0; k < count(own, side); k++) {
-          const std::size_t first = block[7] + turns * (count(block, 0) + count(block, 1)) + side * count(block, 0);
+          const std::size_t first = block[7] + 2 + turns * (count(block, 0) + count(block, 1)) + side * count(block, 0);
           layout.slots.push_back((first + k) * width + slot % width);
         }
   }

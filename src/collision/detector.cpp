@@ -14,19 +14,7 @@
 namespace pcphys {
 namespace {
 
-/// A pair is listed when it may ever touch: other bodies, one of them dynamic, no joint between, filters agree.
-bool may_touch(const void* context, std::uint32_t a, std::uint32_t b) {
-  const WorldState& s = *static_cast<const WorldState*>(context);
-  const ShapeRecord &x = s.shapes[a], &y = s.shapes[b];
-  if (x.body == y.body) return false;
-  if (!s.responds(s.body_ids.row(x.body)) && !s.responds(s.body_ids.row(y.body))) return false;
-  if (x.filter.group != 0 && x.filter.group == y.filter.group) {
-    if (x.filter.group < 0) return false;
-  } else if (!(x.filter.category & y.filter.mask) || !(y.filter.category & x.filter.mask)) {
-    return false;
-  }
-  return s.no_collide.empty() || !s.no_collide.contains(WorldState::pair_key(x.body, y.body));
-}
+bool may_touch(const void* filter, std::uint32_t a, std::uint32_t b) { return (*static_cast<const PairFilter*>(filter))(a, b); }
 
 /// See Proxy. A shape that is not centred turns with its whole distance.
 std::pair<float, float> levers(const ShapeDef& d) {
@@ -105,7 +93,8 @@ void Detector::rebuild(const WorldState& s) {
   serial_ = s.serial;
   pairs_ = PairCache();
   pairs_.set_margin(float(constants::broad_margin), 0.125f);
-  pairs_.set_filter(may_touch, &s);
+  filter_->rebuild(s);
+  pairs_.set_filter(may_touch, filter_.get());
   proxies_.assign(s.shapes.size(), {});
   tight_.assign(s.shapes.size(), {});
   reach_.assign(s.shapes.size(), 0);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "collision/flights.h"
 #include "collision/narrow.h"
 #include "collision/pair_cache.h"
+#include "collision/pair_filter.h"
 #include "collision/twist.h"
 #include "collision/view.h"
 #include "pcphys/step.h"
@@ -99,6 +101,7 @@ class Detector {
   std::vector<float> reach_;   // how far a shape may come this step [m]
   std::vector<Twist> twists_;  // of bodies, by row
   std::vector<float> struck_;  // of bodies: when they first meet something in flight; dt: not in this step [s]
+  std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   PairCache pairs_;
   std::vector<std::uint32_t> hints_, next_hints_;
   ContactColumns next_;  // of the next step, or of the last one

@@ -73,11 +73,12 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     const float way = reach_[a] + reach_[b];
     if (way <= certain) continue;
     const Proxy &x = proxies_[a], &y = proxies_[b];
+    if (x.jointed || y.jointed) continue;
     constexpr std::size_t stride = reals_of(Buffer::material);
     const float thick = thickness(a, b);
     if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
     const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
-    if ((!bounces && way <= 0.5f * thick) || x.jointed || y.jointed) continue;
+    if (!bounces && way <= 0.5f * thick) continue;
     if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;

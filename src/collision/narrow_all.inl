@@ -41,8 +41,11 @@ void narrow(const ShapeView<PC_SCALAR>& a, const ShapeView<PC_SCALAR>& b, PC_SCA
   NarrowManifold m;
   m.normal = {0, 1, 0};
   m.count = 0;
-  if (a.kind == ShapeKind::sphere && b.kind == ShapeKind::sphere)  // copying whole shapes would take longer than the rest
+  // the two kinds of pairs that piles are made of: handing whole shapes on would take as long as the rest
+  if (a.kind == ShapeKind::sphere && b.kind == ShapeKind::sphere)
     pc_sphere_sphere(ball_from_view(a), ball_from_view(b), margin, m);
+  else if (a.kind == ShapeKind::capsule && b.kind == ShapeKind::capsule)
+    pc_capsule_capsule(from_view(a), from_view(b), margin, m);
   else
     pc_narrow(from_view(a), from_view(b), margin, hint, m);
   out.normal[0] = m.normal.x;

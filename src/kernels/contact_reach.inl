@@ -33,8 +33,8 @@ PC_FN Sym3 pc_answers(PC_IO Way w, Slot m, uint turns) {
 }
 PC_FN Mat3 pc_mat_add(Mat3 x, Mat3 y) { return pc_mat3(pc_add(x.a, y.a), pc_add(x.b, y.b), pc_add(x.c, y.c)); }
 PC_FN Mat3 pc_mixed_answers(PC_IO Way w, Slot m) {
-  Vec3 zero = pc_zero3(); Mat3 sum = pc_mat3(zero, zero, zero); uint count = pc_reach_all(w);
-  for (uint i = 0u; i < count; i++) sum = pc_mat_add(sum, pc_slot_products(PC_PASS PC_NODE(m, w.reach + i), PC_NODE(m, w.reach + count + i)));
+  Vec3 zero = pc_zero3(); Mat3 sum = pc_mat3(zero, zero, zero); uint count = pc_reach_all(w); uint first = pc_reach_first(w, 0u, 0u);
+  for (uint i = 0u; i < count; i++) sum = pc_mat_add(sum, pc_slot_products(PC_PASS PC_NODE(m, first + i), PC_NODE(m, first + count + i)));
   return sum;
 }
 // What passes between the sides of a contact within one tree: products of a's rows with b's over the levels that they share. Not all of it

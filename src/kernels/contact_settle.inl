@@ -1,7 +1,6 @@
 // A manifold whose load has just come, or whose friction has just let go: its rows are solved together, by further rounds of
 // friction and normal rows. One round a visit is enough where the last sub-step's impulses still hold; here they do not, and what
 // one round leaves (a box that tilts a little, and slides while it does) is never undone.
-struct Gaps { Real s0; Real s1; Real s2; Real s3; };
 
 // Whether rounds are needed: more than one point, and in the biased visit a load half as large again as what holds, or friction
 // that changes by half of its limit.

@@ -39,6 +39,7 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real he
 
 // Accumulated impulses of the four points and of friction.
 struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
+struct Gaps { Real s0; Real s1; Real s2; Real s3; };  // separations of now
 #ifndef PC_MEAN
 #include "contact_settle.inl"
 #endif
@@ -60,37 +61,41 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
-  // normal rows
+  // normal rows; where no manifold of the block has a second point, those of the others are zeros
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
   precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_held(0u, m0)); precise Real e0 = k0 - l0;
-  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
-  precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
-  precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
-  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; Real k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_held(1u, m1)); precise Real e1 = k1 - l1;
-  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
-  precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
-  precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift.n + b2 * shift.turn1 - a2 * shift.turn2);
-  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; Real k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_held(2u, m2)); precise Real e2 = k2 - l2;
-  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
-  precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
-  precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
-  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; Real k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_held(3u, m3));
-
-  Rows now; now.k0 = k0; now.k1 = k1; now.k2 = k2; now.k3 = k3; now.f = f;
+  bool more = PC_ANY(pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u))) > PC_REAL(0.0));
+  Rows now; now.k0 = k0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Gaps gap; gap.s0 = s0; gap.s1 = s0; gap.s2 = s0; gap.s3 = s0;
+  if (more) {  // lint: allow (as said)
+    Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
+    precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
+    precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
+    precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; now.k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_held(1u, m1)); precise Real e1 = now.k1 - l1;
+    Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
+    precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
+    precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift.n + b2 * shift.turn1 - a2 * shift.turn2);
+    precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; now.k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_held(2u, m2)); precise Real e2 = now.k2 - l2;
+    Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
+    precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
+    precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
+    precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_held(3u, m3));
+    gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
+  }
 #ifndef PC_MEAN
   Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
-    Gaps gap; gap.s0 = s0; gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
     pc_settle(PC_PASS m, v, gap, mass_scale, preload, unsettled, now);
   }
 #endif
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
   PC_ST(contact_impulses, m, 0u, now.k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));
-  PC_ST(contact_impulses, m, 1u, now.k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));
-  PC_ST(contact_impulses, m, 2u, now.k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), now.k2));
-  PC_ST(contact_impulses, m, 3u, now.k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), now.k3));
+  if (more) {  // lint: allow (as said)
+    PC_ST(contact_impulses, m, 1u, now.k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));
+    PC_ST(contact_impulses, m, 2u, now.k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), now.k2));
+    PC_ST(contact_impulses, m, 3u, now.k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), now.k3));
+  }
   precise Real c0 = now.k0 - l0; precise Real c1 = now.k1 - l1; precise Real c2 = now.k2 - l2; precise Real c3 = now.k3 - l3;
   precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3;
   Push push = pc_push(PC_PASS m, c0, c1, c2, c3);

@@ -32,12 +32,26 @@ PC_FN void pc_remember_joint(PC_IO Tree t, Slot n, uint k) {
   PC_SCATTER(joint_impulse, joint, 1u, pc_quad(pc_snap3(Vec3(r0, r1, r2)), PC_REAL(0.0)));
 }
 
-// 1 where the prediction leaves a gap of more than 3e-5 of the arms: a step of Newton's method, which leaves
-// about a tenth of it or less, is then not enough. Fast whips come to that.
-PC_FN Real pc_gap_left(PC_IO Slot n) {
-  Vec3 c = pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h)); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 rp = pc_ld3_tree(PC_PASS n, TREE_RP);
-  precise Real reach = (pc_dot(rc, rc) + pc_dot(rp, rp)) * PC_REAL(1e-9);
-  return pc_select(pc_dot(c, c) > reach, PC_REAL(1.0), PC_REAL(0.0));
+// 1 where a gap of a node's pin is more than a share of the arms, given as its square.
+PC_FN Real pc_gap_over(PC_IO Slot n, Vec3 gap, Real share_squared) {
+  Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 rp = pc_ld3_tree(PC_PASS n, TREE_RP); precise Real most = (pc_dot(rc, rc) + pc_dot(rp, rp)) * share_squared;
+  return pc_select(pc_dot(gap, gap) > most, PC_REAL(1.0), PC_REAL(0.0));
+}
+// 1 where some gap of the tree at the prediction is.
+PC_FN Real pc_gap_left(PC_IO Slot m, Tree t, Real share_squared) {
+  Real left = PC_REAL(0.0);
+  for (uint k = 1u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); left = pc_max(left, pc_gap_over(PC_PASS n, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h)), share_squared));
+  }
+  return left;
+}
+// 1 where a joint has angles that are locked, or its body turns about it: those are corrected whatever the pins.
+PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
+  if (pc_is_pivot(PC_PASS t) == 1u) return PC_REAL(1.0);
+  Real kind = PC_REAL(0.0);
+  for (uint k = 1u; k < t.count; k++)
+    for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
+  return pc_select(kind > PC_REAL(1.5), PC_REAL(1.0), PC_REAL(0.0));
 }
 // One step of Newton's method on the pins at the prediction, where `wanted` is 1; nothing elsewhere.
 PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
@@ -55,30 +69,36 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
   pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
 }
 
+// The push that closes gaps of more than 32 epsilon of the arms, of all trees of the block or of none.
+PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
+  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0);
+  for (uint k = 1u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real here = pc_gap_over(PC_PASS n, gap, noise); open = pc_max(open, here);
+    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here)); pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
+  }
+  if (pc_is_pivot(PC_PASS t) == 1u) { pc_st3_tree(PC_PASS PC_NODE(m, t.first + 1u), TREE_C, pc_zero3()); open = PC_REAL(0.0); }  // pivot_turn closes it
+  if (PC_ANY(open > PC_REAL(0.5))) {  // lint: allow (a push of nothing changes nothing)
+    pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
+    pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
+    for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
+  } else {
+    for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_zero3()); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_zero3()); }
+  }
+}
+
+// What is rounding (8 epsilon of the arms) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
+// 3e-5 of the arms was left, since one leaves about a tenth of it or less: fast whips come to that.
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m); Real wanted = PC_REAL(1.0);
+  Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
   for (uint k = 0u; k < t.count; k++) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
+  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_gap_left(PC_PASS m, t, noise));
   for (uint turn = 0u; turn < 4u; turn++) {
-    pc_tree_residual(PC_PASS m, t, wanted);
-    Real left = PC_REAL(0.0);
-    for (uint k = 1u; k < t.count; k++) left = pc_max(left, pc_gap_left(PC_PASS PC_NODE(m, t.first + k)));
+    if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
+    if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted);
+    Real left = pc_gap_left(PC_PASS m, t, PC_REAL(1e-9));
     pc_newton_step(PC_PASS m, t, wanted);
     wanted = pc_min(wanted, left);
-    if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
   }
-  for (uint k = 1u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); pc_remember_joint(PC_PASS t, n, k); pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
-    pc_st3_tree(PC_PASS n, TREE_C, pc_closing(PC_PASS pc_ld3_tree(PC_PASS n, TREE_GAP)));
-  }
-  if (pc_is_pivot(PC_PASS t) == 1u) {  // pivot_turn closes it: a sweep of nothing
-    for (uint k = 0u; k < 2u; k++) {
-      Slot n = PC_NODE(m, t.first + k); Vec3 none = pc_zero3(); Six still = pc_six(none, none);
-      pc_st6_tree(PC_PASS n, TREE_F, still); pc_st6_tree(PC_PASS n, TREE_X, still); pc_st3_tree(PC_PASS n, TREE_C, none);
-      pc_st3_tree(PC_PASS n, TREE_PUSH, none); pc_st3_tree(PC_PASS n, TREE_CHANGE, none); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, none);
-    }
-    return;
-  }
-  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
-  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
-  for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
+  for (uint k = 1u; k < t.count; k++) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
+  pc_push_gaps(PC_PASS m, t);
 }

@@ -13,6 +13,7 @@
 #include "contact_masses.inl"
 #include "free_responses.inl"
 #include "tree_reach.inl"
+#include "kept_meeting.inl"
 #include "contact_reach.inl"
 
 // Contacts that hold nothing, and whose points would come no nearer than this speed could close, are left alone in this sub-step: in a pile half of all. What
@@ -82,7 +83,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); PC_ST(contact_rows, m, ROW_SCALE, scale);
   if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)
-  bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
+  pc_keep_meeting(PC_PASS w, m, now); bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
   pc_fill_reach(PC_PASS w, m, turns, now.arms, n, t1, t2);
   Responses r = pc_tree_responses(PC_PASS w, m, turns, pc_outside_responses(PC_PASS w, m, now, n, t1, t2));
   Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);

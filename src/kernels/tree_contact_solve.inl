@@ -9,6 +9,7 @@
 #include "contact_visit.inl"
 #include "contact_meeting.inl"
 #include "tree_reach.inl"
+#include "kept_meeting.inl"
 #include "reach_motion.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -16,7 +17,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
-  Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2); Twist v = now.twist;
+  Meeting now = pc_meeting_now(PC_PASS w, m, ia, ib, n, t1, t2); Twist v = now.twist;
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
@@ -26,7 +27,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   if (!PC_ANY(acts > PC_REAL(0.0))) return;  // lint: allow (nothing changes nothing)
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u); Real zero = PC_REAL(0.0); BodyState a = now.a; BodyState b = now.b;
   Vec3 torque_a = pc_add(r.couple, pc_cross(now.arms.a, r.impulse)); Vec3 torque_b = pc_add(r.couple, pc_cross(now.arms.b, r.impulse));
-  Real free_a = pc_select(tree_a, zero, a.inverse_mass); Real free_b = pc_select(tree_b, zero, b.inverse_mass);
+  Real free_a = pc_free_mass(tree_a, a); Real free_b = pc_free_mass(tree_b, b);
   if (PC_ANY(pc_max(free_a, free_b) > zero)) {  // lint: allow (bodies of trees and those that stand keep their rows)
     a.phase = pc_select(free_a > zero, pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(free_b > zero, pc_max(b.phase, r.touch), b.phase);
     pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, r.impulse, torque_a, torque_b);

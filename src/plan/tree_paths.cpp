@@ -67,8 +67,8 @@ struct Levels {
   /// Entries that list shared slots: of the root two.
   std::uint32_t shared_slots() const { return shared == 0 ? 0 : shared + 1; }
   std::uint32_t all() const { return depth[0] + depth[1] + below[0] + below[1] + shared_slots(); }
-  /// Of impulses, and as many of couples.
-  std::uint32_t reach_slots() const { return 2 * (2 * (any[0] + any[1]) + depth[0] + depth[1]); }
+  /// Of how the sides meet; of impulses, and as many of couples.
+  std::uint32_t reach_slots() const { return 2 + 2 * (2 * (any[0] + any[1]) + depth[0] + depth[1]); }
 };
 
 }  // namespace

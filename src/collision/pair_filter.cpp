@@ -1,0 +1,32 @@
+#include "collision/pair_filter.h"
+
+#include <algorithm>
+
+namespace pcphys {
+
+void PairFilter::rebuild(const WorldState& state) {
+  state_ = &state;
+  sides_.assign(state.shapes.size(), {});
+  for (std::size_t i = 0; i < sides_.size(); i++) {
+    const ShapeRecord& shape = state.shapes[i];
+    if (!shape.alive) continue;
+    sides_[i].body = shape.body;
+    sides_[i].responds = state.responds(state.body_ids.row(shape.body));
+    sides_[i].filter = shape.filter;
+  }
+  const auto bar = [&](std::uint32_t body, std::uint32_t other) {
+    for (const std::uint32_t shape : state.bodies[state.body_ids.row(body)].shapes) {
+      Side& side = sides_[shape];
+      const bool first = side.first_barred > side.last_barred;
+      side.first_barred = first ? other : std::min(side.first_barred, other);
+      side.last_barred = first ? other : std::max(side.last_barred, other);
+    }
+  };
+  for (const auto& [key, reason] : state.no_collide) {
+    const auto a = std::uint32_t(key >> 32), b = std::uint32_t(key);
+    bar(a, b);
+    bar(b, a);
+  }
+}
+
+}  // namespace pcphys

@@ -1,0 +1,39 @@
+// Which pairs of shapes may ever touch: shapes of other bodies, one of them dynamic, no joint between, filters agree. Asked for every pair of
+// boxes that overlap, so what it reads is compact.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "world/state.h"
+
+namespace pcphys {
+
+class PairFilter {
+ public:
+  /// Follows a change of the world's structure. The world must stay where it is.
+  void rebuild(const WorldState& state);
+
+  bool operator()(std::uint32_t shape_a, std::uint32_t shape_b) const {
+    const Side &x = sides_[shape_a], &y = sides_[shape_b];
+    if (x.body == y.body || !(x.responds || y.responds)) return false;
+    if (x.filter.group != 0 && x.filter.group == y.filter.group) {
+      if (x.filter.group < 0) return false;
+    } else if (!(x.filter.category & y.filter.mask) || !(y.filter.category & x.filter.mask)) {
+      return false;
+    }
+    const bool may_be_barred = y.body >= x.first_barred && y.body <= x.last_barred;
+    return !may_be_barred || !state_->no_collide.contains(WorldState::pair_key(x.body, y.body));
+  }
+
+ private:
+  struct Side {
+    std::uint32_t body = 0;  // id index
+    bool responds = false;
+    Filter filter;
+    std::uint32_t first_barred = 1, last_barred = 0;  // bodies that it never touches are in between
+  };
+  std::vector<Side> sides_;  // by shape
+  const WorldState* state_ = nullptr;
+};
+
+}  // namespace pcphys
