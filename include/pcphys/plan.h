@@ -34,6 +34,7 @@ struct PlanEntry {
   Phase phase = Phase::biased;
   bool barrier = false;  // uses what a kernel before it wrote, or writes what one read, on the same device
   std::uint32_t substep = 0;
+  std::uint32_t again = 0;  // runs only while the kernel's run before struck something, and at most so often; 0: once, always
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
 };
 

@@ -56,7 +56,7 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
   Quad turned = PC_GATHER(delta, i, 1u);
-  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, PC_REAL(1.0)));
+  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); precise Real struck = turned.s + PC_REAL(1.0); PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
@@ -107,9 +107,10 @@ PC_FN Mask pc_may_hit(PC_IO Slot m) {
   fast = pc_approaches_fast(PC_PASS m, v, 2u, fast); fast = pc_approaches_fast(PC_PASS m, v, 3u, fast);
   return pc_and(pc_impact_mine(PC_PASS m), fast);
 }
-PC_FN Mask pc_struck(PC_IO Slot m) {
+// How often the two bodies were struck in this sub-step: as often as when they were last looked at, and nothing has changed.
+PC_FN Real pc_struck(PC_IO Slot m) {
   Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 1u); Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 1u);
-  return pc_max(a.s, b.s) > PC_REAL(0.5);
+  precise Real both = a.s + b.s; return both;
 }
 
 PC_FN_LARGE void pc_hit(PC_IO Slot m) {
@@ -184,6 +185,8 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
   Friction f = pc_coulomb(PC_PASS m, after, push.n, scale, zero, zero, zero);
   precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
 
+  // another sweep is to follow
+  PC_RAISE(hits, velocity_parts, 2u);
   // what has bounced does not bounce again at the end of the step
   PC_ST(contact_rows, m, ROW_APPROACH, pc_select(j0 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH))); PC_ST(contact_rows, m, ROW_APPROACH + 1u, pc_select(j1 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 1u)));
   PC_ST(contact_rows, m, ROW_APPROACH + 2u, pc_select(j2 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 2u))); PC_ST(contact_rows, m, ROW_APPROACH + 3u, pc_select(j3 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 3u)));
@@ -201,11 +204,13 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
+  Mask mine = pc_impact_mine(PC_PASS m);
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
-  // a sweep that is not the first comes in the coefficients of the relax pass: it looks at bodies that were struck in this sub-step
-  if (PC_ANY(again)) {  // lint: allow (the same for all)
-    if (!PC_ANY(pc_and(mine, pc_struck(PC_PASS m)))) return;  // lint: allow (nothing has changed)
-  }
+  // a sweep that is not the first comes in the coefficients of the relax pass: it looks at bodies that were struck since the last look
+  Mask flight = pc_impact_always(PC_PASS m); Real kept = PC_LD(contact_rows, m, ROW_SEEN); Real struck = pc_struck(PC_PASS m);
+  precise Real since = struck - pc_select(flight, PC_REAL(0.0), kept);
+  Mask unseen = pc_or(PC_INFO(load_ahead) < PC_REAL(0.5), pc_abs(since) > PC_REAL(0.5));
+  if (!PC_ANY(pc_and(mine, unseen))) return;  // lint: allow (nothing has changed)
+  PC_ST(contact_rows, m, ROW_SEEN, pc_select(flight, kept, struck));
   if (PC_ANY(pc_may_hit(PC_PASS m))) pc_hit(PC_PASS m);  // lint: allow (nothing to do otherwise)
 }

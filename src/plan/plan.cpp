@@ -14,7 +14,8 @@ class Builder {
     for (std::size_t b = 0; b < buffer_count; b++) current_[b][std::size_t(Place::cpu)] = true;
   }
 
-  void kernel(Kernel kernel, Phase phase, std::uint32_t substep) {
+  /// `again`: PlanEntry::again.
+  void kernel(Kernel kernel, Phase phase, std::uint32_t substep, std::uint32_t again = 0) {
     const KernelSchema& k = schema(kernel);
     const Place place = signature_.places[std::size_t(k.stage)];
     bool barrier = false;
@@ -23,7 +24,7 @@ class Builder {
       barrier |= place == Place::gl && (written_[std::size_t(a.buffer)] || (a.write && read_[std::size_t(a.buffer)]));
     }
     if (barrier) settle();
-    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep});
+    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep, again});
     for (const Access& a : k.accesses) {
       if (place == Place::gl) (a.write ? written_ : read_)[std::size_t(a.buffer)] = true;
       if (!a.write) continue;
@@ -48,7 +49,7 @@ class Builder {
     if (here) return;
     here = true;
     const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
-    plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep});
+    plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep, 0});
     if (kind == PlanEntry::Kind::download) settle();
   }
   void settle() {
@@ -140,9 +141,10 @@ StepPlan make_plan(const PlanSignature& s) {
     if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
     if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
     // before what lasts of the contacts acts again: an impact is between velocities that bodies have
-    if (s.free_contacts && s.impacts)
-      for (int sweep = 0; sweep < constants::impact_sweeps; sweep++)
-        b.kernel(Kernel::contact_impact, sweep == 0 ? Phase::biased : Phase::relax, k);
+    if (s.free_contacts && s.impacts) {
+      b.kernel(Kernel::contact_impact, Phase::biased, k);
+      b.kernel(Kernel::contact_impact, Phase::relax, k, constants::impact_sweeps - 1);
+    }
     if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
     if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
     if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);

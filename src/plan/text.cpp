@@ -54,6 +54,7 @@ std::string to_text(const StepPlan& plan) {
       line += kernel_name(e);
       pad(line, 43);
       line += phase_name(e);
+      if (e.again > 0) line += "*";
       pad(line, 51);
       line += join(reads(e)) + " -> " + join(writes(e));
     } else {

@@ -26,6 +26,9 @@ Place place_of(const StepSettings& s, Stage stage) {
 
 bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
 
+/// Where contact_impact raises its flag: the property `some_struck`.
+constexpr std::uint32_t flag_quad = 2;
+
 /// The list or slot array behind a buffer that is no table's, or null.
 std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
   switch (buffer) {
@@ -200,7 +203,15 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
         keep(state, a.buffer);
         state.tables.touch(a.buffer);
       }
-  return at(entry.place).backend->run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
+  Backend& backend = *at(entry.place).backend;
+  if (entry.again == 0) return backend.run(entry.kernel, std::size_t(entry.phase), ranges, entry.barrier);
+  for (std::uint32_t k = 0; k < entry.again; k++) {
+    const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad);
+    if (!struck) return struck.error();
+    if (!*struck) break;
+    if (Status ok = backend.run(entry.kernel, std::size_t(entry.phase), ranges, true); !ok) return ok;
+  }
+  return {};
 }
 
 Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,

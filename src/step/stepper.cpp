@@ -25,6 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t most_substeps = 1000;
+constexpr int most_tries = 8;
 
 Status check_settings(const StepSettings& s) {
   if (s.substeps < 1 || s.substeps > most_substeps)
@@ -86,6 +87,8 @@ struct Stepper::Inside {
   InfoOf<float> infos_f[phase_count];
   InfoOf<double> infos_d[phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
+  bool strayed = false;                         // some body went further than it was looked for
+  int tries = 0;                                // of this step
   std::vector<Wrench> called;                   // what the callbacks answered in this step
   StepPlan no_plan;
   Clock::time_point began;
@@ -176,9 +179,12 @@ struct Stepper::Inside {
     const FlushSubnormals flush;
     if (serial != s.serial) runner.forget();
     update_structure(s);
-    while (ok = attempt(s, dt), !ok || !outside.empty()) {
+    detector.forget_strays();
+    tries = 0;
+    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed) {
       if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
       if (ok) (void)undo(s, {});
+      if (strayed) continue;
       // others may have met it: those that leave the range by themselves are to blame, where there are any
       find_leaving(s, schedule.bodies, dt, leaving);
       if (leaving.empty()) leaving = outside;
@@ -216,6 +222,7 @@ struct Stepper::Inside {
   Status attempt(WorldState& s, double dt) {
     Status ok;
     outside.clear();
+    strayed = false;
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
     lap(Timer::broad);
     add_called(s);
@@ -245,6 +252,10 @@ struct Stepper::Inside {
     if (ok = runner.run(settings, *plan, s, schedule, fill(s, h), report); !ok) return undo(s, ok);
     find_outside(s, schedule.bodies, outside);
     if (!outside.empty()) return {};
+    // what others sent further than it was looked for is looked for anew
+    const AlignedBytes* before = runner.before(Buffer::pose);
+    strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
+    if (strayed) return {};
     s.last_substep = h;
     report.substeps = wanted.substeps;
     report.pairs = found.pairs;
