@@ -39,6 +39,7 @@ struct PlanEntry {
   bool barrier = false;       // uses what a kernel before it wrote, or writes what one read, on the same device
   std::uint32_t substep = 0;  // of the octave's
   std::uint8_t octave = 0;    // of the islands that a kernel is for
+  std::uint32_t again = 0;    // runs only while the kernel's run before struck something, and at most so often; 0: once, always
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
 };
 

@@ -185,7 +185,7 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
     const Twist& twist = twists_[proxy.body];
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;
-    reach_[i] = s.stands(proxy.body) ? 0.0f : step * twist.speed + turned + fall;
+    reach_[i] = s.stands(proxy.body) ? 0.0f : std::max(step * twist.speed, strays_ ? went_[proxy.body] : 0.0f) + turned + fall;
     tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
   }
   for (Twist& twist : twists_)
@@ -199,6 +199,32 @@ NarrowHook& fcl_hook() {
   static NarrowHook hook;
   return hook;
 }
+
+bool Detector::find_strays(const WorldState& s, const AlignedBytes& before) {
+  if (!possible_) return false;
+  return s.tables.precision() == Precision::f32 ? collect_strays(s, reinterpret_cast<const float*>(before.data()))
+                                                : collect_strays(s, reinterpret_cast<const double*>(before.data()));
+}
+
+// A body that went its reach and half of its thickness is at most half sunk into what it never saw: the next step finds it.
+// (Bodies on joints are left out, as they are of look_ahead.)
+template <class Scalar> bool Detector::collect_strays(const WorldState& s, const Scalar* before) {
+  const Scalar* now = s.tables.data<Scalar>(Buffer::pose);
+  bool found = false;
+  for (std::uint32_t i = 0; i < proxies_.size(); i++) {
+    const Proxy& proxy = proxies_[i];
+    if (!proxy.alive || !proxy.responds || proxy.jointed) continue;
+    const Scalar *p = now + proxy.body * reals_of(Buffer::pose), *q = before + proxy.body * reals_of(Buffer::pose);
+    const float x = float(p[0] - q[0]), y = float(p[1] - q[1]), z = float(p[2] - q[2]), seen = reach_[i] + 0.5f * proxy.inner;
+    if (x * x + y * y + z * z <= seen * seen) continue;
+    if (!strays_) went_.assign(s.bodies.size(), 0);
+    strays_ = found = true;
+    went_[proxy.body] = std::max(went_[proxy.body], std::sqrt(x * x + y * y + z * z));
+  }
+  return found;
+}
+
+void Detector::forget_strays() { strays_ = false; }
 
 void Detector::put_back(WorldState& s) {
   if (!replaced_) return;

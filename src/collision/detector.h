@@ -43,6 +43,10 @@ class Detector {
   Status find_contacts(WorldState& state, double dt, const Options& options, Found& found);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
+  /// After the step: whether some body went further than it was looked for, so far that it could be past what it never saw.
+  /// `before`: the poses that the step began with. `find_pairs` looks as far for them as they went, until `forget_strays`.
+  bool find_strays(const WorldState& state, const AlignedBytes& before);
+  void forget_strays();
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
   /// Whether some body has restitution, rolling or torsional friction.
@@ -72,6 +76,7 @@ class Detector {
 
   static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
   void rebuild(const WorldState& state);
+  template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
   template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
@@ -84,6 +89,7 @@ class Detector {
   float thickness(std::uint32_t a, std::uint32_t b) const;
   /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
   template <class Scalar> void look_ahead(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
+  void begin_strikes(const WorldState& state, double dt);
   /// Whether a contact comes of it, once all flights are known.
   template <class Scalar>
   bool settle(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch,
@@ -102,6 +108,8 @@ class Detector {
   std::vector<Twist> twists_;  // of bodies, by row
   std::vector<float> struck_;  // of bodies: when they first meet something in flight; dt: not in this step [s]
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
+  std::vector<float> went_;  // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
+  bool strays_ = false;      // some body has
   PairCache pairs_;
   std::vector<std::uint32_t> hints_, next_hints_;
   ContactColumns next_;  // of the next step, or of the last one

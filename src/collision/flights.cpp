@@ -60,6 +60,14 @@ float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
   return x == 0 ? y : y == 0 ? x : std::min(x, y);
 }
 
+// What strays goes another way from the start, for all that is known.
+void Detector::begin_strikes(const WorldState& s, double dt) {
+  struck_.assign(s.bodies.size(), float(dt));
+  if (!strays_) return;
+  for (std::uint32_t row = 0; row < s.bodies.size(); row++)
+    if (went_[row] > 0) struck_[row] = 0;
+}
+
 // Bodies on joints are left out: their impulses are not theirs alone.
 template <class Scalar>
 void Detector::look_ahead(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
@@ -79,7 +87,7 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
     const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
     if (!bounces && way <= 0.5f * thick) continue;
-    if (scratch.flights.empty()) struck_.assign(s.bodies.size(), float(dt));
+    if (scratch.flights.empty()) begin_strikes(s, dt);
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
     const Sight<Scalar> view = sight(s, scratch, i, options);

@@ -1,5 +1,6 @@
 // The CPU backend: kernels run in place on the world's tables, in the lane count that was chosen.
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cpu/kernels.h"
@@ -76,9 +77,14 @@ class CpuBackend final : public Backend {
     }
     return {};
   }
+  Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override {
+    void* const row = buffers_[std::size_t(buffer)];
+    return kernels_.f64 ? take(static_cast<double*>(row) + quad * 4 + 3) : take(static_cast<float*>(row) + quad * 4 + 3);
+  }
   Status finish() override { return {}; }
 
  private:
+  template <class Scalar> static bool take(Scalar* flag) { return std::exchange(*flag, Scalar(0)) != 0; }
   static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
 
   const CpuKernels& kernels_;

@@ -144,6 +144,12 @@ PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uin
 #endif
 }
 
+// A flag in the row that pads: many may raise it at a time.
+PC_INLINE void pc_raise(Scalar* flag) {
+  const Scalar up = 1;
+  __atomic_store(flag, &up, __ATOMIC_RELAXED);
+}
+
 }  // namespace PC_NAMESPACE
 }  // namespace pcphys
 
@@ -167,3 +173,4 @@ PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uin
 #define PC_EACH(buffer, slot, i) pc_each(io.buffer, slot, i)
 #define PC_NODE(slot, node) pc_node(slot, node)
 #define PC_IS(flag) pc_mask(flag)
+#define PC_RAISE(mask, buffer, k) if (pc_any(mask)) pc_raise(io.buffer + (k) * 4u + 3u)

@@ -34,6 +34,7 @@ class GlBackend final : public Backend {
   Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
   Status set_infos(const void* infos, std::size_t count) override;
   Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t, bool barrier) override;
+  Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override;
   Status finish() override;
 
  private:
@@ -203,6 +204,13 @@ Status GlBackend::run(Kernel kernel, std::size_t info, std::span<const Range> ra
     writes_pending_ = true;
   }
   return {};
+}
+
+Result<bool> GlBackend::take_flag(Buffer buffer, std::uint32_t quad) {
+  if (Status status = hold(); !status) return status.error();
+  settle();
+  const std::size_t bytes = real_bytes();
+  return at(buffer).take((quad * 4 + 3) * bytes, bytes);
 }
 
 Status GlBackend::finish() {

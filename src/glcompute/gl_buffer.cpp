@@ -40,6 +40,15 @@ void GlBuffer::download() const {
   glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, GLsizeiptr(bytes_), host_);
 }
 
+bool GlBuffer::take(std::size_t offset, std::size_t bytes) const {
+  constexpr std::uint64_t none = 0;
+  std::uint64_t value = 0;
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, id_);
+  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, GLintptr(offset), GLsizeiptr(bytes), &value);
+  if (value != 0) glBufferSubData(GL_SHADER_STORAGE_BUFFER, GLintptr(offset), GLsizeiptr(bytes), &none);
+  return value != 0;
+}
+
 void GlBuffer::release() {
   if (id_ != 0) glDeleteBuffers(1, &id_);
   *this = GlBuffer();

@@ -18,6 +18,8 @@ class GlBuffer {
   }
   void upload() const;
   void download() const;
+  /// Whether any of these bytes (up to 8) is not zero; they are zero then.
+  bool take(std::size_t offset, std::size_t bytes) const;
   void release();
 
   std::uint32_t id() const { return id_; }

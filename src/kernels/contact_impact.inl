@@ -7,8 +7,11 @@
 // The rows of one manifold that close are solved together. What is left (slow approaches, several impacts of one body
 // in one sub-step that block each other, bodies on joints) is contact_solve's and contact_restitution's; but shapes that
 // meet in flight, whose arms mean nothing before they do, are left to this kernel for the whole step.
+#define PC_SOME_ROWS
 #include "contact_rows.inl"
 #include "contact_response.inl"
+#include "contact_masses.inl"
+#include "free_responses.inl"
 #include "contact_coulomb.inl"
 #include "contact_turned.inl"
 #include "contact_calming.inl"
@@ -56,7 +59,7 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
   Quad turned = PC_GATHER(delta, i, 1u);
-  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, PC_REAL(1.0)));
+  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); precise Real struck = turned.s + PC_REAL(1.0); PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
@@ -72,8 +75,8 @@ PC_FN Arms pc_arms_at(PC_IO Slot m, Vec3 moved_a, Vec3 moved_b, Vec3 n, Mask cen
   Arms r = pc_arms(PC_PASS m, moved_a, moved_b);
   r.a = pc_select3(central, pc_scale(n, pc_dot(n, r.a)), r.a); r.b = pc_select3(central, pc_scale(n, pc_dot(n, r.b)), r.b); return r;
 }
-PC_FN Real pc_impact_mass(Real mass, Real scale, Real light, Mask central) {
-  precise Real scaled = mass * scale; return pc_select(central, pc_select(mass > PC_REAL(0.0), pc_inverse_or_zero(light), PC_REAL(0.0)), scaled);
+PC_FN Real pc_impact_mass(Real mass, Real light, Mask central) {
+  return pc_select(central, pc_select(mass > PC_REAL(0.0), pc_inverse_or_zero(light), PC_REAL(0.0)), mass);
 }
 
 // Whose impacts are looked for: 1 where they bounce or meet in flight.
@@ -83,11 +86,12 @@ PC_FN Mask pc_impact_mine(PC_IO Slot m) {
   return pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(-0.5), pc_or(pc_impact_always(PC_PASS m), bounces));
 }
 
-// The way to the arms at impact: when the centres have come as near as the first gap is wide, or as found for a flight.
+// The way to the arms at impact: when the centres have come as near as the first gap is wide. (Arms that are not those of the
+// way that was really gone would answer otherwise than masses say, and make energy.)
 PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   precise Real nearing = -pc_dot(n, relative); precise Real gap = PC_LD(contact_rows, m, ROW_S) + pc_dot(n, come);
   precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing); Real until = pc_min(flight, PC_INFO(h));
-  return pc_select3(pc_impact_always(PC_PASS m), pc_ld3_rows(PC_PASS m, ROW_PATH), pc_madd(come, relative, until));
+  return pc_madd(come, relative, until);
 }
 
 // What approaches no faster than the threshold does not bounce: |v*| is at most |u| + |A| h / 2, and has to be |A| h above it.
@@ -107,14 +111,15 @@ PC_FN Mask pc_may_hit(PC_IO Slot m) {
   fast = pc_approaches_fast(PC_PASS m, v, 2u, fast); fast = pc_approaches_fast(PC_PASS m, v, 3u, fast);
   return pc_and(pc_impact_mine(PC_PASS m), fast);
 }
-PC_FN Mask pc_struck(PC_IO Slot m) {
+// How often the two bodies were struck in this sub-step: as often as when they were last looked at, and nothing has changed.
+PC_FN Real pc_struck(PC_IO Slot m) {
   Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 1u); Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 1u);
-  return pc_max(a.s, b.s) > PC_REAL(0.5);
+  precise Real both = a.s + b.s; return both;
 }
 
 PC_FN_LARGE void pc_hit(PC_IO Slot m) {
   Real zero = PC_REAL(0.0);
-  Real kind = PC_LD(contact_rows, m, ROW_IMPACT); Real e = PC_LD(contact_rows, m, ROW_E);
+  Real e = PC_LD(contact_rows, m, ROW_E);
   Mask always = pc_impact_always(PC_PASS m); Mask mine = pc_impact_mine(PC_PASS m);
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
@@ -144,19 +149,22 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
   precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift_n + b2 * turn1 - a2 * turn2); precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift_n + b3 * turn1 - a3 * turn2);
   precise Real g0 = pull_n + b0 * up1 - a0 * up2; precise Real g1 = pull_n + b1 * up1 - a1 * up2;
   precise Real g2 = pull_n + b2 * up1 - a2 * up2; precise Real g3 = pull_n + b3 * up1 - a3 * up2;
-  Real scale = pc_select(always, PC_REAL(1.0), PC_LD(contact_rows, m, ROW_SCALE));
-  precise Real light = a.inverse_mass + b.inverse_mass;
-  Real m0 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS), scale, light, whirls); Real m1 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 1u), scale, light, whirls);
-  Real m2 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 2u), scale, light, whirls); Real m3 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 3u), scale, light, whirls);
+  Real m0 = PC_LD(contact_rows, m, ROW_MASS); Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u); Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u); Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
   Closing c0 = pc_closing(PC_PASS u0, s0, g0, m0, e, always); Closing c1 = pc_closing(PC_PASS u1, s1, g1, m1, e, always);
   Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
-  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), path); precise Real size = pc_dot(arms.a, arms.a) + pc_dot(arms.b, arms.b);
+  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(arms.a, arms.a) + pc_dot(arms.b, arms.b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   Mask hits = pc_and(mine, here > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
 
+  // effective masses at the arms of the impact
+  Responses r = pc_free_responses(a, b, arms.a, arms.b, n, t1, t2); r.these = hits;
+  pc_renew_masses(PC_PASS m, r);
+  precise Real light = a.inverse_mass + b.inverse_mass;
+  m0 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS), light, whirls); m1 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 1u), light, whirls);
+  m2 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 2u), light, whirls); m3 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 3u), light, whirls);
   // all rows that close, together: equal shares of what stops their mean, then one after the other
   Real d01 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D)); Real d02 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 1u)); Real d03 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 2u));
   Real d12 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 3u)); Real d13 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 4u)); Real d23 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 5u));
@@ -181,13 +189,14 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
   precise Real v2_after = v.v2 + (PC_LD(contact_rows, m, ROW_C + 1u) * push.n + PC_LD(contact_rows, m, ROW_C + 4u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 7u) * push.m2);
   precise Real wn_after = v.wn + (PC_LD(contact_rows, m, ROW_C + 2u) * push.n + PC_LD(contact_rows, m, ROW_C + 5u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 8u) * push.m2);
   after.v1 = v1_after; after.v2 = v2_after; after.wn = wn_after;
-  Friction f = pc_coulomb(PC_PASS m, after, push.n, scale, zero, zero, zero);
+  Friction f = pc_coulomb(PC_PASS m, after, push.n, PC_REAL(1.0), zero, zero, zero);
   precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
 
+  // another sweep is to follow
+  PC_RAISE(hits, velocity_parts, 2u);
   // what has bounced does not bounce again at the end of the step
   PC_ST(contact_rows, m, ROW_APPROACH, pc_select(j0 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH))); PC_ST(contact_rows, m, ROW_APPROACH + 1u, pc_select(j1 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 1u)));
   PC_ST(contact_rows, m, ROW_APPROACH + 2u, pc_select(j2 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 2u))); PC_ST(contact_rows, m, ROW_APPROACH + 3u, pc_select(j3 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 3u)));
-  PC_ST(contact_rows, m, ROW_IMPACT, pc_select(pc_and(hits, both_fly), PC_REAL(-1.0), kind));
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
   Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
   BodyState before_a = a; BodyState before_b = b;
@@ -201,11 +210,14 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
+  Mask mine = pc_impact_mine(PC_PASS m);
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
-  // a sweep that is not the first comes in the coefficients of the relax pass: it looks at bodies that were struck in this sub-step
-  if (PC_ANY(again)) {  // lint: allow (the same for all)
-    if (!PC_ANY(pc_and(mine, pc_struck(PC_PASS m)))) return;  // lint: allow (nothing has changed)
-  }
+  // a sweep that is not the first comes in the coefficients of the relax pass: it looks at bodies that were struck since the last look
+  Mask flight = pc_impact_always(PC_PASS m); Real kept = PC_LD(contact_rows, m, ROW_SEEN); Real struck = pc_struck(PC_PASS m);
+  precise Real since = struck - pc_select(flight, PC_REAL(0.0), kept);
+  Mask unseen = pc_or(PC_INFO(load_ahead) < PC_REAL(0.5), pc_abs(since) > PC_REAL(0.5));
+  if (!PC_ANY(pc_and(mine, unseen))) return;  // lint: allow (nothing has changed)
+  PC_ST(contact_rows, m, ROW_SEEN, pc_select(flight, kept, struck));
   if (PC_ANY(pc_may_hit(PC_PASS m))) pc_hit(PC_PASS m);  // lint: allow (nothing to do otherwise)
 }
+#undef PC_SOME_ROWS

@@ -48,3 +48,10 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
   pc_st_mass(ROW_D, d01); pc_st_mass(ROW_D + 1u, d02); pc_st_mass(ROW_D + 2u, d03); pc_st_mass(ROW_D + 3u, d12); pc_st_mass(ROW_D + 4u, d13); pc_st_mass(ROW_D + 5u, d23);
 }
 #undef pc_st_mass
+#ifdef PC_SOME_ROWS
+// Of the points that there are, anew.
+PC_FN Real pc_where_mass(PC_IO Slot m, uint i) { return pc_select(PC_LD(contact_rows, m, ROW_MASS + i) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)); }
+PC_FN void pc_renew_masses(PC_IO Slot m, Responses r) {
+  pc_store_masses(PC_PASS m, r, pc_where_mass(PC_PASS m, 0u), pc_where_mass(PC_PASS m, 1u), pc_where_mass(PC_PASS m, 2u), pc_where_mass(PC_PASS m, 3u));
+}
+#endif

@@ -11,7 +11,6 @@
 #include "contact_turned.inl"
 #include "contact_shift.inl"
 
-PC_FN Real pc_where_mass(PC_IO Slot m, uint i) { return pc_select(PC_LD(contact_rows, m, ROW_MASS + i) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)); }
 PC_FN void pc_drop(PC_IO Slot m, uint i, Mask far) { PC_ST(contact_impulses, m, i, pc_select(far, PC_REAL(0.0), PC_LD(contact_impulses, m, i))); }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -26,7 +25,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Arms arms = pc_arms(PC_PASS m, pc_select3(flight, none, moved_a.v), pc_select3(flight, path, moved_b.v));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Responses r = pc_free_responses(a, b, arms.a, arms.b, n, t1, t2); r.these = far;
-  pc_store_masses(PC_PASS m, r, pc_where_mass(PC_PASS m, 0u), pc_where_mass(PC_PASS m, 1u), pc_where_mass(PC_PASS m, 2u), pc_where_mass(PC_PASS m, 3u));
+  pc_renew_masses(PC_PASS m, r);
   PC_ST(contact_rows, m, ROW_K, pc_select(k > zero, PC_LD(contact_rows, m, ROW_K), k));
 
   // (of the edge of a needle two points hold each other: one alone, and it spins)

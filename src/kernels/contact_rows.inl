@@ -27,6 +27,7 @@ const uint ROW_K = 58u;       // smallest response of the three directions at th
 const uint ROW_SCALE = 59u;   // of all effective masses in this sub-step, see pc_mass_scale
 const uint ROW_IMPACT = 60u;  // contact_impact's: below 0 none of it, 0 where it bounces, above 0 always
 const uint ROW_PATH = 61u;    // b's way against a until they meet
+const uint ROW_SEEN = 61u;    // the same place, where no shapes meet in flight: how often the bodies had been struck when contact_impact last looked
 // impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
 // the step 8..11, slow means 12..15
 const uint IMPULSE_T = 4u;

@@ -17,7 +17,8 @@ class Builder {
   /// The kernels that follow are for islands of this octave.
   void enter(std::uint8_t octave) { octave_ = octave; }
 
-  void kernel(Kernel kernel, Phase phase, std::uint32_t substep) {
+  /// `again`: PlanEntry::again.
+  void kernel(Kernel kernel, Phase phase, std::uint32_t substep, std::uint32_t again = 0) {
     const KernelSchema& k = schema(kernel);
     const Place place = signature_.places[std::size_t(k.stage)];
     bool barrier = false;
@@ -26,7 +27,7 @@ class Builder {
       barrier |= place == Place::gl && (written_[std::size_t(a.buffer)] || (a.write && read_[std::size_t(a.buffer)]));
     }
     if (barrier) settle();
-    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep, octave_});
+    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep, octave_, again});
     for (const Access& a : k.accesses) {
       if (!std::exchange(bound_[std::size_t(a.buffer)][std::size_t(place)], true))
         plan_.bindings.push_back({place, a.buffer, k.domain});
@@ -143,9 +144,10 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
   if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
   // before what lasts of the contacts acts again: an impact is between velocities that bodies have
-  if (s.free_contacts && s.impacts)
-    for (int sweep = 0; sweep < constants::impact_sweeps; sweep++)
-      b.kernel(Kernel::contact_impact, sweep == 0 ? Phase::biased : Phase::relax, k);
+  if (s.free_contacts && s.impacts) {
+    b.kernel(Kernel::contact_impact, Phase::biased, k);
+    b.kernel(Kernel::contact_impact, Phase::relax, k, constants::impact_sweeps - 1);
+  }
   if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);

@@ -55,6 +55,7 @@ std::string to_text(const StepPlan& plan) {
       line += kernel_name(e);
       pad(line, 46);
       line += phase_name(e);
+      if (e.again > 0) line += "*";
       pad(line, 54);
       line += join(reads(e)) + " -> " + join(writes(e));
     } else {

@@ -47,6 +47,9 @@ class Backend {
   /// before wrote (the colours of a constraint graph). `lanes`: one of `width_for`. `barrier`: it also reads
   /// what an earlier run wrote.
   virtual Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool barrier) = 0;
+  /// Takes down a flag that kernels raise (PC_RAISE: the last real of quad `quad` of a buffer's first row) and says whether it
+  /// was up. On a device this waits for what was asked for so far.
+  virtual Result<bool> take_flag(Buffer buffer, std::uint32_t quad) = 0;
   /// Waits until all that was asked for is done, so that a clock around it tells the time it took.
   virtual Status finish() = 0;
 };

@@ -19,6 +19,12 @@ class Rollback {
     std::memcpy(copy.bytes.data(), now.data(), now.size());
   }
 
+  /// What was kept in this step, or null.
+  const AlignedBytes* before(Buffer buffer) const {
+    const Copy& copy = copies_[std::size_t(buffer)];
+    return copy.kept ? &copy.bytes : nullptr;
+  }
+
   /// The step was made.
   void drop() {
     for (Copy& copy : copies_) copy.kept = false;

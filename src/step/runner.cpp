@@ -22,6 +22,8 @@ Timer timer_of(const PlanEntry& entry) {
 bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
 
 std::size_t info_index(const PlanEntry& entry) { return std::size_t{entry.octave} * phase_count + std::size_t(entry.phase); }
+/// Where contact_impact raises its flag: the property `some_struck`.
+constexpr std::uint32_t flag_quad = 2;
 
 /// The list or slot array behind a buffer that is no table's, or null.
 std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
@@ -215,8 +217,16 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
   if (gl_ && entry.place == Place::cpu)
     for (const Access& a : k.accesses)
       if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
-  return at(entry.place)
-      .backend->run(entry.kernel, info_index(entry), ranges, lanes(entry.place, k.domain, schedule), entry.barrier);
+  Backend& backend = *at(entry.place).backend;
+  const std::uint32_t width = lanes(entry.place, k.domain, schedule);
+  if (entry.again == 0) return backend.run(entry.kernel, info_index(entry), ranges, width, entry.barrier);
+  for (std::uint32_t i = 0; i < entry.again; i++) {
+    const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad);
+    if (!struck) return struck.error();
+    if (!*struck) break;
+    if (Status ok = backend.run(entry.kernel, info_index(entry), ranges, width, true); !ok) return ok;
+  }
+  return {};
 }
 
 Status Runner::entry(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report) {

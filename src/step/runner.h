@@ -26,6 +26,8 @@ class Runner {
   /// Before a step changes a buffer of a table, so that `undo` can put it back. Contacts are not copied: the detector
   /// has their last list; nor, on the CPU alone, is scratch.
   void keep(const WorldState& state, Buffer buffer);
+  /// A buffer of state as it was before this step wrote it; null if none did.
+  const AlignedBytes* before(Buffer buffer) const { return rollback_.before(buffer); }
   /// The step was made.
   void drop() { rollback_.drop(); }
   /// The step failed: the tables as they were before it, and a device that is asked for nothing more of it.

@@ -25,6 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int most_tries = 8;
+
 Status check_settings(const StepSettings& s) {
   if (s.substeps < 1 || s.substeps > most_substeps)
     return Error{ErrorCode::bad_time_step,
@@ -88,6 +90,8 @@ struct Stepper::Inside {
   InfoOf<float> infos_f[octave_count][phase_count];
   InfoOf<double> infos_d[octave_count][phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
+  bool strayed = false;                         // some body went further than it was looked for
+  int tries = 0;                                // of this step
   std::vector<Wrench> called;                   // what the callbacks answered in this step
   StepPlan no_plan;
   Clock::time_point began;
@@ -185,9 +189,12 @@ struct Stepper::Inside {
     const FlushSubnormals flush;
     if (serial != s.serial) runner.forget();
     update_structure(s);
-    while (ok = attempt(s, dt), !ok || !outside.empty()) {
+    detector.forget_strays();
+    tries = 0;
+    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed) {
       if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
       if (ok) (void)undo(s, {});
+      if (strayed) continue;
       // others may have met it: those that leave the range by themselves are to blame, where there are any
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
@@ -225,6 +232,7 @@ struct Stepper::Inside {
   Status attempt(WorldState& s, double dt) {
     Status ok;
     outside.clear();
+    strayed = false;
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
     lap(Timer::broad);
     add_called(s);
@@ -254,6 +262,10 @@ struct Stepper::Inside {
     if (ok = runner.run(settings, *plan, s, schedule, fill(s, h), report); !ok) return undo(s, ok);
     find_outside(s, schedule.moving_bodies(), outside);
     if (!outside.empty()) return {};
+    // what others sent further than it was looked for is looked for anew
+    const AlignedBytes* before = runner.before(Buffer::pose);
+    strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
+    if (strayed) return {};
     s.last_substep = h;
     report.substeps = wanted.substeps << (std::bit_width(octaves.used()) - 1);
     report.refined = octaves.refined();
