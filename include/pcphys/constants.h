@@ -26,6 +26,9 @@ inline constexpr double unit_tolerance = 1e-3;
 inline constexpr double free_angle = 1e9;
 /// An angle with a narrower interval is locked (angle_rows.inl) [rad].
 inline constexpr double locked_interval = 1e-6;
+/// Pins between two bodies stand in one place, or on one line, where they are nearer to it than this share of the smaller body's radius
+/// of gyration.
+inline constexpr double apart_pins = 1e-4;
 /// Moments may violate the triangle inequality by this share, for rounding.
 inline constexpr double moment_tolerance = 1e-6;
 

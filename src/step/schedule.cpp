@@ -111,11 +111,12 @@ std::vector<std::uint32_t> closings_of_trees(const Forest& forest, std::span<con
 }  // namespace
 
 void TreeSlots::build(const WorldState& state) {
-  std::vector<JointLink> links, joints;  // joints: without springs between two points, which hold nothing together
+  solved_.build(state);
+  std::vector<JointLink> links, joints;  // joints: without springs between two points, and those that others stand for
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];
     links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index});
-    if (!joint.spring) joints.push_back(links.back());
+    if (!joint.spring && !solved_.stands_back(row)) joints.push_back(links.back());
   }
   std::vector<double> masses(state.bodies.size());
   std::vector<std::uint32_t> ids(state.bodies.size());
@@ -130,7 +131,7 @@ void TreeSlots::build(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     if (state.joints[row].spring) closing_.push_back(row);
   std::ranges::sort(closing_);
-  pivots_ = find_pivots(forest_, state);
+  pivots_ = find_pivots(forest_, state, solved_);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
   find_drives(state, links);

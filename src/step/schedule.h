@@ -82,6 +82,7 @@ class TreeSlots {
   void build(const WorldState& state);
   void pack(std::uint32_t width);
 
+  const SolvedJoints& solved() const { return solved_; }
   const Forest& forest() const { return forest_; }
   /// As contacts see them, and as joints that close loops do.
   const TreeNodes& nodes() const { return nodes_; }
@@ -103,6 +104,7 @@ class TreeSlots {
   std::uint64_t version() const { return version_; }
 
  private:
+  SolvedJoints solved_;
   Forest forest_;
   void find_parallel(std::span<const JointLink> links);
   void find_drives(const WorldState& state, std::span<const JointLink> links);

@@ -195,7 +195,9 @@ struct Stepper::Inside {
     scheduled = s.structure_version;
     other = true;
     schedule.update_structure(s);
-    write_pivots(s, schedule.trees.pivots());
+    runner.keep(s, Buffer::joint_impulse);
+    schedule.trees.solved().write(s);
+    write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
   }
 
   void update_contacts(const WorldState& s) {
