@@ -1,6 +1,8 @@
 #include "plan/loads.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "pcphys/constants.h"
 #include "plan/tree_paths.h"
@@ -18,17 +20,53 @@ void Loads::find(const WorldState& state, const TreeNodes& trees) {
   }
 }
 
+namespace {
+
+/// Of a body that a force pulls at this arm: arm over the least moment about an axis across it. Moments are principal, the arm in the body.
+double swing_ratio(Vec3 moments, Vec3 arm) {
+  const double r2 = dot(arm, arm);
+  if (r2 == 0) return 0;
+  const double along = (moments.x * arm.x * arm.x + moments.y * arm.y * arm.y + moments.z * arm.z * arm.z) / r2;
+  const double across = moments.x + moments.y + moments.z - along - std::max({moments.x, moments.y, moments.z});
+  return std::sqrt(r2) / std::max(across, std::min({moments.x, moments.y, moments.z}));
+}
+
+/// The power of two that brings what falls with its square to `aim`, `most` at most.
+std::uint32_t times_for(double value, double aim, std::uint32_t most) {
+  std::uint32_t times = 1;
+  for (; value > aim && 2 * times <= most; value /= 4) times *= 2;
+  return times;
+}
+
+}  // namespace
+
+void Loads::find_loops(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing) {
+  loops_.clear();
+  for (const std::uint32_t row : closing) {
+    const JointRecord& joint = state.joints[row];
+    const JointDef& def = joints.def(state, row);
+    double ratio = 0;
+    for (const auto& [body, arm] : {std::pair(joint.body_a, def.frame_a.position), std::pair(joint.body_b, def.frame_b.position)})
+      if (const std::uint32_t at = state.body_ids.row(body); state.responds(at))
+        ratio = std::max(ratio, swing_ratio(state.tables.get3(Buffer::mass, at, 0), arm));
+    loops_.push_back({row, ratio});
+  }
+}
+
 std::uint32_t Loads::refinement(const WorldState& state, const StepSettings& settings, double dt) const {
   double largest = 0;  // acceleration that the load would give to what carries it [m/s^2]
   for (const Uneven& u : uneven_)
     largest = std::max(largest, -u.ratio * dot(state.tables.get3(Buffer::contact, u.contact, 0), state.gravity));
   const double h = dt / settings.substeps, frequency = constants::contact_frequency_times_h / h;
-  const double aim = constants::load_overlap * settings.contact_margin;
-  double overlap = largest / (frequency * frequency);
-  if (overlap <= constants::heavy_overlap * settings.contact_margin) return 1;
-  std::uint32_t times = 1;
-  for (; overlap > aim && 2 * times <= settings.load_refinement; overlap /= 4) times *= 2;
-  return times;
+  const double aim = constants::load_overlap * settings.contact_margin, overlap = largest / (frequency * frequency);
+  const bool heavy = overlap > constants::heavy_overlap * settings.contact_margin;
+  const std::uint32_t for_contacts = heavy ? times_for(overlap, aim, settings.load_refinement) : 1;
+
+  double stiffest = 0;  // square of a frequency [1/s^2]
+  if (state.last_substep > 0)
+    for (const Loop& l : loops_)
+      stiffest = std::max(stiffest, l.ratio * length(state.tables.get3(Buffer::joint_impulse, l.joint, 0)) / state.last_substep);
+  return std::max(for_contacts, times_for(h * h * stiffest / 4, constants::loop_stiffness, settings.load_refinement));
 }
 
 }  // namespace pcphys

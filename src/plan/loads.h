@@ -1,10 +1,13 @@
 // Sub-steps for heavy loads. A contact is as stiff as the lighter of its bodies lets it be (docs/impulses.md), so a load of a
-// thousand times that body presses it in by a thousand times as much; sub-steps undo that with their square.
+// thousand times that body presses it in by a thousand times as much; sub-steps undo that with their square. A joint that closes a loop
+// under tension needs sub-steps that resolve how fast its bodies swing in it (docs/joint-trees.md).
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pcphys/step.h"
+#include "plan/solved_joints.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -15,8 +18,12 @@ class Loads {
  public:
   /// Follows a change of contacts: finds those in which a free body could carry one much heavier than itself.
   void find(const WorldState& state, const TreeNodes& trees);
-  /// By what the sub-steps of a step of `dt` are to be multiplied, from the weights that could rest on lighter bodies: a power
-  /// of two.
+  void forget_contacts() { uneven_.clear(); }
+  /// Follows a change of objects. `closing`: rows of the joints that close loops and that trees answer.
+  void find_loops(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing);
+  bool any() const { return !uneven_.empty() || !loops_.empty(); }
+  /// By what the sub-steps of a step of `dt` are to be multiplied, from the weights that could rest on lighter bodies and from the
+  /// tension of loops in the last sub-step: a power of two.
   std::uint32_t refinement(const WorldState& state, const StepSettings& settings, double dt) const;
 
  private:
@@ -24,7 +31,12 @@ class Loads {
     std::uint32_t contact;
     double ratio;  // of the masses; below zero where the normal leads from the heavier body to the lighter
   };
+  struct Loop {
+    std::uint32_t joint;
+    double ratio;  // of the square of the frequency at which its lighter body swings, and the force [1/(kg m)]
+  };
   std::vector<Uneven> uneven_;
+  std::vector<Loop> loops_;
 };
 
 }  // namespace pcphys

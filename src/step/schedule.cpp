@@ -135,6 +135,10 @@ void TreeSlots::build(const WorldState& state) {
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
   find_drives(state, links);
+  answered_.clear();
+  for (const std::uint32_t row : forest_.closing())
+    if (!parallel_[row] && (loop_nodes_.node(links[row - 1].a) > 0 || loop_nodes_.node(links[row - 1].b) > 0))
+      answered_.push_back(row);
   width_ = 0;
 }
 

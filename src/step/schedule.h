@@ -93,6 +93,8 @@ class TreeSlots {
   std::span<const char> parallel() const { return parallel_; }
   /// Rows of the joints that stand in no tree, and of springs between two points; ascending.
   std::span<const std::uint32_t> closing() const { return closing_; }
+  /// Of them the joints that trees answer.
+  std::span<const std::uint32_t> answered() const { return answered_; }
   /// Whether some joint has a motor or a spring: of those in trees, and of the others.
   bool drives() const { return drives_; }
   bool closing_drives() const { return closing_drives_; }
@@ -111,7 +113,7 @@ class TreeSlots {
 
   TreeNodes nodes_, loop_nodes_;
   std::vector<char> parallel_;
-  std::vector<std::uint32_t> closing_;
+  std::vector<std::uint32_t> closing_, answered_;
   bool drives_ = false, closing_drives_ = false;
   std::uint32_t free_springs_ = 0;
   std::vector<Pivot> pivots_;

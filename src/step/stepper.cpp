@@ -198,11 +198,15 @@ struct Stepper::Inside {
     runner.keep(s, Buffer::joint_impulse);
     schedule.trees.solved().write(s);
     write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+    loads.find_loops(s, schedule.trees.solved(), schedule.trees.answered());
   }
 
   void update_contacts(const WorldState& s) {
     schedule.update_contacts(s);
-    if (schedule.uneven) loads.find(s, schedule.trees.nodes());
+    if (schedule.uneven)
+      loads.find(s, schedule.trees.nodes());
+    else
+      loads.forget_contacts();
   }
 
   void freeze_leaving(WorldState& s) {
@@ -226,7 +230,7 @@ struct Stepper::Inside {
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
     PlanSignature wanted = signature(schedule);
-    if (schedule.uneven && settings.integrator != Integrator::seed)
+    if (loads.any() && settings.integrator != Integrator::seed)
       wanted.substeps = std::min(most_substeps, settings.substeps * loads.refinement(s, settings, dt));
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
