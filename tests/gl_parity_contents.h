@@ -160,7 +160,7 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
 
 template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
   if (row == 0) {
-    put(Buffer::joint_frame, row, {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1});
+    for (const Buffer b : {Buffer::joint_frame, Buffer::joint_solved}) put(b, row, {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1});
     put(Buffer::joint_drive, row, {0, 0, 0, 1});
     return;
   }
@@ -174,12 +174,13 @@ template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
     upper[i] = rarely() ? lower[i] : lower[i] + real(0, 2);
     if (rarely()) lower[i] = -infinity, upper[i] = infinity;
   }
-  put(Buffer::joint_frame, row, {either(0.5), either(0.5), either(0.5), double(below(3)),
-                                 p[0],        p[1],        p[2],        p[3],
-                                 either(0.5), either(0.5), either(0.5), 0,
-                                 q[0],        q[1],        q[2],        q[3],
-                                 lower[0],    lower[1],    lower[2],    0,
-                                 upper[0],    upper[1],    upper[2],    0});
+  const std::initializer_list<double> frame = {either(0.5), either(0.5), either(0.5), double(below(3)),
+                          p[0],        p[1],        p[2],        p[3],
+                          either(0.5), either(0.5), either(0.5), 0,
+                          q[0],        q[1],        q[2],        q[3],
+                          lower[0],    lower[1],    lower[2],    0,
+                          upper[0],    upper[1],    upper[2],    0};
+  for (const Buffer b : {Buffer::joint_frame, Buffer::joint_solved}) put(b, row, frame);
   const double push = rarely() ? 0 : mood_.impulse;
   const auto axes = turn(4);
   const double light = 1 / mood_.mass;  // principal moments about the pin, the middle one in the middle; a hinge has one alone

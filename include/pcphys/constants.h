@@ -27,6 +27,9 @@ inline constexpr double unit_tolerance = 1e-3;
 inline constexpr double free_angle = 1e9;
 /// An angle with a narrower interval is locked (angle_rows.inl) [rad].
 inline constexpr double locked_interval = 1e-6;
+/// Pins between two bodies stand in one place, or on one line, where they are nearer to it than this share of the smaller body's radius
+/// of gyration.
+inline constexpr double apart_pins = 1e-4;
 /// Moments may violate the triangle inequality by this share, for rounding.
 inline constexpr double moment_tolerance = 1e-6;
 
@@ -48,6 +51,9 @@ inline constexpr double uneven_masses = 16, heavy_overlap = 0.75, load_overlap =
 /// than that no more than twice as many (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
 inline constexpr std::uint32_t large_island = 256;
+/// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half the sub-step)^2 is
+/// to stay below this.
+inline constexpr double loop_stiffness = 0.02;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;
@@ -61,8 +67,8 @@ inline constexpr double tree_spin_floor = 6e-5;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a
-/// tree holds by itself answers nothing.
-inline constexpr double loop_give = 1e-4;
+/// tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least.
+inline constexpr double loop_give = 1e-7, loop_roundings = 800;
 /// Of what an impulse on one body of a joint tree moves another one, so much counts in the effective masses of a contact between the
 /// two: bodies that can hardly move against each other then have a mass that is finite.
 inline constexpr double cross_share = 0.9;

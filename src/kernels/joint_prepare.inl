@@ -44,9 +44,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad place_a = PC_GATHER(pose, ia, 0u); Quad turn_a = PC_GATHER(pose, ia, 1u); Quad low_a = PC_GATHER(pose, ia, 2u);
   Quad place_b = PC_GATHER(pose, ib, 0u); Quad turn_b = PC_GATHER(pose, ib, 1u); Quad low_b = PC_GATHER(pose, ib, 2u);
-  Quad anchor_a = PC_GATHER(joint_frame, joint, 0u); Quad axes_a = PC_GATHER(joint_frame, joint, 1u);
-  Quad anchor_b = PC_GATHER(joint_frame, joint, 2u); Quad axes_b = PC_GATHER(joint_frame, joint, 3u);
-  Quad lower = PC_GATHER(joint_frame, joint, 4u); Quad upper = PC_GATHER(joint_frame, joint, 5u);
+  Quad anchor_a = PC_GATHER(joint_solved, joint, 0u); Quad axes_a = PC_GATHER(joint_solved, joint, 1u);
+  Quad anchor_b = PC_GATHER(joint_solved, joint, 2u); Quad axes_b = PC_GATHER(joint_solved, joint, 3u);
+  Quad lower = PC_GATHER(joint_solved, joint, 4u); Quad upper = PC_GATHER(joint_solved, joint, 5u);
   Quad pin = PC_GATHER(joint_impulse, joint, 0u); Quad angle = PC_GATHER(joint_impulse, joint, 1u);
   Quaternion qa = pc_quaternion(turn_a.v, turn_a.s); Quaternion qb = pc_quaternion(turn_b.v, turn_b.s);
 

@@ -12,10 +12,6 @@ PC_FN void pc_store_response(PC_IO Index row, Mask exists, Sym6 g) {
   PC_SCATTER_IF(exists, node_response, row, 4u, pc_quad(Vec3(g.a.xy, g.a.xz, g.a.yy), g.a.yz));
   PC_SCATTER_IF(exists, node_response, row, 5u, pc_quad(pc_zero3(), g.a.zz));
 }
-PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
-  precise Real xx = m.xx * s; precise Real xy = m.xy * s; precise Real xz = m.xz * s; precise Real yy = m.yy * s; precise Real yz = m.yz * s; precise Real zz = m.zz * s;
-  return pc_sym3(xx, xy, xz, yy, yz, zz);
-}
 // Three rows of a 3 x 3 product: rows x of the left times the matrix m.
 PC_FN Mat3 pc_rows_times(Vec3 x0, Vec3 x1, Vec3 x2, Mat3 m) { return pc_mat3(pc_mat_tmul(m, x0), pc_mat_tmul(m, x1), pc_mat_tmul(m, x2)); }
 PC_FN Mat3 pc_mat_add(Mat3 x, Mat3 y) { return pc_mat3(pc_add(x.a, y.a), pc_add(x.b, y.b), pc_add(x.c, y.c)); }

@@ -12,6 +12,11 @@ PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 bare, Sym3 loose) {
   }
   return pc_sym_inverse(freedom);
 }
+// The smallest of a body's moments of inertia.
+PC_FN Real pc_least_moment(PC_IO Slot n) {
+  Vec3 inverse = pc_ld3_tree(PC_PASS n, TREE_MOMENTS); precise Real light = pc_max(inverse.x, pc_max(inverse.y, inverse.z)) * PC_LD(tree_rows, n, TREE_TOTAL);
+  return pc_inverse_or_zero(light);
+}
 PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
   Real fast = pc_max(PC_LD(tree_rows, n, TREE_FAST), PC_LD(tree_rows, up, TREE_FAST));
   Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
@@ -22,19 +27,23 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
   // S^T U
   precise Real xx = u3.x + u1.x * rc.z - u2.x * rc.y; precise Real xy = u3.y + u1.y * rc.z - u2.y * rc.y; precise Real xz = u3.z + u1.z * rc.z - u2.z * rc.y;
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
-  // a light body's spin between heavy ones is lost in the rounding of their inertia: a little is added (docs/joints.md)
+  // a light body's spin between heavy ones is lost in the rounding of their inertia: what its own lacks is added (docs/joint-trees.md)
   // (pins that remember no impulse may be of any stiffness)
-  Real rounding = PC_INFO(rounding); precise Real unknown = rounding * PC_REAL(256.0);
+  precise Real rounding = PC_INFO(rounding) * PC_REAL(8.0); precise Real unknown = PC_INFO(rounding) * PC_REAL(256.0);
 #ifdef PC_DRIVES
   unknown = pc_select(pc_drive_lasts(PC_PASS n), rounding, unknown);
 #endif
   // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
-  precise Real known = rounding + fast * PC_INFO(spin_floor); precise Real least = rounding * PC_REAL(0.03125);
-  Real share = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, pc_select(fast > PC_REAL(0.0), known, unknown)); precise Real floor = (xx + yy + zz) * share; precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
+  Real share = pc_select(fast > PC_REAL(0.0), rounding, unknown); precise Real all = xx + yy + zz;
+  precise Real lacks = all * share - pc_least_moment(PC_PASS n); precise Real held = pc_max(lacks, PC_REAL(0.0)) + all * fast * PC_INFO(spin_floor);
+  Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), PC_REAL(0.0), held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
   Sym3 inverse = loose;
 #ifdef PC_DRIVES
   if (PC_ANY(pc_has_drive(PC_PASS n))) { freedom = pc_with_drives(PC_PASS n, up, freedom, loose); loose = pc_sym_inverse(freedom); inverse = loose; }  // lint: allow (zeros otherwise)
+#endif
+#ifdef PC_BRAKES
+  if (PC_ANY(pc_has_brake(PC_PASS n))) { freedom = pc_with_brake(PC_PASS n, freedom); inverse = pc_sym_inverse(freedom); }  // lint: allow (the same otherwise)
 #endif
   if (PC_ANY(pc_has_rows(PC_PASS n))) inverse = pc_with_springs(PC_PASS n, freedom, loose);  // lint: allow (zeros otherwise)
   Vec3 w0 = pc_sym_mul(inverse, u0); Vec3 w1 = pc_sym_mul(inverse, u1); Vec3 w2 = pc_sym_mul(inverse, u2); Vec3 w3 = pc_sym_mul(inverse, u3); Vec3 w4 = pc_sym_mul(inverse, u4); Vec3 w5 = pc_sym_mul(inverse, u5);

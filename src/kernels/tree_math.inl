@@ -63,3 +63,7 @@ PC_FN Sym6 pc_sym6_shift(Sym6 h, Vec3 d) {
   precise Real yy = e1.y + d.z * r.c.a.y - d.x * r.c.c.y; precise Real yz = e1.z + d.z * r.c.a.z - d.x * r.c.c.z; precise Real zz = e2.z + d.x * r.c.b.z - d.y * r.c.a.z;
   r.a = pc_sym3(xx, xy, xz, yy, yz, zz); return r;
 }
+PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
+  precise Real xx = m.xx * s; precise Real xy = m.xy * s; precise Real xz = m.xz * s; precise Real yy = m.yy * s; precise Real yz = m.yz * s; precise Real zz = m.zz * s;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
+}

@@ -40,10 +40,10 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Index child = PC_ENDS(tree_ends, n, 0u); Index parent = PC_ENDS(tree_ends, up, 0u); Index joint = PC_ENDS(tree_ends, n, 1u);
   Quad place_c = PC_GATHER(pose, child, 0u); Quad turn_c = PC_GATHER(pose, child, 1u); Quad low_c = PC_GATHER(pose, child, 2u);
   Quad place_p = PC_GATHER(pose, parent, 0u); Quad turn_p = PC_GATHER(pose, parent, 1u); Quad low_p = PC_GATHER(pose, parent, 2u);
-  uint b = pc_is_flipped(PC_PASS t, k); uint c_at = (1u - b) * 2u; uint p_at = b * 2u;  // quads of joint_frame: 0 of body a, 2 of body b
-  Quad anchor_c = PC_GATHER(joint_frame, joint, c_at); Quad axes_c = PC_GATHER(joint_frame, joint, c_at + 1u);
-  Quad anchor_p = PC_GATHER(joint_frame, joint, p_at); Quad axes_p = PC_GATHER(joint_frame, joint, p_at + 1u);
-  Quad head = PC_GATHER(joint_frame, joint, 0u); Quad lower = PC_GATHER(joint_frame, joint, 4u); Quad upper = PC_GATHER(joint_frame, joint, 5u);
+  uint b = pc_is_flipped(PC_PASS t, k); uint c_at = (1u - b) * 2u; uint p_at = b * 2u;  // quads of joint_solved: 0 of body a, 2 of body b
+  Quad anchor_c = PC_GATHER(joint_solved, joint, c_at); Quad axes_c = PC_GATHER(joint_solved, joint, c_at + 1u);
+  Quad anchor_p = PC_GATHER(joint_solved, joint, p_at); Quad axes_p = PC_GATHER(joint_solved, joint, p_at + 1u);
+  Quad head = PC_GATHER(joint_solved, joint, 0u); Quad lower = PC_GATHER(joint_solved, joint, 4u); Quad upper = PC_GATHER(joint_solved, joint, 5u);
   Quad pin = PC_GATHER(joint_impulse, joint, 0u); Quad angle = PC_GATHER(joint_impulse, joint, 1u);
   Quaternion qc = pc_quaternion(turn_c.v, turn_c.s); Quaternion qp = pc_quaternion(turn_p.v, turn_p.s);
   Vec3 rc = pc_rotate(qc, anchor_c.v); Vec3 rp = pc_rotate(qp, anchor_p.v);

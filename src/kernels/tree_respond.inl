@@ -20,10 +20,6 @@ PC_FN Vec3 pc_lower_solve(Sym3 e, Vec3 r) {
   precise Real x = r.x * pc_inverse_or_zero(e.xx); precise Real y = (r.y - e.xy * x) * pc_inverse_or_zero(e.yy); precise Real z = (r.z - e.xz * x - e.yz * y) * pc_inverse_or_zero(e.zz);
   return Vec3(x, y, z);
 }
-PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
-  precise Real xx = m.xx * s; precise Real xy = m.xy * s; precise Real xz = m.xz * s; precise Real yy = m.yy * s; precise Real yz = m.yz * s; precise Real zz = m.zz * s;
-  return pc_sym3(xx, xy, xz, yy, yz, zz);
-}
 PC_FN void pc_nothing_pending(PC_IO Index row) {
   for (uint i = 0u; i < 4u; i++) PC_SCATTER(node_pending, row, i, pc_quad(pc_zero3(), PC_REAL(0.0)));
 }

@@ -1,5 +1,6 @@
 #include "plan/infos.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "pcphys/constants.h"
@@ -46,7 +47,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.joint_mass_scale = Scalar(joint.mass_scale);
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
-  biased.loop_give = Scalar(constants::loop_give);
+  const double epsilon = std::numeric_limits<Scalar>::epsilon();
+  biased.loop_give = Scalar(std::max(constants::loop_give, constants::loop_roundings * epsilon));
   biased.cross_share = Scalar(constants::cross_share);
   biased.row_mass_most = Scalar(constants::row_mass_most);
   biased.idle_speed = Scalar(constants::idle_speed);

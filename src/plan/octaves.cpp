@@ -51,7 +51,7 @@ std::uint8_t highest_octave(const StepSettings& settings) {
 }  // namespace
 
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
-  uneven ? loads_.find(state, trees) : loads_.clear();
+  uneven ? loads_.find(state, trees) : loads_.forget_contacts();
 }
 
 bool Octaves::choose(const WorldState& state, const Forest& forest, const StepSettings& settings, double dt) {

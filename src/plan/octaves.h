@@ -34,6 +34,10 @@ class Islands {
 
 class Octaves {
  public:
+  /// Follows a change of objects, as Loads::find_loops.
+  void update_structure(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing) {
+    loads_.find_loops(state, joints, closing);
+  }
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
   /// Of a step of `dt`. False: they are those of the step before.

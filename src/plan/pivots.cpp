@@ -51,7 +51,7 @@ bool is_locked_otherwise(const AngleFreedom& f) {
 
 }  // namespace
 
-std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state) {
+std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state, const SolvedJoints& joints) {
   std::vector<char> closes(state.bodies.size(), 0);  // by body row: a joint of it closes a loop
   for (const std::uint32_t row : forest.closing()) {
     closes[state.body_ids.row(state.joints[row].body_a)] = 1;
@@ -61,17 +61,17 @@ std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state) {
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.size() != 2 || !state.stands(tree[0].body) || closes[tree[1].body]) continue;
-    const JointRecord& joint = state.joints[tree[1].joint];
-    if (joint.driven() || is_locked_otherwise(joint.def.freedom)) continue;
+    const std::uint32_t joint = tree[1].joint;
+    if (state.joints[joint].driven() || is_locked_otherwise(joints.def(state, joint).freedom)) continue;
     pivots.push_back({i, tree[1].body, tree[1].joint, tree[1].flipped});
   }
   return pivots;
 }
 
-void write_pivots(WorldState& state, std::span<const Pivot> pivots) {
+void write_pivots(WorldState& state, const SolvedJoints& joints, std::span<const Pivot> pivots) {
   Tables& t = state.tables;
   for (const Pivot& p : pivots) {
-    const JointDef& def = state.joints[p.joint].def;
+    const JointDef& def = joints.def(state, p.joint);
     const Vec3 arm = p.flipped ? def.frame_a.position : def.frame_b.position;
     const MassProperties mass{t.get(Buffer::mass, p.body, 3), t.get3(Buffer::mass, p.body, 0)};
     const About found = is_hinge(def.freedom) ? about_hinge(mass, arm, hinge_axis(p, def)) : about(mass, arm);

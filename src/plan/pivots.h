@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "plan/forest.h"
+#include "plan/solved_joints.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -15,8 +16,8 @@ struct Pivot {
   bool flipped;               // the joint's body a is the one that turns
 };
 
-std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state);
+std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state, const SolvedJoints& joints);
 /// What kernels know of them: the buffer joint_pivot.
-void write_pivots(WorldState& state, std::span<const Pivot> pivots);
+void write_pivots(WorldState& state, const SolvedJoints& joints, std::span<const Pivot> pivots);
 
 }  // namespace pcphys

@@ -125,11 +125,12 @@ std::vector<std::uint32_t> closings_of_trees(const Forest& forest, std::span<con
 }  // namespace
 
 void TreeSlots::build(const WorldState& state) {
-  std::vector<JointLink> links, joints;  // joints: without springs between two points, which hold nothing together
+  solved_.build(state);
+  std::vector<JointLink> links, joints;  // joints: without springs between two points, and those that others stand for
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];
     links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index});
-    if (!joint.spring) joints.push_back(links.back());
+    if (!joint.spring && !solved_.stands_back(row)) joints.push_back(links.back());
   }
   std::vector<double> masses(state.bodies.size());
   std::vector<std::uint32_t> ids(state.bodies.size());
@@ -144,12 +145,16 @@ void TreeSlots::build(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     if (state.joints[row].spring) closing_.push_back(row);
   std::ranges::sort(closing_);
-  pivots_ = find_pivots(forest_, state);
+  pivots_ = find_pivots(forest_, state, solved_);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
   shapes_.build(forest_);
   alike_ = shapes_.most_alike();
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
   find_drives(state, links);
+  answered_.clear();
+  for (const std::uint32_t row : forest_.closing())
+    if (!parallel_[row] && (loop_nodes_.node(links[row - 1].a) > 0 || loop_nodes_.node(links[row - 1].b) > 0))
+      answered_.push_back(row);
   width_ = 0;
 }
 

@@ -92,6 +92,7 @@ class TreeSlots {
   void group(OctaveOf of_bodies);
   void pack(std::uint32_t width);
 
+  const SolvedJoints& solved() const { return solved_; }
   const Forest& forest() const { return forest_; }
   /// As contacts see them, and as joints that close loops do.
   const TreeNodes& nodes() const { return nodes_; }
@@ -102,6 +103,8 @@ class TreeSlots {
   std::span<const char> parallel() const { return parallel_; }
   /// Rows of the joints that stand in no tree, and of springs between two points; ascending.
   std::span<const std::uint32_t> closing() const { return closing_; }
+  /// Of them the joints that trees answer.
+  std::span<const std::uint32_t> answered() const { return answered_; }
   /// Whether some joint has a motor or a spring: of those in trees, and of the others.
   bool drives() const { return drives_; }
   bool closing_drives() const { return closing_drives_; }
@@ -115,13 +118,14 @@ class TreeSlots {
   std::uint64_t version() const { return version_; }
 
  private:
+  SolvedJoints solved_;
   Forest forest_;
   void find_parallel(std::span<const JointLink> links);
   void find_drives(const WorldState& state, std::span<const JointLink> links);
 
   TreeNodes nodes_, loop_nodes_;
   std::vector<char> parallel_;
-  std::vector<std::uint32_t> closing_;
+  std::vector<std::uint32_t> closing_, answered_;
   bool drives_ = false, closing_drives_ = false;
   std::uint32_t free_springs_ = 0, alike_ = 0;
   std::vector<Pivot> pivots_;

@@ -211,7 +211,10 @@ struct Stepper::Inside {
     scheduled = s.structure_version;
     other = true;
     schedule.update_structure(s);
-    write_pivots(s, schedule.trees.pivots());
+    runner.keep(s, Buffer::joint_impulse);
+    schedule.trees.solved().write(s);
+    write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+    octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
   }
 
   void update_contacts(const WorldState& s) {

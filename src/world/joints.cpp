@@ -13,21 +13,25 @@ namespace {
 
 double bounded(double angle) { return std::clamp(angle, -constants::free_angle, constants::free_angle); }
 
-void write_joint(Tables& t, std::uint32_t row, const JointDef& d) {
-  t.set3(Buffer::joint_frame, row, 0, d.frame_a.position);
-  t.set(Buffer::joint_frame, row, 3, double(d.freedom.kind));
-  t.set4(Buffer::joint_frame, row, 4, d.frame_a.orientation);
-  t.set3(Buffer::joint_frame, row, 8, d.frame_b.position);
-  t.set4(Buffer::joint_frame, row, 12, d.frame_b.orientation);
+}  // namespace
+
+void write_frames(Tables& t, Buffer buffer, std::uint32_t row, const JointDef& d) {
+  t.set3(buffer, row, 0, d.frame_a.position);
+  t.set(buffer, row, 3, double(d.freedom.kind));
+  t.set4(buffer, row, 4, d.frame_a.orientation);
+  t.set3(buffer, row, 8, d.frame_b.position);
+  t.set4(buffer, row, 12, d.frame_b.orientation);
   const AngleFreedom& f = d.freedom;
   Vec3 lower = f.lower, upper = f.upper;
   if (f.kind == AngleFreedom::Kind::cone_twist) {
     lower = {-f.twist, -constants::free_angle, 0};
     upper = {f.twist, f.cone, 0};
   }
-  t.set3(Buffer::joint_frame, row, 16, {bounded(lower.x), bounded(lower.y), bounded(lower.z)});
-  t.set3(Buffer::joint_frame, row, 20, {bounded(upper.x), bounded(upper.y), bounded(upper.z)});
+  t.set3(buffer, row, 16, {bounded(lower.x), bounded(lower.y), bounded(lower.z)});
+  t.set3(buffer, row, 20, {bounded(upper.x), bounded(upper.y), bounded(upper.z)});
 }
+
+namespace {
 
 enum class Drive { none, of_joint, between_points };
 
@@ -106,7 +110,7 @@ std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<Sp
   const std::uint32_t row = std::uint32_t(s.joints.size()), index = s.joint_ids.allocate(row);
   s.joints.push_back({index, def.a.index, def.b.index, def, spring});
   s.tables.resize(Table::joint, row + 1);
-  write_joint(s.tables, row, def);
+  write_frames(s.tables, Buffer::joint_frame, row, def);
   write_drive(s.tables, row, s.joints[row]);
   if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
   s.structure_version++;

@@ -60,6 +60,9 @@ struct NoCollide {
   bool any() const { return joints > 0 || asked; }
 };
 
+/// What a joint holds, into joint_frame or joint_solved.
+void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointDef& def);
+
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 
