@@ -17,6 +17,10 @@ namespace pcphys::cases {
 /// The step lengths that errors are compared at [s].
 inline constexpr std::array<double, 4> ladder{1.0 / 60, 1.0 / 240, 1.0 / 1200, 1e-4};
 
+/// Longer ones that smooth motion is run at too, since methods of high order are of use there; nothing has a bound there [s].
+inline constexpr std::array<double, 2> long_steps{1.0 / 15, 1.0 / 30};
+bool is_long(double dt);
+
 /// One bound a step of the ladder.
 using Bounds = std::array<double, 4>;
 
@@ -77,6 +81,7 @@ struct Variant {
   std::string name;
   std::function<void(Trial&)> run;
   std::vector<double> steps{ladder.begin(), ladder.end()};
+  bool smooth = false;  // runs at long_steps too
   std::vector<std::uint32_t> substeps{1};
   bool single = true;          // runs in single precision too
   bool direct = false;         // uses `resolve`: in pcphys alone, with steps of its own

@@ -215,9 +215,11 @@ void add_hinges(std::vector<Case>& cases) {
       return [=](Trial& t) { door(t, hinge, motor, reference); };
     };
     const std::string end = std::string(", ") + suffix;
-    doors.variants.push_back({.name = "a, free" + end, .run = run(Motor::none, open), .second_order = "angle [rad]"});
-    doors.variants.push_back({.name = "b, motor" + end, .run = run(Motor::forces, driven)});
-    doors.variants.push_back({.name = "b, drag" + end, .run = run(Motor::drag, driven), .second_order = "angle [rad]"});
+    doors.variants.push_back(
+        {.name = "a, free" + end, .run = run(Motor::none, open), .smooth = true, .second_order = "angle [rad]"});
+    doors.variants.push_back({.name = "b, motor" + end, .run = run(Motor::forces, driven), .smooth = true});
+    doors.variants.push_back(
+        {.name = "b, drag" + end, .run = run(Motor::drag, driven), .smooth = true, .second_order = "angle [rad]"});
   }
   cases.push_back({"A19", "angle limit as a stop", {{.name = "from 90 deg", .run = stop_at_limit, .substeps = {1, 4}}}});
 

@@ -169,24 +169,32 @@ void add_pendulums(std::vector<Case>& cases) {
   const auto top = [](const char* file, const TopBounds& must) {
     return [reference = read_csv(file), must](Trial& t) { heavy_top(t, reference, must); };
   };
-  cases.push_back({"A6",
-                   "heavy symmetric top",
-                   {{.name = "a, steady", .run = top("A06a_heavy_top_steady.csv", steady), .second_order = "azimuth [rad]"},
-                    {.name = "b, cusps", .run = top("A06b_heavy_top_cuspidal.csv", cuspidal), .second_order = "azimuth [rad]"},
-                    {.name = "sleeping", .run = [](Trial& t) { sleeping_top(t, 60, 0, 60, false); }},
-                    {.name = "below critical", .run = [](Trial& t) { sleeping_top(t, 25, 1e-3, 10, true); }}}});
+  cases.push_back(
+      {"A6",
+       "heavy symmetric top",
+       {{.name = "a, steady", .run = top("A06a_heavy_top_steady.csv", steady), .smooth = true, .second_order = "azimuth [rad]"},
+        {.name = "b, cusps",
+         .run = top("A06b_heavy_top_cuspidal.csv", cuspidal),
+         .smooth = true,
+         .second_order = "azimuth [rad]"},
+        {.name = "sleeping", .run = [](Trial& t) { sleeping_top(t, 60, 0, 60, false); }, .smooth = true},
+        {.name = "below critical", .run = [](Trial& t) { sleeping_top(t, 25, 1e-3, 10, true); }, .smooth = true}}});
 
   Case& compound = cases.emplace_back(Case{"A7", "compound pendulum", {}});
   for (const Amplitude& a : amplitudes)
     compound.variants.push_back({.name = a.name,
                                  .run = [a, reference = read_csv(a.file)](Trial& t) { swing(t, a, reference); },
+                                 .smooth = true,
                                  .substeps = {1, 4},
                                  .second_order = "position [m]"});
   compound.variants.push_back({.name = "90 deg, 1000 s", .run = long_swing, .steps = {ladder[0], ladder[1]}, .single = false});
-  cases.push_back(
-      {"A8",
-       "double compound pendulum",
-       {{.name = "from level", .run = double_pendulum, .substeps = {1, 4}, .second_order = "position until 2 s [m]"}}});
+  cases.push_back({"A8",
+                   "double compound pendulum",
+                   {{.name = "from level",
+                     .run = double_pendulum,
+                     .smooth = true,
+                     .substeps = {1, 4},
+                     .second_order = "position until 2 s [m]"}}});
 }
 
 }  // namespace pcphys::cases

@@ -193,16 +193,17 @@ void tumble_with_drag(Trial& trial) {
 void add_rotation(std::vector<Case>& cases) {
   Case& top = cases.emplace_back(Case{"A3", "torque-free symmetric top", {}});
   for (const auto& [name, axis] : {std::pair{"about z", 2}, {"about x", 0}, {"about y", 1}})
-    top.variants.push_back({.name = name, .run = [axis = axis](Trial& t) { symmetric_top(t, axis); }});
+    top.variants.push_back({.name = name, .run = [axis = axis](Trial& t) { symmetric_top(t, axis); }, .smooth = true});
   cases.push_back({"A4",
                    "torque-free asymmetric box",
-                   {{.name = "b, tumble", .run = generic_tumble, .second_order = "attitude [rad]"},
-                    {.name = "a, flips", .run = flips, .second_order = "attitude until 4 s [rad]"},
-                    {.name = "a, flip times", .run = flip_instants, .single = false},
+                   {{.name = "b, tumble", .run = generic_tumble, .smooth = true, .second_order = "attitude [rad]"},
+                    {.name = "a, flips", .run = flips, .smooth = true, .second_order = "attitude until 4 s [rad]"},
+                    {.name = "a, flip times", .run = flip_instants, .smooth = true, .single = false},
                     {.name = "energy 1000 s", .run = long_tumble, .steps = {ladder[0], ladder[1]}, .single = false},
                     {.name = "1e5 steps", .run = many_steps, .steps = {1e-3}}}});
-  cases.push_back(
-      {"A10", "tumbling box with drag", {{.name = "thrown", .run = tumble_with_drag, .second_order = "attitude [rad]"}}});
+  cases.push_back({"A10",
+                   "tumbling box with drag",
+                   {{.name = "thrown", .run = tumble_with_drag, .smooth = true, .second_order = "attitude [rad]"}}});
 }
 
 }  // namespace pcphys::cases

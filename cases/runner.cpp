@@ -35,7 +35,8 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
   for (Precision precision : {Precision::f64, Precision::f32}) {
     const bool twice = precision == Precision::f64;
     if (!(twice ? selection.twice : selection.single && variant.single) || !engine.has(precision)) continue;
-    const std::vector<double> steps = variant.direct ? std::vector<double>{direct_step(precision)} : variant.steps;
+    std::vector<double> steps = variant.direct ? std::vector<double>{direct_step(precision)} : variant.steps;
+    if (variant.smooth) steps.insert(steps.begin(), long_steps.begin(), long_steps.end());
     for (std::uint32_t substeps : variant.substeps)
       for (double dt : steps) {
         const bool slow = std::any_of(variant.slow.begin(), variant.slow.end(), [dt](double s) { return same(s, dt); });
@@ -112,6 +113,7 @@ void add_orders(const Variant& variant, std::vector<Row>& rows) {
   const auto key = [](const Row& row) { return Key{row.peer, row.precision, row.substeps, row.metric}; };
   std::map<Key, std::pair<std::vector<double>, std::vector<double>>> series;
   for (const Row& row : rows) {
+    if (is_long(row.dt)) continue;
     series[key(row)].first.push_back(row.dt);
     series[key(row)].second.push_back(row.error);
   }

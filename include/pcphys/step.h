@@ -22,12 +22,12 @@ struct StepSettings {
   std::uint32_t substeps = 4;
   /// Most by which a step may multiply the sub-steps of an island that needs it (docs/substeps.md); 1: never.
   std::uint32_t refinement = 16;
-  std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is
+  std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is, or fewer where those are enough
   std::uint32_t threads = 1;  // of the CPU, up to 256; 0: as many as the processor runs at a time
   NarrowPhase narrow = NarrowPhase::native;
   int device = -1;            // EGL device; -1: the first that works
   bool host_context = false;  // use the GL context that is current on this thread
-  bool timings = true;        // clock each stage; on GL this waits for the device after each
+  bool timings = true;        // clock each stage (StepReport::ms); on GL this waits for the device after each
 
   double push_speed = 3;               // at which an overlap is undone, at most [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
@@ -52,7 +52,7 @@ struct StepReport {
   std::uint64_t transfer_bytes = 0;  // between host and device
   std::vector<BodyId> frozen;        // in this step; see World::frozen
   double total_ms = 0;
-  std::array<double, std::size_t(Timer::count)> ms{};
+  std::array<double, std::size_t(Timer::count)> ms{};  // by Timer; zeros without StepSettings::timings
 
   explicit operator bool() const { return error.code == ErrorCode::none; }
 };

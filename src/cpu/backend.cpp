@@ -64,17 +64,11 @@ class CpuBackend final : public Backend {
       if (k->lanes == lanes) kernels = k;
     const auto part = kernels->run[std::size_t(kernel)];
     const std::byte* with = infos_ + info * (kernels->f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>));
-    const bool alone = !workers_ || workers_->threads() == 1;
-    const std::uint32_t unit = schema(kernel).domain == Domain::body ? lanes : 1;  // what no piece may cut
-    for (const Range& range : ranges) {
-      if (alone) {
-        part({buffers_.data(), with, range.begin, range.end});
-        continue;
-      }
-      workers_->run((range.end - range.begin + unit - 1) / unit, grain, [&](std::uint32_t begin, std::uint32_t end) {
-        part({buffers_.data(), with, range.begin + begin * unit, range.begin + end * unit});
-      });
+    if (workers_ && workers_->threads() > 1) {
+      share(part, with, ranges, schema(kernel).domain == Domain::body ? lanes : 1);
+      return {};
     }
+    for (const Range& range : ranges) part({buffers_.data(), with, range.begin, range.end});
     return {};
   }
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override {
@@ -86,6 +80,14 @@ class CpuBackend final : public Backend {
  private:
   template <class Scalar> static bool take(Scalar* flag) { return std::exchange(*flag, Scalar(0)) != 0; }
   static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
+
+  /// `unit`: what no piece may cut.
+  void share(void (*part)(const KernelCall&), const std::byte* with, std::span<const Range> ranges, std::uint32_t unit) const {
+    for (const Range& range : ranges)
+      workers_->run((range.end - range.begin + unit - 1) / unit, grain, [&](std::uint32_t begin, std::uint32_t end) {
+        part({buffers_.data(), with, range.begin + begin * unit, range.begin + end * unit});
+      });
+  }
 
   const CpuKernels& kernels_;
   std::vector<const CpuKernels*> narrower_;  // ascending

@@ -17,7 +17,7 @@ PC_FN Real pc_least_moment(PC_IO Slot n) {
   Vec3 inverse = pc_ld3_tree(PC_PASS n, TREE_MOMENTS); precise Real light = pc_max(inverse.x, pc_max(inverse.y, inverse.z)) * PC_LD(tree_rows, n, TREE_TOTAL);
   return pc_inverse_or_zero(light);
 }
-PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
+PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   Real fast = pc_max(PC_LD(tree_rows, n, TREE_FAST), PC_LD(tree_rows, up, TREE_FAST));
   Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
   Mat3 ct = pc_transpose(h.c);
@@ -53,7 +53,8 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up) {
   Sym6 rest; rest.l = pc_sym_sub(h.l, pc_products(w0, w1, w2, u0, u1, u2)); rest.a = pc_sym_sub(h.a, pc_products(w3, w4, w5, u3, u4, u5));
   rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(w0, u3), pc_dot(w0, u4), pc_dot(w0, u5))), pc_sub(h.c.b, Vec3(pc_dot(w1, u3), pc_dot(w1, u4), pc_dot(w1, u5))), pc_sub(h.c.c, Vec3(pc_dot(w2, u3), pc_dot(w2, u4), pc_dot(w2, u5))));
   pc_sts_tree(PC_PASS n, TREE_A, rest.l); pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c);
-  if (!PC_ANY(PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0))) return;  // lint: allow (of a fixed root it is not used)
+  Mask free = PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0);
+  if (parent == 0u && !PC_ANY(free)) return;  // lint: allow (of a fixed root it is not used)
   pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
 }
 PC_FN void pc_factor(PC_IO Slot m, Tree t) {
@@ -62,7 +63,7 @@ PC_FN void pc_factor(PC_IO Slot m, Tree t) {
     Slot n = PC_NODE(m, t.first + k); Sym6 h; h.l = pc_diagonal(PC_LD(tree_rows, n, TREE_MASS)); h.c = pc_mat3(z, z, z); h.a = pc_lds_tree(PC_PASS n, TREE_INERTIA);
     pc_sth_tree(PC_PASS n, TREE_H, h);
   }
-  for (uint i = 1u; i < t.count; i++) { uint k = t.count - i; pc_factor_node(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k))); }
+  for (uint i = 1u; i < t.count; i++) { uint k = t.count - i; uint parent = pc_parent(PC_PASS t, k); pc_factor_node(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + parent), parent); }
   // a fixed root answers nothing
   Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
   Sym6 r; Sym3 none = pc_diagonal(PC_REAL(0.0)); r.l = none; r.c = pc_mat3(z, z, z); r.a = none;
