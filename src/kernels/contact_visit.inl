@@ -39,8 +39,8 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real he
 
 // Accumulated impulses of the four points and of friction.
 struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
-struct Gaps { Real s0; Real s1; Real s2; Real s3; };  // separations of now
 #ifndef PC_MEAN
+struct Gaps { Real s0; Real s1; Real s2; Real s3; };  // separations of now
 #include "contact_settle.inl"
 #endif
 
@@ -66,8 +66,12 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
   precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_held(0u, m0)); precise Real e0 = k0 - l0;
-  bool more = PC_ANY(pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u))) > PC_REAL(0.0));
-  Rows now; now.k0 = k0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Gaps gap; gap.s0 = s0; gap.s1 = s0; gap.s2 = s0; gap.s3 = s0;
+  Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
+  bool more = PC_ANY(pc_max(others, pc_max(l1, pc_max(l2, l3))) > PC_REAL(0.0));
+  Rows now; now.k0 = k0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f;
+#ifndef PC_MEAN
+  Gaps gap; gap.s0 = s0; gap.s1 = s0; gap.s2 = s0; gap.s3 = s0;
+#endif
   if (more) {  // lint: allow (as said)
     Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
     precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
@@ -81,7 +85,9 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
     precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
     precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
     precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_held(3u, m3));
+#ifndef PC_MEAN
     gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
+#endif
   }
 #ifndef PC_MEAN
   Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
