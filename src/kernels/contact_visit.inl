@@ -66,7 +66,8 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
   precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_held(0u, m0)); precise Real e0 = k0 - l0;
-  bool more = PC_ANY(pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u))) > PC_REAL(0.0));
+  Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
+  bool more = PC_ANY(pc_max(others, pc_max(l1, pc_max(l2, l3))) > PC_REAL(0.0));
   Rows now; now.k0 = k0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f;
 #ifndef PC_MEAN
   Gaps gap; gap.s0 = s0; gap.s1 = s0; gap.s2 = s0; gap.s3 = s0;

@@ -32,9 +32,9 @@ PC_FN void pc_remember_joint(PC_IO Tree t, Slot n, uint k) {
   PC_SCATTER(joint_impulse, joint, 1u, pc_quad(pc_snap3(Vec3(r0, r1, r2)), PC_REAL(0.0)));
 }
 
-// 1 where a gap of a node's pin is more than a share of the arms, given as its square.
+// 1 where a gap of a node's pin is more than a share, given as its square, of the body's arm. (That of its parent may be long: an anchor's.)
 PC_FN Real pc_gap_over(PC_IO Slot n, Vec3 gap, Real share_squared) {
-  Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 rp = pc_ld3_tree(PC_PASS n, TREE_RP); precise Real most = (pc_dot(rc, rc) + pc_dot(rp, rp)) * share_squared;
+  Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); precise Real most = pc_dot(rc, rc) * share_squared;
   return pc_select(pc_dot(gap, gap) > most, PC_REAL(1.0), PC_REAL(0.0));
 }
 // 1 where some gap of the tree at the prediction is.
@@ -69,7 +69,7 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
   pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
 }
 
-// The push that closes gaps of more than 32 epsilon of the arms, of all trees of the block or of none.
+// The push that closes gaps of more than 32 epsilon of the arm, of all trees of the block or of none.
 PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0);
   for (uint k = 1u; k < t.count; k++) {
@@ -82,12 +82,16 @@ PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
     pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
     for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
   } else {
-    for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_zero3()); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_zero3()); }
+    for (uint k = 0u; k < t.count; k++) {  // what it would leave
+      Slot n = PC_NODE(m, t.first + k); Vec3 zero = pc_zero3(); Six none = pc_six(zero, zero); pc_st6_tree(PC_PASS n, TREE_F, none); pc_st6_tree(PC_PASS n, TREE_X, none);
+      pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, zero); pc_st3_tree(PC_PASS n, TREE_CHANGE, zero);
+      if (k > 0u) pc_st3_tree(PC_PASS n, TREE_PUSH, zero);
+    }
   }
 }
 
-// What is rounding (8 epsilon of the arms) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
-// 3e-5 of the arms was left, since one leaves about a tenth of it or less: fast whips come to that.
+// What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
+// 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
   for (uint k = 0u; k < t.count; k++) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
@@ -95,7 +99,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   for (uint turn = 0u; turn < 4u; turn++) {
     if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
     if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted);
-    Real left = pc_gap_left(PC_PASS m, t, PC_REAL(1e-9));
+    Real left = pc_gap_left(PC_PASS m, t, PC_REAL(2e-9));
     pc_newton_step(PC_PASS m, t, wanted);
     wanted = pc_min(wanted, left);
   }
