@@ -165,7 +165,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
-  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(arms.a, arms.a) + pc_dot(arms.b, arms.b);
+  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   Mask hits = pc_and(mine, here > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
@@ -213,8 +213,9 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
   BodyState before_a = a; BodyState before_b = b;
   Vec3 impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); Vec3 couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
-  // a body that turns far answers otherwise there than the rows think: the impulse leaves no more energy than e allows
-  Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
+  // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not close all at once: the
+  // impulse leaves no more energy than e allows
+  Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b)));
   precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, impulse, couple);
   Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(impulse, share), pc_scale(couple, share));
