@@ -122,6 +122,21 @@ TEST_CASE("C6: two bodies that both move, head on and off centre") {
   }
 }
 
+TEST_CASE("C6: what another sends against a wall that was out of its own reach") {
+  for (double dt : {1.0 / 60, 1.0 / 120})
+    for (int i = 0; i < 50; i++) {
+      Run run({i % 2 ? Precision::f64 : Precision::f32}, {}, 4);
+      run.add(wall({0, 0, 0}, {0.01, 100, 100}));
+      BodyDef slow = thing(i % 4 < 2 ? Thing::ball5 : Thing::box10, {-1, 0, 0}, {0.1, 0, 0}, 1);
+      const BodyId id = run.add(slow);
+      run.add(thing(Thing::ball5, {-2 - 0.05 * i, 0.0005 * i, 0}, {300, 0, 0}, 1));
+      for (int k = 0; k < 8; k++) {
+        run.step(dt);
+        CHECK(run.position(id).x < 0);
+      }
+    }
+}
+
 namespace {
 
 /// A closed box of walls 0.2 m thick about the origin, half as wide inside as `half` says, full of fast balls and boxes.

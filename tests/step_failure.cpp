@@ -51,6 +51,7 @@ class FailingBackend final : public Backend {
   Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool barrier) override {
     return perhaps([&] { return gl_->run(kernel, info, ranges, lanes, barrier); });
   }
+  Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override { return gl_->take_flag(buffer, quad); }
   Status finish() override {
     return perhaps([&] { return gl_->finish(); });
   }

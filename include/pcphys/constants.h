@@ -86,7 +86,7 @@ inline constexpr double rest_roundings = 32;
 
 /// How often a sub-step looks for impacts, at most, while there are any: what one hands on, the next body hands on again, as
 /// in Newton's cradle.
-inline constexpr unsigned impact_sweeps = 16;
+inline constexpr unsigned impact_sweeps = 8;
 
 /// Proxies of the broad phase are fattened by this, so that most steps change no pair [m].
 inline constexpr double broad_margin = 0.05;

@@ -99,6 +99,7 @@ void Detector::rebuild(const WorldState& s) {
   tight_.assign(s.shapes.size(), {});
   reach_.assign(s.shapes.size(), 0);
   hints_.clear();
+  standing_.clear();
   bool some_dynamic = false;
   thinnest_ = std::numeric_limits<float>::infinity();
   std::uint32_t solid = 0;
@@ -122,6 +123,7 @@ void Detector::rebuild(const WorldState& s) {
                    jointed[row],
                    shape.def.convex.data()};
     if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
+    if (!s.responds(row)) standing_.push_back(i);
     pairs_.add(i, !s.stands(row));
     some_dynamic |= s.responds(row);
     solid++;
@@ -206,6 +208,19 @@ bool Detector::find_strays(const WorldState& s, const AlignedBytes& before) {
                                                 : collect_strays(s, reinterpret_cast<const double*>(before.data()));
 }
 
+// Whether something that stands lies on the way from q to p and was too far off to be paired.
+template <class Scalar> bool Detector::passes_unseen(std::uint32_t shape, const Scalar* q, const Scalar* p) const {
+  const float r = float(proxies_[shape].radius);
+  Aabb way;
+  for (int k = 0; k < 3; k++) {
+    way.min[k] = float(std::min(p[k], q[k])) - r;
+    way.max[k] = float(std::max(p[k], q[k])) + r;
+  }
+  for (const std::uint32_t i : standing_)
+    if (overlap(tight_[i], way) && !overlap(tight_[i], tight_[shape])) return true;
+  return false;
+}
+
 // A body that went its reach and half of its thickness is at most half sunk into what it never saw: the next step finds it.
 // (Bodies on joints are left out, as they are of look_ahead.)
 template <class Scalar> bool Detector::collect_strays(const WorldState& s, const Scalar* before) {
@@ -216,10 +231,11 @@ template <class Scalar> bool Detector::collect_strays(const WorldState& s, const
     if (!proxy.alive || !proxy.responds || proxy.jointed) continue;
     const Scalar *p = now + proxy.body * reals_of(Buffer::pose), *q = before + proxy.body * reals_of(Buffer::pose);
     const float x = float(p[0] - q[0]), y = float(p[1] - q[1]), z = float(p[2] - q[2]), seen = reach_[i] + 0.5f * proxy.inner;
-    if (x * x + y * y + z * z <= seen * seen) continue;
+    const float way = x * x + y * y + z * z;
+    if (way <= seen * seen || !passes_unseen(i, q, p)) continue;
     if (!strays_) went_.assign(s.bodies.size(), 0);
     strays_ = found = true;
-    went_[proxy.body] = std::max(went_[proxy.body], std::sqrt(x * x + y * y + z * z));
+    went_[proxy.body] = std::max(went_[proxy.body], std::sqrt(way));
   }
   return found;
 }

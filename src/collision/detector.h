@@ -43,7 +43,7 @@ class Detector {
   Status find_contacts(WorldState& state, double dt, const Options& options, Found& found);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
-  /// After the step: whether some body went further than it was looked for, so far that it could be past what it never saw.
+  /// After the step: whether some body went further than it was looked for, so far that it could be past what stands.
   /// `before`: the poses that the step began with. `find_pairs` looks as far for them as they went, until `forget_strays`.
   bool find_strays(const WorldState& state, const AlignedBytes& before);
   void forget_strays();
@@ -76,6 +76,7 @@ class Detector {
 
   static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
   void rebuild(const WorldState& state);
+  template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
   template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
   template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
   template <class Scalar>
@@ -102,7 +103,8 @@ class Detector {
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   bool possible_ = false;
   std::vector<Proxy> proxies_;
-  float thinnest_ = 0;  // half the least thickness of what moves by forces [m]
+  std::vector<std::uint32_t> standing_;  // shapes of fixed and kinematic bodies
+  float thinnest_ = 0;                   // half the least thickness of what moves by forces [m]
   std::vector<Aabb> tight_;
   std::vector<float> reach_;   // how far a shape may come this step [m]
   std::vector<Twist> twists_;  // of bodies, by row

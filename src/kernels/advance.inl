@@ -59,5 +59,5 @@ PC_FN void pc_kernel(PC_IO Index i) {
   PC_SCATTER(pose, i, 2u, place_low);
   PC_SCATTER(pose, i, 3u, turned_low);
   PC_SCATTER(delta, i, 0u, moved);
-  PC_SCATTER(delta, i, 1u, pc_quad(rotated.v, PC_REAL(0.0)));
+  PC_SCATTER(delta, i, 1u, pc_quad(rotated.v, rotated.s));
 }

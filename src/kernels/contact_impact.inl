@@ -11,13 +11,14 @@
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_masses.inl"
+#include "contact_shift.inl"
 #include "free_responses.inl"
 #include "contact_coulomb.inl"
 #include "contact_turned.inl"
 #include "contact_calming.inl"
 
-// u_aim: the velocity u that the row is to leave with; closes: 1 or 0
-struct Closing { Real t; Real u_aim; Real closes; };
+// u_aim: the velocity u that the row is to leave with; closes: 1 or 0; bounces: 1 where it closes fast
+struct Closing { Real t; Real u_aim; Real closes; Real bounces; };
 PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Real e, Mask always) {
   Real h = PC_INFO(h); Real zero = PC_REAL(0.0);
   precise Real half_change = acceleration * h * PC_REAL(0.5); precise Real v = u - half_change;
@@ -35,7 +36,7 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < zero)));
   Real bounce = pc_select(fast, e, zero);
   precise Real aim = half_change - acceleration * t - bounce * impact;
-  Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); return r;
+  Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); r.bounces = pc_select(fast, r.closes, zero); return r;
 }
 PC_FN Real pc_impact_row(Real j, Real u, Closing c, Real mass) {
   precise Real next = j - mass * (u - c.u_aim); precise Real acts = pc_max(next, PC_REAL(0.0)) * c.closes; return acts;
@@ -51,7 +52,7 @@ PC_FN Acceleration pc_acceleration(PC_IO Index i, BodyState b) {
 }
 
 // The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise).
-PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits) {
+PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits, Real strike) {
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
   precise Real back = -t; Vec3 shift = pc_scale(dv, back);
@@ -59,7 +60,7 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
   Quad turned = PC_GATHER(delta, i, 1u);
-  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); precise Real struck = turned.s + PC_REAL(1.0); PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
+  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); precise Real struck = turned.s + strike; PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
@@ -94,33 +95,44 @@ PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   return pc_madd(come, relative, until);
 }
 
+// Gaps: of the centre, and by how the bodies turned.
+PC_FN Shift pc_gap_shift(Vec3 n, Vec3 t1, Vec3 t2, Arms arms, Quad moved_a, Quad moved_b, Quad turned_a, Quad turned_b) {
+  Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, arms.a)); Vec3 shift_b = pc_add(moved_b.v, pc_cross(turned_b.v, arms.b));
+  Vec3 turn = pc_sub(turned_b.v, turned_a.v);
+  Shift r; r.n = pc_dot(n, pc_sub(shift_b, shift_a)); r.turn1 = pc_dot(t1, turn); r.turn2 = pc_dot(t2, turn); return r;
+}
+
 // What approaches no faster than the threshold does not bounce: |v*| is at most |u| + |A| h / 2, and has to be |A| h above it.
-PC_FN Mask pc_approaches_fast(PC_IO Slot m, Twist v, uint i, Mask before) {
-  precise Real u = v.vn + PC_LD(contact_rows, m, ROW_B + i) * v.w1 - PC_LD(contact_rows, m, ROW_A + i) * v.w2;
-  precise Real slowest = PC_INFO(restitution_threshold) * PC_REAL(-0.99); return pc_or(before, u < slowest);
+// Then the gap closes by at most |u| h + |A| h^2 / 8, less than 5 / 4 |u| h.
+PC_FN Mask pc_closes_fast(PC_IO Slot m, Twist v, Shift shift, uint i, Mask before) {
+  Real a = PC_LD(contact_rows, m, ROW_A + i); Real b = PC_LD(contact_rows, m, ROW_B + i);
+  precise Real u = v.vn + b * v.w1 - a * v.w2; precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + b * shift.turn1 - a * shift.turn2);
+  precise Real slowest = PC_INFO(restitution_threshold) * PC_REAL(-0.99); precise Real most = u * PC_INFO(h) * PC_REAL(-1.3);
+  return pc_or(before, pc_and(u < slowest, s < most));
 }
 PC_FN Mask pc_may_hit(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
-  Vec3 path = pc_impact_path(PC_PASS m, n, pc_sub(b.v, a.v), pc_sub(moved_b.v, moved_a.v));
-  Twist v = pc_twist(a, b, pc_arms(PC_PASS m, pc_zero3(), path), n, t1, t2);
+  Arms arms = pc_arms(PC_PASS m, pc_zero3(), pc_impact_path(PC_PASS m, n, pc_sub(b.v, a.v), pc_sub(moved_b.v, moved_a.v)));
+  Twist v = pc_twist(a, b, arms, n, t1, t2);
+  Shift shift = pc_gap_shift(n, t1, t2, arms, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
   Mask fast = pc_impact_always(PC_PASS m);
-  fast = pc_approaches_fast(PC_PASS m, v, 0u, fast); fast = pc_approaches_fast(PC_PASS m, v, 1u, fast);
-  fast = pc_approaches_fast(PC_PASS m, v, 2u, fast); fast = pc_approaches_fast(PC_PASS m, v, 3u, fast);
-  return pc_and(pc_impact_mine(PC_PASS m), fast);
+  fast = pc_closes_fast(PC_PASS m, v, shift, 0u, fast); fast = pc_closes_fast(PC_PASS m, v, shift, 1u, fast);
+  fast = pc_closes_fast(PC_PASS m, v, shift, 2u, fast); fast = pc_closes_fast(PC_PASS m, v, shift, 3u, fast);
+  return fast;
 }
-// How often the two bodies were struck in this sub-step: as often as when they were last looked at, and nothing has changed.
+// How often the two bodies were struck in this step: as often as when they were last looked at, and nothing has changed.
 PC_FN Real pc_struck(PC_IO Slot m) {
   Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 1u); Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 1u);
   precise Real both = a.s + b.s; return both;
 }
 
-PC_FN_LARGE void pc_hit(PC_IO Slot m) {
+PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Real zero = PC_REAL(0.0);
   Real e = PC_LD(contact_rows, m, ROW_E);
-  Mask always = pc_impact_always(PC_PASS m); Mask mine = pc_impact_mine(PC_PASS m);
+  Mask always = pc_impact_always(PC_PASS m);
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
@@ -140,8 +152,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
 
   // gaps, and accelerations in the contact frame
   Quad turned_a = PC_GATHER(delta, ia, 1u); Quad turned_b = PC_GATHER(delta, ib, 1u);
-  Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, arms.a)); Vec3 shift_b = pc_add(moved_b.v, pc_cross(turned_b.v, arms.b));
-  Vec3 turn = pc_sub(turned_b.v, turned_a.v); Real shift_n = pc_dot(n, pc_sub(shift_b, shift_a)); Real turn1 = pc_dot(t1, turn); Real turn2 = pc_dot(t2, turn);
+  Shift shift = pc_gap_shift(n, t1, t2, arms, moved_a, moved_b, turned_a, turned_b); Real shift_n = shift.n; Real turn1 = shift.turn1; Real turn2 = shift.turn2;
   Acceleration pull_a = pc_acceleration(PC_PASS ia, a); Acceleration pull_b = pc_acceleration(PC_PASS ib, b);
   Vec3 pull = pc_sub(pc_add(pull_b.a, pc_cross(pull_b.turn, arms.b)), pc_add(pull_a.a, pc_cross(pull_a.turn, arms.a)));
   Vec3 spin_up = pc_sub(pull_b.turn, pull_a.turn); Real pull_n = pc_dot(n, pull); Real up1 = pc_dot(t1, spin_up); Real up2 = pc_dot(t2, spin_up);
@@ -154,7 +165,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
   Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
-  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(arms.a, arms.a) + pc_dot(arms.b, arms.b);
+  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   Mask hits = pc_and(mine, here > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
@@ -192,8 +203,9 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
   Friction f = pc_coulomb(PC_PASS m, after, push.n, PC_REAL(1.0), zero, zero, zero);
   precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
 
-  // another sweep is to follow
-  PC_RAISE(hits, velocity_parts, 2u);
+  // another sweep is to follow; what is stopped slowly is for the next sub-step
+  Mask strikes = pc_and(hits, pc_max(pc_max(c0.bounces, c1.bounces), pc_max(c2.bounces, c3.bounces)) > zero);
+  PC_RAISE(strikes, velocity_parts, 2u);
   // what has bounced does not bounce again at the end of the step
   PC_ST(contact_rows, m, ROW_APPROACH, pc_select(j0 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH))); PC_ST(contact_rows, m, ROW_APPROACH + 1u, pc_select(j1 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 1u)));
   PC_ST(contact_rows, m, ROW_APPROACH + 2u, pc_select(j2 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 2u))); PC_ST(contact_rows, m, ROW_APPROACH + 3u, pc_select(j3 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 3u)));
@@ -201,23 +213,30 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m) {
   Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
   BodyState before_a = a; BodyState before_b = b;
   Vec3 impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); Vec3 couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
-  // a body that turns far answers otherwise there than the rows think: the impulse leaves no more energy than e allows
-  Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
+  // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not close all at once: the
+  // impulse leaves no more energy than e allows
+  Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b)));
   precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, impulse, couple);
   Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(impulse, share), pc_scale(couple, share));
-  pc_set_back(PC_PASS ia, before_a, a, t, hits); pc_set_back(PC_PASS ib, before_b, b, t, hits);
+  Real strike = pc_select(strikes, PC_REAL(1.0), zero);
+  pc_set_back(PC_PASS ia, before_a, a, t, hits, strike); pc_set_back(PC_PASS ib, before_b, b, t, hits, strike);
 }
 
-PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask mine = pc_impact_mine(PC_PASS m);
-  if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
-  // a sweep that is not the first comes in the coefficients of the relax pass: it looks at bodies that were struck since the last look
+// A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at bodies that were struck since
+// it looked last.
+PC_FN Mask pc_unseen(PC_IO Slot m) {
   Mask flight = pc_impact_always(PC_PASS m); Real kept = PC_LD(contact_rows, m, ROW_SEEN); Real struck = pc_struck(PC_PASS m);
-  precise Real since = struck - pc_select(flight, PC_REAL(0.0), kept);
-  Mask unseen = pc_or(PC_INFO(load_ahead) < PC_REAL(0.5), pc_abs(since) > PC_REAL(0.5));
-  if (!PC_ANY(pc_and(mine, unseen))) return;  // lint: allow (nothing has changed)
   PC_ST(contact_rows, m, ROW_SEEN, pc_select(flight, kept, struck));
-  if (PC_ANY(pc_may_hit(PC_PASS m))) pc_hit(PC_PASS m);  // lint: allow (nothing to do otherwise)
+  precise Real since = struck - pc_select(flight, PC_REAL(0.0), kept); return pc_abs(since) > PC_REAL(0.5);
+}
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
+  if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
+  if (PC_ANY(again)) {  // lint: allow (the same for all)
+    mine = pc_and(mine, pc_unseen(PC_PASS m));
+    if (!PC_ANY(mine)) return;  // lint: allow (nothing has changed)
+  }
+  if (PC_ANY(pc_and(mine, pc_may_hit(PC_PASS m)))) pc_hit(PC_PASS m, mine);  // lint: allow (nothing to do otherwise)
 }
 #undef PC_SOME_ROWS
