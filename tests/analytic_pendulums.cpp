@@ -27,11 +27,10 @@ TEST_CASE("A6: a heavy top keeps its spin and its angular momentum, and its axis
   for (const Mode& mode : precisions()) check_rows(rows_of("A6", mode));
 }
 
-TEST_CASE("A9: a door on a hinge, let go and with drag") {
-  for (const Mode& mode : precisions()) {
-    check_rows(rows_of("A9", mode, {}, "a, free, hinge"));
-    check_rows(rows_of("A9", mode, {}, "b, drag, hinge"));
-  }
+TEST_CASE("A9: a door on a hinge or on two pins, let go and with drag") {
+  for (const Mode& mode : precisions())
+    for (const char* variant : {"a, free, hinge", "b, drag, hinge", "a, free, two pins", "b, drag, two pins"})
+      check_rows(rows_of("A9", mode, {}, variant));
 }
 
 TEST_CASE("A20: a pendulum under steps of changing length") {

@@ -29,9 +29,9 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
   // a light body's spin between heavy ones is lost in the rounding of their inertia: what its own lacks is added (docs/joint-trees.md)
   // (pins that remember no impulse may be of any stiffness)
-  precise Real rounding = PC_INFO(rounding) * PC_REAL(8.0); precise Real unknown = PC_INFO(rounding) * PC_REAL(256.0);
+  precise Real rounding = PC_INFO(rounding) * PC_REAL(64.0); precise Real unknown = PC_INFO(rounding) * PC_REAL(256.0);
 #ifdef PC_DRIVES
-  unknown = pc_select(pc_drive_lasts(PC_PASS n), rounding, unknown);
+  unknown = pc_select(pc_drive_lasts(PC_PASS n), PC_INFO(rounding), unknown);
 #endif
   // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
   Real share = pc_select(fast > PC_REAL(0.0), rounding, unknown); precise Real all = xx + yy + zz;

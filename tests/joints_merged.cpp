@@ -1,0 +1,100 @@
+// Pins several pins between the same two bodies: they are solved as one joint (src/plan/solved_joints.h), and stay what they were to the host.
+#include "support_physics.h"
+
+using namespace physics;
+
+namespace {
+
+BodyDef plate(Vec3 at) {
+  BodyDef def;
+  def.shapes = {ShapeDef::box({0.5, 0.02, 1})};
+  def.shapes[0].filter.mask = 0;
+  def.mass = 10;
+  def.pose.position = at;
+  return def;
+}
+JointId pin(Run& run, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b, const AngleFreedom& freedom = {}) {
+  JointDef def;
+  def.a = a;
+  def.b = b;
+  def.frame_a.position = at_a;
+  def.frame_b.position = at_b;
+  def.freedom = freedom;
+  const auto made = run.world.create_joint(def);
+  REQUIRE(made);
+  return *made;
+}
+std::uint32_t rows(Run& run) { return run.stepper.step(run.world, 1.0 / 240).joints_as_rows; }
+
+}  // namespace
+
+TEST_CASE("merged joints: two pins swing as a hinge does") {
+  for (const Mode& mode : precisions()) {
+    Run pins(mode, {0, -9.81, 1}), hinge(mode, {0, -9.81, 1});
+    const BodyId a = pins.add(plate({0.5, 0, 0})), b = hinge.add(plate({0.5, 0, 0}));
+    const JointId top = pin(pins, pins.world.ground(), {0, 0, 0.9}, a, {-0.5, 0, 0.9});
+    const JointId low = pin(pins, a, {-0.5, 0, -0.9}, pins.world.ground(), {0, 0, -0.9});  // the other way about
+    JointDef def;
+    def.a = hinge.world.ground();
+    def.b = b;
+    def.frame_a.orientation = axis_angle({0, 1, 0}, -std::acos(0.0));
+    def.frame_b = {{-0.5, 0, 0}, def.frame_a.orientation};
+    def.freedom = AngleFreedom::hinge();
+    REQUIRE(hinge.world.create_joint(def));
+    pins.step(1.0 / 240, 480);
+    hinge.step(1.0 / 240, 480);
+    CHECK(rows(pins) == 0);
+    CHECK(rows(hinge) == 0);
+    CHECK(length(pins.position(a) - hinge.position(b)) <= (mode.is_double() ? 1e-12 : 2e-5));
+    for (const JointId joint : {top, low}) CHECK(*pins.world.joint_separation(joint) <= (mode.is_double() ? 1e-12 : 2e-6));
+    CHECK((pins.world.joint(top)->frame_b.position == Vec3{-0.5, 0, 0.9}));
+  }
+}
+
+TEST_CASE("merged joints: three pins hold as a weld") {
+  for (const Mode& mode : precisions()) {
+    Run run(mode, {0, -9.81, 0}, 4);
+    const BodyId a = run.add(plate({0.5, 0, 0}));
+    JointId joints[3];
+    int i = 0;
+    for (const Vec3 at : {Vec3{0, 0, 0.9}, Vec3{0, 0, -0.9}, Vec3{0.3, 0, 0}})
+      joints[i++] = pin(run, run.world.ground(), at, a, at - Vec3{0.5, 0, 0});
+    run.step(1.0 / 240, 480);
+    CHECK(rows(run) == 0);
+    CHECK(length(run.position(a) - Vec3{0.5, 0, 0}) <= 1e-4);
+    for (const JointId joint : joints) CHECK(*run.world.joint_separation(joint) <= 1e-4);
+  }
+}
+
+TEST_CASE("merged joints: pins in one place are one pin, and what does not match meets in the middle") {
+  for (const Mode& mode : precisions()) {
+    Run one(mode, {1, -9.81, 1}), two(mode, {1, -9.81, 1});
+    const BodyId a = one.add(plate({0.5, 0, 0})), b = two.add(plate({0.5, 0, 0}));
+    pin(one, one.world.ground(), {}, a, {-0.5, 0, 0});
+    for (int i = 0; i < 2; i++) pin(two, two.world.ground(), {}, b, {-0.5, 0, 0});
+    one.step(1.0 / 240, 240);
+    two.step(1.0 / 240, 240);
+    CHECK(one.world.hash() != 0);
+    CHECK((one.position(a) == two.position(b)));
+
+    Run uneven(mode, {0, -9.81, 0});
+    const BodyId c = uneven.add(plate({0.5, 0, 0}));
+    const JointId top = pin(uneven, uneven.world.ground(), {0, 0, 1}, c, {-0.5, 0, 0.9});
+    const JointId low = pin(uneven, uneven.world.ground(), {0, 0, -1}, c, {-0.5, 0, -0.9});
+    uneven.step(1.0 / 240, 480);
+    for (const JointId joint : {top, low}) CHECK(*uneven.world.joint_separation(joint) == doctest::Approx(0.1).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("merged joints: joints with angles of their own stay as they are") {
+  for (const Mode& mode : precisions()) {
+    Run run(mode, {0, -9.81, 0}, 4);
+    const BodyId a = run.add(plate({0.5, 0, 0}));
+    pin(run, run.world.ground(), {0, 0, 0.9}, a, {-0.5, 0, 0.9});
+    const JointId second = pin(run, run.world.ground(), {0, 0, -0.9}, a, {-0.5, 0, -0.9}, AngleFreedom::cone_and_twist(1, 1));
+    CHECK(rows(run) == 1);
+    REQUIRE(run.world.destroy(second));
+    pin(run, run.world.ground(), {0, 0, -0.9}, a, {-0.5, 0, -0.9});
+    CHECK(rows(run) == 0);
+  }
+}
