@@ -28,7 +28,7 @@ const uint ROW_SCALE = 59u;   // of all effective masses in this sub-step, see p
 const uint ROW_IMPACT = 60u;  // contact_impact's: below 0 none of it, 0 where it bounces, above 0 always
 const uint ROW_PATH = 61u;    // b's way against a until they meet
 // impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
-// the step 8..11, slow means 12..15
+// the step 8..11; 12..15: slow means where a body stands in a joint tree, else the normal impulses that the sub-step before began with
 const uint IMPULSE_T = 4u;
 const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;

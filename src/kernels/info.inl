@@ -11,6 +11,7 @@ PC_INFO_FIELD(impulse_ratio, "h / (h of the last step): remembered impulses scal
 PC_INFO_FIELD(contact_rate, "share of an overlap removed per second [1/s]; 0 in the relax phase")
 PC_INFO_FIELD(contact_impulse_scale, "share of its impulse that a soft contact lets go of; 0 in the relax phase")
 PC_INFO_FIELD(contact_preload, "of what goes beyond this change of its velocity [m/s]")
+PC_INFO_FIELD(impulse_trend, "share by which a change of a normal impulse goes on in the next sub-step")
 PC_INFO_FIELD(tree_contact_rate, "the first two of contacts with joint trees")
 PC_INFO_FIELD(tree_contact_impulse_scale, "")
 PC_INFO_FIELD(mean_share, "share of a sub-step's impulse in its slow mean")

@@ -41,6 +41,7 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
   biased.contact_preload = Scalar(constants::contact_preload * length(gravity) * h);
+  biased.impulse_trend = Scalar(constants::impulse_trend);
   biased.tree_contact_rate = Scalar(of_tree.rate);
   biased.tree_contact_impulse_scale = Scalar(of_tree.impulse_scale);
   biased.mean_share = Scalar(constants::mean_impulse_share);
