@@ -26,6 +26,7 @@ template <class Scalar>
 void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double last_substep, InfoOf<Scalar> (&infos)[phase_count]) {
   const double ratio = last_substep > 0 ? h / last_substep : 1;
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
+  const Soft standing = soft(constants::standing_contact_frequency_times_h, constants::standing_contact_damping_ratio, h);
   const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
 
@@ -40,6 +41,13 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
+  biased.standing_rate = Scalar(standing.rate);
+  biased.standing_impulse_scale = Scalar(standing.impulse_scale);
+  biased.friction_band = Scalar(constants::friction_band);
+  biased.gap_weight = Scalar(constants::gap_weight);
+  biased.settled_load = Scalar(constants::settled_load);
+  biased.settled_friction = Scalar(constants::settled_friction);
+  biased.settling_pace = Scalar(constants::settling_pace);
   biased.contact_preload = Scalar(constants::contact_preload * length(gravity) * h);
   biased.impulse_trend = Scalar(constants::impulse_trend);
   biased.tree_contact_rate = Scalar(of_tree.rate);
@@ -69,10 +77,10 @@ void fill_infos(const StepSettings& settings, Vec3 gravity, double h, double las
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
-  relax.contact_rate = relax.tree_contact_rate = relax.joint_rate = 0;
+  relax.contact_rate = relax.standing_rate = relax.tree_contact_rate = relax.joint_rate = 0;
   relax.joint_mass_scale = 1;
   relax.load_ahead = 1;
-  relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
+  relax.contact_impulse_scale = relax.standing_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
 template void fill_infos<float>(const StepSettings&, Vec3, double, double, InfoOf<float> (&)[phase_count]);
