@@ -34,16 +34,32 @@ inline constexpr double apart_pins = 1e-4;
 inline constexpr double moment_tolerance = 1e-6;
 
 /// Soft contacts: angular frequency times sub-step, and damping ratio. Stiffness is tied to the sub-step, so overlap falls with
-/// its square. Three tenths of an overlap are pushed out in a sub-step, 12 % of the impulse let go of; the relax pass takes out the
-/// velocity. Of the pairs tried (docs/impulses.md) the stiffest that lets stacks and houses of cards rest.
-inline constexpr double contact_frequency_times_h = 1.48;
-inline constexpr double contact_damping_ratio = 1.73;
+/// its square. Six tenths of an overlap are pushed out in a sub-step, 16 % of the impulse let go of; the relax pass takes out the
+/// velocity. Stiffer than that at rest, and piles bounce on their own (docs/impulses.md).
+inline constexpr double contact_frequency_times_h = 1.775;
+inline constexpr double contact_damping_ratio = 0.59;
+/// The same where one of the two bodies stands: pushed out faster, the rounding of gaps moves what lies alone (A21 in single
+/// precision).
+inline constexpr double standing_contact_frequency_times_h = 1.48;
+inline constexpr double standing_contact_damping_ratio = 1.73;
 /// The same for contacts with joint trees, whose rows leak on what deviates from a slow mean (mean_impulse_share).
 inline constexpr double tree_contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
 inline constexpr double tree_contact_damping_ratio = 5;
+/// Between free bodies: by which share of its last change a normal impulse goes on in the next sub-step.
+inline constexpr double impulse_trend = 0.5;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a sub-step:
 /// what lies alone on what stands does not sink.
 inline constexpr double contact_preload = 1.75;
+/// What would need more than static friction by less than this share of the load is held by static friction: what is that slow may
+/// stick again, and the load is not known better.
+inline constexpr double friction_band = 0.1;
+/// Friction foresees the load of what closes its gap in the first 1 / gap_weight of a sub-step; the rest meets elsewhere.
+inline constexpr double gap_weight = 16;
+/// One visit solves a manifold's rows well enough unless the load is so many times what the last sub-step left, or friction
+/// changes by such a share of its limit: then it takes rounds (contact_settle.inl).
+inline constexpr double settled_load = 1.5, settled_friction = 0.5;
+/// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together. They seldom do.
+inline constexpr double settling_pace = 1.5;
 /// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md): where it would be pressed in
 /// by more than the first share of the contact margin, they are to bring that down to the second.
 inline constexpr double uneven_masses = 16, heavy_overlap = 0.75, load_overlap = 0.025;

@@ -29,7 +29,7 @@ const uint ROW_IMPACT = 60u;  // contact_impact's: below 0 none of it, 0 where i
 const uint ROW_PATH = 61u;    // b's way against a until they meet
 const uint ROW_SEEN = 61u;    // the same place, where no shapes meet in flight: how often the bodies had been struck when contact_impact last looked
 // impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
-// the step 8..11, slow means 12..15
+// the step 8..11; 12..15: slow means where a body stands in a joint tree, else the normal impulses that the sub-step before began with
 const uint IMPULSE_T = 4u;
 const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;

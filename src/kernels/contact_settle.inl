@@ -2,26 +2,28 @@
 // friction and normal rows. One round a visit is enough where the last sub-step's impulses still hold; here they do not, and what
 // one round leaves (a box that tilts a little, and slides while it does) is never undone.
 
-// Whether rounds are needed: more than one point, and in the biased visit a load half as large again as what holds, or friction
-// that changes by half of its limit.
+const uint SETTLE_ROUNDS = 16u;  // of a visit that takes rounds; all lanes make as many
+
+// Whether rounds are needed: more than one point, and in the biased visit a load settled_load times what holds, or friction
+// that changes by settled_friction of its limit.
 PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real coming, Friction f) {
-  precise Real more = coming - load * PC_REAL(1.5);
-  precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC); precise Real square = limit * limit * PC_REAL(0.25);
+  precise Real more = coming - load * PC_INFO(settled_load);
+  precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC) * PC_INFO(settled_friction); precise Real square = limit * limit;
   Real biased = pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MASS + 1u));
   return pc_and(biased > PC_REAL(0.0), pc_or(more > PC_REAL(0.0), change > square));
 }
 
 // In a round all rows move at once, so that no point comes before another: each by a share of what would stop its own point that
-// is safe whatever the others do (1.5 times its part in the sum of the responses that it feels).
-PC_FN Real pc_pace(Real own, Real x, Real y, Real z) {
-  precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum) * PC_REAL(1.5); return pc_min(pace, PC_REAL(1.0));
+// is safe whatever the others do (settling_pace times its part in the sum of the responses that it feels).
+PC_FN Real pc_pace(PC_IO Real own, Real x, Real y, Real z) {
+  precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum) * PC_INFO(settling_pace); return pc_min(pace, PC_REAL(1.0));
 }
-PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Real preload) {
-  precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, pc_times_preload(mass, preload)) - now) * pace; return pc_snap(next);
+PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Softness soft) {
+  precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, pc_times_preload(mass, soft.preload), soft) - now) * pace; return pc_snap(next);
 }
 
 // `v`: the twist before the visit; `r`: impulses after the visit's one round.
-PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real preload, Mask unsettled, PC_INOUT(Rows) r) {
+PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Softness soft, Mask unsettled, PC_INOUT(Rows) r) {
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
   Real b0 = PC_LD(contact_rows, m, ROW_B); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   Real m0 = PC_LD(contact_rows, m, ROW_MASS); Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u); Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u); Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
@@ -29,17 +31,17 @@ PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real prel
   Real w2 = pc_select(m2 > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)); Real w3 = pc_select(m3 > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   precise Real d02 = PC_LD(contact_rows, m, ROW_D + 1u) * w2; precise Real d03 = PC_LD(contact_rows, m, ROW_D + 2u) * w3; precise Real d12 = PC_LD(contact_rows, m, ROW_D + 3u) * w2;
   precise Real d13 = PC_LD(contact_rows, m, ROW_D + 4u) * w3; precise Real d23 = PC_LD(contact_rows, m, ROW_D + 5u) * w3; Real d01 = PC_LD(contact_rows, m, ROW_D);
-  Real p0 = pc_pace(o0, d01, d02, d03); Real p1 = pc_pace(o1, d01, d12, d13); Real p2 = pc_pace(o2, d02, d12, d23); Real p3 = pc_pace(o3, d03, d13, d23);
+  Real p0 = pc_pace(PC_PASS o0, d01, d02, d03); Real p1 = pc_pace(PC_PASS o1, d01, d12, d13); Real p2 = pc_pace(PC_PASS o2, d02, d12, d23); Real p3 = pc_pace(PC_PASS o3, d03, d13, d23);
   precise Real c0 = m0 * mass_scale; precise Real c1 = m1 * mass_scale; precise Real c2 = m2 * mass_scale; precise Real c3 = m3 * mass_scale;
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
   Real k0 = l0; Real k1 = l1; Real k2 = l2; Real k3 = l3; Friction f = r.f;
-  for (uint k = 0u; k < 16u; k++) {
+  for (uint k = 0u; k < SETTLE_ROUNDS; k++) {
     Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
     precise Real e0 = k0 - l0; precise Real e1 = k1 - l1; precise Real e2 = k2 - l2; precise Real e3 = k3 - l3;
     precise Real v0 = vn + b0 * w1 - a0 * w2 + (o0 * e0 + d01 * e1 + d02 * e2 + d03 * e3); precise Real v1 = vn + b1 * w1 - a1 * w2 + (o1 * e1 + d01 * e0 + d12 * e2 + d13 * e3);
     precise Real v2 = vn + b2 * w1 - a2 * w2 + (o2 * e2 + d02 * e0 + d12 * e1 + d23 * e3); precise Real v3 = vn + b3 * w1 - a3 * w2 + (o3 * e3 + d03 * e0 + d13 * e1 + d23 * e2);
-    k0 = pc_settled_row(PC_PASS v0, gap.s0, c0, k0, p0, preload); k1 = pc_settled_row(PC_PASS v1, gap.s1, c1, k1, p1, preload);
-    k2 = pc_settled_row(PC_PASS v2, gap.s2, c2, k2, p2, preload); k3 = pc_settled_row(PC_PASS v3, gap.s3, c3, k3, p3, preload);
+    k0 = pc_settled_row(PC_PASS v0, gap.s0, c0, k0, p0, soft); k1 = pc_settled_row(PC_PASS v1, gap.s1, c1, k1, p1, soft);
+    k2 = pc_settled_row(PC_PASS v2, gap.s2, c2, k2, p2, soft); k3 = pc_settled_row(PC_PASS v3, gap.s3, c3, k3, p3, soft);
 
     precise Real n0 = k0 - l0; precise Real n1 = k1 - l1; precise Real n2 = k2 - l2; precise Real n3 = k3 - l3;
     Push push = pc_push(PC_PASS m, n0, n1, n2, n3);

@@ -125,7 +125,7 @@ PC_PROPERTY(contact, contact, 28, real, contact_static_friction, derived, 0, "1"
 PC_PROPERTY(contact, contact, 29, real, contact_kinetic_friction, derived, 0, "1", "")
 PC_PROPERTY(contact, contact, 30, real, contact_restitution, derived, 0, "1", "")
 PC_PROPERTY(contact, contact, 31, real, impact_time, derived, 0, "s", "after the step's start, of shapes that meet in flight; 0: they are close; -1: a body hangs on joints")
-PC_PROPERTY(contact, contact, 32, quat, mean_impulse, state, 0, "N s", "slow mean of normal_impulse, where a body stands in a joint tree")
+PC_PROPERTY(contact, contact, 32, quat, mean_impulse, state, 0, "N s", "slow mean of normal_impulse where a body stands in a joint tree, else what it was a sub-step before")
 
 PC_TABLE(shape, "what bodies collide with; read by the broad and narrow phase")
 PC_BUFFER(shape, shape, 3, "")

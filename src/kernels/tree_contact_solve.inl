@@ -39,4 +39,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 }
 #undef PC_MEAN
 #undef pc_held
-#undef PC_PRELOAD
+#undef PC_SOFTNESS
+#undef PC_SOFT
