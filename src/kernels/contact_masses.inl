@@ -52,6 +52,8 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
 // Of the points that there are, anew.
 PC_FN Real pc_where_mass(PC_IO Slot m, uint i) { return pc_select(PC_LD(contact_rows, m, ROW_MASS + i) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)); }
 PC_FN void pc_renew_masses(PC_IO Slot m, Responses r) {
+  Real k = PC_LD(contact_rows, m, ROW_K);
   pc_store_masses(PC_PASS m, r, pc_where_mass(PC_PASS m, 0u), pc_where_mass(PC_PASS m, 1u), pc_where_mass(PC_PASS m, 2u), pc_where_mass(PC_PASS m, 3u));
+  PC_ST(contact_rows, m, ROW_K, pc_select(k > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_K), k));  // contact_solve goes on leaving alone what it left alone
 }
 #endif

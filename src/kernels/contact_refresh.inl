@@ -19,14 +19,13 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
   if (!PC_ANY(far)) return;  // lint: allow (nothing to do otherwise)
-  Real zero = PC_REAL(0.0); Real k = PC_LD(contact_rows, m, ROW_K);
+  Real zero = PC_REAL(0.0);
   Mask flight = PC_LD(contact_rows, m, ROW_IMPACT) > zero;
   Vec3 none = pc_zero3(); Vec3 path = pc_ld3_rows(PC_PASS m, ROW_PATH);
   Arms arms = pc_arms(PC_PASS m, pc_select3(flight, none, moved_a.v), pc_select3(flight, path, moved_b.v));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Responses r = pc_free_responses(a, b, arms.a, arms.b, n, t1, t2); r.these = far;
   pc_renew_masses(PC_PASS m, r);
-  PC_ST(contact_rows, m, ROW_K, pc_select(k > zero, PC_LD(contact_rows, m, ROW_K), k));
 
   // (of the edge of a needle two points hold each other: one alone, and it spins)
   Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
