@@ -29,14 +29,16 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
   // a light body's spin between heavy ones is lost in the rounding of their inertia: what its own lacks is added (docs/joint-trees.md)
   // (pins that remember no impulse may be of any stiffness)
-  precise Real rounding = PC_INFO(rounding) * PC_REAL(64.0); precise Real unknown = PC_INFO(rounding) * PC_REAL(256.0);
+  precise Real rounding = PC_INFO(rounding) * PC_REAL(8.0); precise Real unknown = PC_INFO(rounding) * PC_REAL(256.0);
 #ifdef PC_DRIVES
   unknown = pc_select(pc_drive_lasts(PC_PASS n), PC_INFO(rounding), unknown);
 #endif
   // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
-  Real share = pc_select(fast > PC_REAL(0.0), rounding, unknown); precise Real all = xx + yy + zz;
-  precise Real lacks = all * share - pc_least_moment(PC_PASS n); precise Real held = pc_max(lacks, PC_REAL(0.0)) + all * fast * PC_INFO(spin_floor);
-  Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), PC_REAL(0.0), held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
+  Mask known = fast > PC_REAL(0.0); Real share = pc_select(known, rounding, unknown); Real times = pc_select(known, PC_REAL(8.0), PC_REAL(1.0));
+  precise Real all = xx + yy + zz; precise Real lacks = all * share - pc_least_moment(PC_PASS n);
+  precise Real held = pc_max(lacks, PC_REAL(0.0)) * times + all * fast * PC_INFO(spin_floor);
+  precise Real least = all * PC_INFO(rounding) * PC_REAL(0.03125);
+  Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
   Sym3 inverse = loose;
 #ifdef PC_DRIVES
