@@ -345,7 +345,7 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   for (std::size_t i = 0; i < buffer_count; i++) {
     const Buffer buffer = Buffer(i);
     if (is_tree_rows(buffer) || table_of(buffer) == Table::node) continue;  // as many as nodes, below
-    if (buffer == Buffer::contact_reach) continue;                                 // when the contacts' bodies are known
+    if (buffer == Buffer::contact_reach) continue;                          // when the contacts' bodies are known
     const std::uint32_t slots = buffer == Buffer::joint_rows ? coloured_joints : rows[std::size_t(table_of(buffer))] - 1;
     if (!is_index(buffer))
       state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);
