@@ -53,7 +53,7 @@ const uint TREE_MOTOR_MOST = 194u;  // its largest impulse
 const uint TREE_DRIVE_RATE = 195u;  // and at the prediction
 const uint TREE_DRIVE_PUSH = 198u;
 const uint TREE_BRAKE = 166u;   // of a joint that would swing further than a sub-step resolves: a damper, in its own inertias (tree_brake.inl)
-const uint TREE_SWING = 199u;   // rate of the joint's turning at the prediction
+const uint TREE_SWING = 201u;   // rate of the joint's turning at the prediction
 const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
 // from tree_respond on, in places that are free by then: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
 const uint TREE_FACTOR = TREE_INERTIA;
