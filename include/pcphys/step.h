@@ -46,8 +46,8 @@ struct StepReport {
   std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
   std::uint32_t refined = 0;   // bodies whose islands made more than the setting
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
-  /// What the direct solve of joint trees does not carry: joints that close a loop beside another joint of the same bodies or
-  /// in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
+  /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of the same bodies, joints
+  /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
   std::uint64_t transfer_bytes = 0;  // between host and device
   std::vector<BodyId> frozen;        // in this step; see World::frozen
