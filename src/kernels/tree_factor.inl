@@ -44,9 +44,6 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
 #ifdef PC_DRIVES
   if (PC_ANY(pc_has_drive(PC_PASS n))) { freedom = pc_with_drives(PC_PASS n, up, freedom, loose); loose = pc_sym_inverse(freedom); inverse = loose; }  // lint: allow (zeros otherwise)
 #endif
-#ifdef PC_BRAKES
-  if (PC_ANY(pc_has_brake(PC_PASS n))) { freedom = pc_with_brake(PC_PASS n, freedom); inverse = pc_sym_inverse(freedom); }  // lint: allow (the same otherwise)
-#endif
   if (PC_ANY(pc_has_rows(PC_PASS n))) inverse = pc_with_springs(PC_PASS n, freedom, loose);  // lint: allow (zeros otherwise)
   Vec3 w0 = pc_sym_mul(inverse, u0); Vec3 w1 = pc_sym_mul(inverse, u1); Vec3 w2 = pc_sym_mul(inverse, u2); Vec3 w3 = pc_sym_mul(inverse, u3); Vec3 w4 = pc_sym_mul(inverse, u4); Vec3 w5 = pc_sym_mul(inverse, u5);
   pc_sts_tree(PC_PASS n, TREE_D, inverse);

@@ -37,8 +37,6 @@ const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows
 const uint TREE_TOUCH = 154u;   // largest load of a contact on the body in this sub-step
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
-const uint TREE_BRAKE = 166u;   // of a joint that would swing further than a sub-step resolves: a damper, in its own inertias (tree_brake.inl)
-const uint TREE_SWING = 168u;   // rate of the joint's turning at the prediction
 const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
 // from tree_respond on, in places that are free by then: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
 const uint TREE_FACTOR = TREE_INERTIA;

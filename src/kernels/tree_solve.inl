@@ -8,11 +8,8 @@
 #ifdef PC_DRIVES
 #include "tree_drive.inl"
 #endif
-#define PC_BRAKES
-#include "tree_brake.inl"
 #include "tree_factor.inl"
 #include "tree_sweep.inl"
-#undef PC_BRAKES
 
 // Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
@@ -53,7 +50,7 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t) {
     // (how far the arm swings against the parent: a top may spin about it as it likes)
     Vec3 arm = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
     Vec3 swing = pc_scale(pc_cross(turn, arm), PC_INFO(h)); Real reach = pc_dot(arm, arm);
-    Real per_reach = pc_inverse_or_zero(reach); precise Real square = pc_dot(swing, swing) * per_reach; pc_set_brake(PC_PASS n, turn, square);
+    Real per_reach = pc_inverse_or_zero(reach);
     Real fast = PC_LD(tree_rows, n, TREE_FAST); Real zero = PC_REAL(0.0);
     precise Real beyond = fast - PC_REAL(0.02); precise Real whip = (pc_dot(swing, swing) - reach * PC_REAL(0.02)) * per_reach * PC_REAL(10.0);
     precise Real share = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real scale = pc_min(share, PC_REAL(1.0)) * PC_INFO(tree_damping) * PC_REAL(-2.0);

@@ -20,9 +20,6 @@ PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
 #ifdef PC_DRIVES
   if (PC_ANY(pc_has_drive(PC_PASS n))) t = pc_sub(t, pc_select3(pc_has_drive(PC_PASS n), pc_ld3_drive(PC_PASS n, DRIVE_PUSH), pc_zero3()));  // lint: allow (zeros otherwise)
 #endif
-#ifdef PC_BRAKES
-  if (PC_ANY(pc_has_brake(PC_PASS n))) t = pc_sub(t, pc_ld3_tree(PC_PASS n, TREE_PUSH));  // lint: allow (zeros otherwise)
-#endif
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return t;  // lint: allow (zeros otherwise)
   precise Real s0 = PC_LD(tree_rows, n, TREE_SPRING) * PC_LD(tree_rows, n, TREE_RATE) * limits;
   precise Real s1 = PC_LD(tree_rows, n, TREE_SPRING + 1u) * PC_LD(tree_rows, n, TREE_RATE + 1u) * limits;
@@ -98,13 +95,10 @@ PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted) {
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, pc_angular_velocity(b)));
   }
 }
-// An arm turned, minus the arm. Beyond half a radian its tangent: the solve knows of that alone, and steps of Newton's method from
-// further away would not come nearer.
+// An arm turned, minus the arm.
 PC_FN Vec3 pc_swing(PC_IO Slot n, Vec3 r) {
   Vec3 q = pc_ld3_tree(PC_PASS n, TREE_TURN); precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(1.0);
-  precise Vec3 s = pc_cross(q, r) * PC_REAL(2.0); precise Vec3 d = s * w + pc_cross(q, s); Mask far = w < PC_REAL(0.969);
-  if (PC_ANY(far)) d = pc_select3(far, pc_cross(pc_scale(pc_ld3_tree(PC_PASS n, TREE_X + 3u), PC_INFO(h)), r), d);  // lint: allow (the same otherwise)
-  return d;
+  precise Vec3 s = pc_cross(q, r) * PC_REAL(2.0); precise Vec3 d = s * w + pc_cross(q, s); return d;
 }
 // Of a body that turns about its pin the gap's rate of now: it keeps none over the sub-step. What is rounding stays: undoing
 // it would round the velocities once more.
