@@ -34,14 +34,10 @@ inline constexpr double apart_pins = 1e-4;
 inline constexpr double moment_tolerance = 1e-6;
 
 /// Soft contacts: angular frequency times sub-step, and damping ratio. Stiffness is tied to the sub-step, so overlap falls with
-/// its square. Six tenths of an overlap are pushed out in a sub-step, 16 % of the impulse let go of; the relax pass takes out the
+/// its square. Three tenths of an overlap are pushed out in a sub-step, 12 % of the impulse let go of; the relax pass takes out the
 /// velocity. Stiffer than that at rest, and piles bounce on their own (docs/impulses.md).
-inline constexpr double contact_frequency_times_h = 1.775;
-inline constexpr double contact_damping_ratio = 0.59;
-/// The same where one of the two bodies stands: pushed out faster, the rounding of gaps moves what lies alone (A21 in single
-/// precision).
-inline constexpr double standing_contact_frequency_times_h = 1.48;
-inline constexpr double standing_contact_damping_ratio = 1.73;
+inline constexpr double contact_frequency_times_h = 1.48;
+inline constexpr double contact_damping_ratio = 1.73;
 /// The same for contacts with joint trees, whose rows leak on what deviates from a slow mean (mean_impulse_share).
 inline constexpr double tree_contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
 inline constexpr double tree_contact_damping_ratio = 5;

@@ -13,14 +13,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   // (between bodies that move what a row lets go of is what lets piles rest)
-  precise Real both = a.inverse_mass * b.inverse_mass; Mask move = both > PC_REAL(0.0); Softness soft;
-  soft.rate = pc_select(move, PC_INFO(contact_rate), PC_INFO(standing_rate)); soft.leak = pc_select(move, PC_INFO(contact_impulse_scale), PC_INFO(standing_impulse_scale));
-  soft.preload = pc_select(move, PC_REAL(0.0), PC_INFO(contact_preload));
-  Visit r = pc_visit(PC_PASS m, pc_twist(a, b, arms, n, t1, t2), shift, n, t1, t2, soft);
+  precise Real both = a.inverse_mass * b.inverse_mass; Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
+  Visit r = pc_visit(PC_PASS m, pc_twist(a, b, arms, n, t1, t2), shift, n, t1, t2, preload);
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, r.touch), b.phase);
   pc_apply(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple);
 }
 #undef pc_held
-#undef PC_SOFTNESS
-#undef PC_SOFT
+#undef PC_PRELOAD

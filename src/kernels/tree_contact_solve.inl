@@ -39,5 +39,4 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 }
 #undef PC_MEAN
 #undef pc_held
-#undef PC_SOFTNESS
-#undef PC_SOFT
+#undef PC_PRELOAD

@@ -24,7 +24,6 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
   const double h = from.h / double(1u << octave);
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
-  const Soft standing = soft(constants::standing_contact_frequency_times_h, constants::standing_contact_damping_ratio, h);
   const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
 
@@ -39,8 +38,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
-  biased.standing_rate = Scalar(standing.rate);
-  biased.standing_impulse_scale = Scalar(standing.impulse_scale);
   biased.friction_band = Scalar(constants::friction_band);
   biased.gap_weight = Scalar(constants::gap_weight);
   biased.settled_load = Scalar(constants::settled_load);
@@ -82,10 +79,10 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
-  relax.contact_rate = relax.standing_rate = relax.tree_contact_rate = relax.joint_rate = 0;
+  relax.contact_rate = relax.tree_contact_rate = relax.joint_rate = 0;
   relax.joint_mass_scale = 1;
   relax.load_ahead = 1;
-  relax.contact_impulse_scale = relax.standing_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
+  relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
 template void fill_infos<float>(const InfoInputs&, InfoOf<float> (&)[phase_count], unsigned);
