@@ -41,7 +41,8 @@ inline constexpr double contact_damping_ratio = 1.73;
 /// The same for contacts with joint trees, whose rows leak on what deviates from a slow mean (mean_impulse_share).
 inline constexpr double tree_contact_frequency_times_h = 1.0471975511965976;  // 2 pi / 6
 inline constexpr double tree_contact_damping_ratio = 5;
-/// Between free bodies: by which share of its last change a normal impulse goes on in the next sub-step.
+/// Between free bodies, in manifolds of three points and more: by which share of its last change a normal impulse goes on in the
+/// next sub-step.
 inline constexpr double impulse_trend = 0.5;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a sub-step:
 /// what lies alone on what stands does not sink.

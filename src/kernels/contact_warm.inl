@@ -19,10 +19,10 @@ PC_FN Real pc_mass_scale(PC_IO Slot m, Arms arms, BodyState a, BodyState b) {
 }
 
 // A change of load comes through a pile at the pace of the visits: each sub-step undoes a share of what a slow motion of many
-// bodies asks for. So where both bodies move, what the last sub-step changed in a row's impulse goes on by a share (heavy ball:
+// bodies asks for. So where both bodies move and one stands on the other by three points or more (on fewer it rocks, and loads change by that), what the last sub-step changed in a row's impulse goes on by a share (heavy ball:
 // B. Polyak, Some methods of speeding up the convergence of iteration methods, 1964), by at most that share of the impulse.
 PC_FN void pc_go_on(PC_IO Slot m, Real inverse_masses) {
-  Real share = pc_select(inverse_masses > PC_REAL(0.0), PC_INFO(impulse_trend), PC_REAL(0.0));
+  Mask stands = pc_and(inverse_masses > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MASS + 2u) > PC_REAL(0.0)); Real share = pc_select(stands, PC_INFO(impulse_trend), PC_REAL(0.0));
   for (uint i = 0u; i < 4u; i++) {
     Real now = PC_LD(contact_impulses, m, i); Real before = PC_LD(contact_impulses, m, IMPULSE_MEAN + i);
     precise Real change = now - before; precise Real most = pc_min(now, before); precise Real next = now + pc_clamp(change, -most, most) * share;

@@ -30,7 +30,8 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a
   precise Real gap = now.phi2 - now.phi; precise Real time = pc_div(gap, now.e) * h;
   Vec3 v = pc_select3(in_phase, velocity, phased);
   precise Vec3 kick = (a - v * drag) * time;
-  precise Vec3 shift = back + kick + (half_change - back) * share;
+  precise Vec3 shifted = back + kick + (half_change - back) * share; precise Vec3 plain = half_change * share;
+  Vec3 shift = pc_select3(drag > PC_REAL(0.0), shifted, plain);  // without drag as in a world that has none
   return pc_select3(in_phase, kick, pc_select3(changes, shift, pc_zero3()));
 }
 #else
