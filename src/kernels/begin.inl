@@ -21,12 +21,7 @@ PC_FN void pc_kernel(PC_IO Index i) {
 #else
   VelocityShift shift = pc_velocity_shift(PC_PASS linear, angular, linear_change, angular_change, push, turn);
 #endif
-  TwoSum u = pc_two_sum(linear.v, pc_add(shift.u, linear_low.v));
-  TwoSum l = pc_two_sum(angular.v, pc_add(shift.l, angular_low.v));
-  linear.v = pc_select3(dynamic_body, u.sum, linear.v);
-  angular.v = pc_select3(dynamic_body, l.sum, angular.v);
-  linear_low.v = pc_select3(dynamic_body, pc_snap3(u.low), linear_low.v);
-  angular_low.v = pc_select3(dynamic_body, pc_snap3(l.low), angular_low.v);
+  pc_add_shift(dynamic_body, shift.u, linear.v, linear_low.v); pc_add_shift(dynamic_body, shift.l, angular.v, angular_low.v);
   angular.s = PC_REAL(0.0);
   PC_SCATTER(motion, i, 0u, linear);
   PC_SCATTER(motion, i, 1u, angular);

@@ -9,11 +9,9 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear_low = PC_GATHER(velocity_parts, i, 2u); Quad angular_low = PC_GATHER(velocity_parts, i, 3u);
   Mask dynamic_body = linear.s > PC_REAL(0.0);
   VelocityShift shift = pc_velocity_shift(PC_PASS linear, angular, linear_change, angular_change, push, turn);
-  TwoSum u = pc_two_sum(linear.v, pc_add(shift.u, linear_low.v)); TwoSum l = pc_two_sum(angular.v, pc_add(shift.l, angular_low.v));
   linear_change.v = pc_select3(dynamic_body, pc_snap3(pc_sub(linear_change.v, shift.u)), linear_change.v);
   angular_change.v = pc_select3(dynamic_body, pc_snap3(pc_sub(angular_change.v, shift.l)), angular_change.v);
-  linear.v = pc_select3(dynamic_body, u.sum, linear.v); angular.v = pc_select3(dynamic_body, l.sum, angular.v);
-  linear_low.v = pc_select3(dynamic_body, pc_snap3(u.low), linear_low.v); angular_low.v = pc_select3(dynamic_body, pc_snap3(l.low), angular_low.v);
+  pc_add_shift(dynamic_body, shift.u, linear.v, linear_low.v); pc_add_shift(dynamic_body, shift.l, angular.v, angular_low.v);
   PC_SCATTER(motion, i, 0u, linear); PC_SCATTER(motion, i, 1u, angular);
   PC_SCATTER(velocity_parts, i, 0u, linear_change); PC_SCATTER(velocity_parts, i, 1u, angular_change);
   PC_SCATTER(velocity_parts, i, 2u, linear_low); PC_SCATTER(velocity_parts, i, 3u, angular_low);

@@ -43,6 +43,12 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 half_change, Vec3 a) {
 }
 #endif
 
+// Adds a shift to a velocity that is the sum of `high` and `low`.
+PC_FN void pc_add_shift(Mask dynamic_body, Vec3 shift, PC_INOUT(Vec3) high, PC_INOUT(Vec3) low) {
+  TwoSum sum = pc_two_sum(high, pc_add(shift, low));
+  high = pc_select3(dynamic_body, sum.sum, high); low = pc_select3(dynamic_body, pc_snap3(sum.low), low);
+}
+
 struct VelocityShift { Vec3 u; Vec3 l; };
 #ifndef PC_SEED
 PC_FN VelocityShift pc_velocity_shift(PC_IO Quad linear, Quad angular, Quad linear_change, Quad angular_change, Quad push, Quad turn) {

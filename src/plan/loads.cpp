@@ -31,13 +31,6 @@ double swing_ratio(Vec3 moments, Vec3 arm) {
   return std::sqrt(r2) / std::max(across, std::min({moments.x, moments.y, moments.z}));
 }
 
-/// The octave that brings what falls with the square of the sub-step to `aim`.
-std::uint8_t octave_for(double value, double aim, std::uint8_t highest) {
-  std::uint8_t octave = 0;
-  for (; value > aim && octave < highest; value /= 4) octave++;
-  return octave;
-}
-
 }  // namespace
 
 void Loads::find_loops(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing) {

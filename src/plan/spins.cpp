@@ -20,10 +20,9 @@ void want_for_spins(const WorldState& state, const Forest& forest, double h, std
       const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4), momentum = state.momentum_of_rotation(row);
       const double largest = std::max({inverse.x, inverse.y, inverse.z});
       if (largest * largest * dot(momentum, momentum) <= most * most) continue;
-      double turn = length(state.angular_velocity(row)) / most;
-      std::uint8_t octave = 0;
-      for (; turn > 1 && octave < highest_octave; turn /= 2) octave++;
-      if (octave > 0) wanted.push_back({row, octave, false});
+      const Vec3 spin = state.angular_velocity(row);
+      if (const std::uint8_t octave = octave_for(dot(spin, spin), most * most, highest_octave); octave > 0)
+        wanted.push_back({row, octave, false});
     }
   }
 }

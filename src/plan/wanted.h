@@ -10,4 +10,11 @@ struct Wanted {
   bool any_size;
 };
 
+/// The octave that brings what falls with the square of the sub-step to `aim`, or `highest`.
+inline std::uint8_t octave_for(double value, double aim, std::uint8_t highest) {
+  std::uint8_t octave = 0;
+  for (; value > aim && octave < highest; value /= 4) octave++;
+  return octave;
+}
+
 }  // namespace pcphys
