@@ -5,6 +5,11 @@
 #include "contact_masses.inl"
 #include "free_responses.inl"
 
+// A gap without what rounding has in it: of a difference of lengths so large nothing below `noise` is known, and at steps of
+// 1e-4 s the speed that would close it in one is as large as what gravity makes.
+PC_FN Real pc_extent(Vec3 arm) { precise Real r = pc_abs(arm.x) + pc_abs(arm.y) + pc_abs(arm.z); return r; }
+PC_FN Real pc_told_gap(Real s, Real noise) { precise Real r = s - pc_clamp(s, -noise, noise); return r; }
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
   Quad head = PC_GATHER(contact, record, 0u);
@@ -56,7 +61,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
   // missing points take the mean gap of the others, so that the mean of all four is that of those that are there
   precise Real gap = (p0.s * w0 + p1.s * w1 + p2.s * w2 + p3.s * w3) * share;
-  PC_ST(contact_rows, m, ROW_S, p0.s); PC_ST(contact_rows, m, ROW_S + 1u, pc_select(w1 > zero, p1.s, gap)); PC_ST(contact_rows, m, ROW_S + 2u, pc_select(w2 > zero, p2.s, gap)); PC_ST(contact_rows, m, ROW_S + 3u, pc_select(w3 > zero, p3.s, gap));
+  precise Real reach = pc_extent(start_a) + pc_extent(start_b); precise Real noise = reach * PC_INFO(gap_rounding);
+  PC_ST(contact_rows, m, ROW_S, pc_told_gap(p0.s, noise)); PC_ST(contact_rows, m, ROW_S + 1u, pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise));
+  PC_ST(contact_rows, m, ROW_S + 2u, pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise)); PC_ST(contact_rows, m, ROW_S + 3u, pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise));
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
   PC_ST(contact_rows, m, ROW_MU_STATIC, material.v.x);
   PC_ST(contact_rows, m, ROW_MU_KINETIC, material.v.y);

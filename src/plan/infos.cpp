@@ -63,7 +63,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
   biased.restitution_threshold = Scalar(from.restitution_threshold);
-  biased.rounding = Scalar(constants::rest_roundings) * std::numeric_limits<Scalar>::epsilon();
+  biased.rounding = Scalar(constants::rest_roundings * epsilon);
+  biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
 
   const auto change = [&](Phase phase, double before, double after) {
     InfoOf<Scalar>& info = infos[unsigned(phase)];
