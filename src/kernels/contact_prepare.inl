@@ -45,7 +45,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   Responses r = pc_free_responses(a, b, ra, rb, n, t1, t2);
 
-  precise Real spread = (a0 * a0 + b0 * b0 + a1 * a1 + b1 * b1 + a2 * a2 + b2 * b2 + a3 * a3 + b3 * b3) * share;
+  precise Real spread = (a0 * a0 + b0 * b0 + a1 * a1 + b1 * b1 + a2 * a2 + b2 * b2 + a3 * a3 + b3 * b3) * share; Real radius = pc_sqrt(spread);
 
   // approach of each point, for restitution
   Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b);
@@ -61,13 +61,13 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
   // missing points take the mean gap of the others, so that the mean of all four is that of those that are there
   precise Real gap = (p0.s * w0 + p1.s * w1 + p2.s * w2 + p3.s * w3) * share;
-  precise Real reach = pc_extent(start_a) + pc_extent(start_b); precise Real noise = reach * PC_INFO(gap_rounding);
+  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real noise = reach * PC_INFO(gap_rounding);
   PC_ST(contact_rows, m, ROW_S, pc_told_gap(p0.s, noise)); PC_ST(contact_rows, m, ROW_S + 1u, pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise));
   PC_ST(contact_rows, m, ROW_S + 2u, pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise)); PC_ST(contact_rows, m, ROW_S + 3u, pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise));
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
   PC_ST(contact_rows, m, ROW_MU_STATIC, material.v.x);
   PC_ST(contact_rows, m, ROW_MU_KINETIC, material.v.y);
-  PC_ST(contact_rows, m, ROW_RADIUS, pc_sqrt(spread));
+  PC_ST(contact_rows, m, ROW_RADIUS, radius);
   PC_ST(contact_rows, m, ROW_E, material.v.z);
   PC_ST(contact_rows, m, ROW_APPROACH, approach0); PC_ST(contact_rows, m, ROW_APPROACH + 1u, approach1); PC_ST(contact_rows, m, ROW_APPROACH + 2u, approach2); PC_ST(contact_rows, m, ROW_APPROACH + 3u, approach3);
 
