@@ -13,21 +13,20 @@ PC_FN Real pc_mean_held(PC_IO Slot m, uint i, Real mass_scale) { precise Real r 
 #define pc_held(i, mass) pc_mean_held(PC_PASS m, i, mass_scale)
 #define PC_PRELOAD
 #else
-PC_FN Real pc_times_preload(Real mass, Real preload) { precise Real r = mass * preload; return r; }
-#define pc_held(i, mass) pc_times_preload(mass, preload)
+#define pc_held(i, mass) loose
 #define PC_PRELOAD , Real preload
 #endif
-PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held) {
+PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held_or_loose) {
   Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
 #ifdef PC_MEAN
   precise Real soft_rate = s * PC_INFO(tree_contact_rate);
   Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed))); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(tree_contact_impulse_scale));
-  precise Real rigid = impulse - mass * (vn + bias); precise Real next = rigid - (rigid - held) * leak;
+  precise Real rigid = impulse - mass * (vn + bias); precise Real next = rigid - (rigid - held_or_loose) * leak;
 #else
   precise Real soft_rate = s * PC_INFO(contact_rate);
   Real bias = pc_select(open, gap_rate, soft_rate); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
-  precise Real beyond = impulse - mass * (vn + bias) - held;
+  precise Real beyond = (impulse - mass * (vn + bias)) * held_or_loose;
   // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
   precise Real give = mass * bias + pc_max(beyond, PC_REAL(0.0)) * leak; precise Real most = mass * PC_INFO(push_speed);
   precise Real next = impulse - mass * vn - pc_max(give, -most);
@@ -56,7 +55,10 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real load = l0 + l1 + l2 + l3;
   precise Real mean = shift.n + (PC_LD(contact_rows, m, ROW_S) + PC_LD(contact_rows, m, ROW_S + 1u) + PC_LD(contact_rows, m, ROW_S + 2u) + PC_LD(contact_rows, m, ROW_S + 3u)) * PC_REAL(0.25);
   precise Real closing = v.vn + pc_max(mean, PC_REAL(0.0)) * PC_INFO(inverse_h) * PC_INFO(gap_weight);
-  precise Real coming = load - closing * pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)) * mass_scale;
+  Real whole = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)); precise Real coming = load - closing * whole * mass_scale;
+#ifndef PC_MEAN
+  precise Real light = whole * preload; precise Real share = light * pc_inverse_or_zero(coming); precise Real loose = PC_REAL(1.0) - pc_min(share, PC_REAL(1.0));
+#endif
   Mask waits = pc_and(load < PC_TINY, PC_INFO(load_ahead) > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
@@ -92,7 +94,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 #ifndef PC_MEAN
   Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
-    pc_settle(PC_PASS m, v, gap, mass_scale, preload, unsettled, now);
+    pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }
 #endif
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
