@@ -90,15 +90,16 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     constexpr std::size_t stride = reals_of(Buffer::material);
     const float thick = thickness(a, b);
     if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
-    const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0, flies = bounces || way > 0.5f * thick;
+    const bool flies = way > 0.5f * thick || materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
     if (!flies && !(is_round(x.kind) && is_round(y.kind) && untouched(x.body) && untouched(y.body))) continue;
     if (scratch.flights.empty()) begin_strikes(s, dt);
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
     const Sight<Scalar> view = sight(s, scratch, i, options);
     fly(s, dt, options, scratch, view, f);
-    if (!flies) {  // rows stop it as anything else, but along the normal of the instant
-      if (f.impact <= 0) { scratch.flights.pop_back(); continue; }
+    if (!flies && f.impact <= 0) {  // as if it had not been looked at
+      scratch.flights.pop_back();
+      continue;
     }
     if (f.counts && f.impact > 0)
       for (std::uint32_t row : view.rows) struck_[row] = std::min(struck_[row], float(f.impact));

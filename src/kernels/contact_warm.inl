@@ -30,7 +30,8 @@ PC_FN void pc_go_on(PC_IO Slot m, Real inverse_masses) {
   }
 }
 
-// pc_apply with what rounding drops from the velocities kept in their low parts.
+// pc_apply, but what rounding drops from the velocities stays in their low parts, as of forces: what slides or rests takes up the
+// same share of its speed each sub-step, rounded the same way each time.
 PC_FN void pc_kick(PC_IO Index i, PC_INOUT(BodyState) b, Vec3 impulse, Vec3 torque, Real sign) {
   precise Real mass = b.inverse_mass * sign; precise Real response = b.response * sign;
   Quad linear_low = PC_GATHER(velocity_parts, i, 2u); Quad angular_low = PC_GATHER(velocity_parts, i, 3u);

@@ -83,7 +83,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   relax.contact_rate = relax.tree_contact_rate = relax.joint_rate = 0;
   relax.joint_mass_scale = 1;
   relax.load_ahead = 1;
-  relax.gap_weight = 1;
+  relax.gap_weight = 1;  // as the rows themselves will see it
   relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
