@@ -97,6 +97,9 @@ inline constexpr double joint_push_speed = 8;
 /// that the contact's impulse would give it.
 inline constexpr double rest_roundings = 32;
 
+/// So many roundings (of relative size epsilon) of a contact's arms are in its gaps.
+inline constexpr double gap_roundings = 1;
+
 /// How often a sub-step looks for impacts, at most, while there are any: what one hands on, the next body hands on again, as
 /// in Newton's cradle.
 inline constexpr unsigned impact_sweeps = 8;

@@ -22,6 +22,9 @@ template <class Scalar> void behind_centre(Manifold<Scalar>& m) {
   for (int k = 0; k < 3; k++) first.p[k] = m.normal[k] * along;
 }
 
+/// Their normals turn as they come together; those of faces do not.
+bool is_round(ShapeKind kind) { return kind == ShapeKind::sphere || kind == ShapeKind::capsule; }
+
 /// The manifold of time t as seen from the start: gaps open again with the speeds of the points, arms go back by the
 /// first body's share of the way.
 template <class Scalar>
@@ -73,6 +76,8 @@ template <class Scalar>
 void Detector::look_ahead(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
   scratch.flights.clear();
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
+  const Scalar* phases = s.tables.data<Scalar>(Buffer::motion) + 7;
+  const auto untouched = [phases](std::uint32_t row) { return phases[row * reals_of(Buffer::motion)] <= 0; };
   const auto pairs = pairs_.pairs();
   // what comes no further in the step than `slow` approaches too slowly to bounce
   const float slow = float(options.least_bounce * dt), certain = std::min(slow, 0.5f * thinnest_);
@@ -85,13 +90,17 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     constexpr std::size_t stride = reals_of(Buffer::material);
     const float thick = thickness(a, b);
     if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
-    const bool bounces = materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
-    if (!bounces && way <= 0.5f * thick) continue;
+    const bool flies = way > 0.5f * thick || materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
+    if (!flies && !(is_round(x.kind) && is_round(y.kind) && untouched(x.body) && untouched(y.body))) continue;
     if (scratch.flights.empty()) begin_strikes(s, dt);
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
     const Sight<Scalar> view = sight(s, scratch, i, options);
     fly(s, dt, options, scratch, view, f);
+    if (!flies && f.impact <= 0) {  // as if it had not been looked at
+      scratch.flights.pop_back();
+      continue;
+    }
     if (f.counts && f.impact > 0)
       for (std::uint32_t row : view.rows) struck_[row] = std::min(struck_[row], float(f.impact));
   }

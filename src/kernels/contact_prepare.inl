@@ -5,6 +5,20 @@
 #include "contact_masses.inl"
 #include "free_responses.inl"
 
+// A gap without what rounding has in it: of a difference of lengths so large nothing below `noise` is known, and at steps of
+// 1e-4 s the speed that would close it in one is as large as what gravity makes.
+PC_FN Real pc_extent(Vec3 arm) { precise Real r = pc_abs(arm.x) + pc_abs(arm.y) + pc_abs(arm.z); return r; }
+PC_FN Real pc_told_gap(Real s, Real noise) { precise Real r = s - pc_clamp(s, -noise, noise); return r; }
+
+// Of the way that two bodies move apart along the contact plane, what a's arm takes. A ball's point stays under its centre, whatever it
+// rolls on; two balls divide the way by their radii; else the light body keeps its point (pc_arms).
+PC_FN Mask pc_is_under(Vec3 arm, Vec3 n) { Vec3 off = pc_cross(arm, n); precise Real most = pc_dot(arm, arm) * PC_REAL(1e-6); return pc_dot(off, off) < most; }
+PC_FN Real pc_rolling_share(Vec3 arm_a, Vec3 arm_b, Vec3 n, Real light_a) {
+  Mask ball_a = pc_is_under(arm_a, n); Mask ball_b = pc_is_under(arm_b, n);
+  Real ra = pc_abs(pc_dot(arm_a, n)); Real rb = pc_abs(pc_dot(arm_b, n)); precise Real both = ra + rb; precise Real by_radius = ra * pc_inverse_or_zero(both);
+  Real only_b = pc_select(ball_b, PC_REAL(1.0), light_a); Real with_a = pc_select(ball_b, by_radius, PC_REAL(0.0)); return pc_select(ball_a, with_a, only_b);
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
   Quad head = PC_GATHER(contact, record, 0u);
@@ -27,10 +41,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Vec3 ra = (p0.v * w0 + p1.v * w1 + p2.v * w2 + p3.v * w3) * share;
   Vec3 apart = pc_add(pc_sub(place_a.v, place_b.v), pc_sub(low_a.v, low_b.v));
   // effective masses are those of the arms at impact, which pc_arms gives when the bodies have come so far
-  precise Real k = a.inverse_mass + b.inverse_mass; precise Real share_a = b.inverse_mass * pc_inverse_or_zero(k);
-  precise Real rest_a = share_a - PC_REAL(1.0); Real flight = pc_max(material.s, PC_REAL(0.0));
+  precise Real k = a.inverse_mass + b.inverse_mass; precise Real light_a = b.inverse_mass * pc_inverse_or_zero(k);
+  Real flight = pc_max(material.s, PC_REAL(0.0));
   precise Vec3 path = (b.v - a.v) * flight;
   Vec3 start_a = ra; Vec3 start_b = pc_add(ra, apart);
+  Mask stays = pc_or(count > PC_REAL(1.5), pc_or(flight > zero, pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY));
+  Real share_a = pc_select(stays, light_a, pc_rolling_share(start_a, start_b, n, light_a)); precise Real rest_a = share_a - PC_REAL(1.0);
   ra = pc_madd(start_a, path, share_a); Vec3 rb = pc_madd(start_b, path, rest_a);
   Vec3 d0 = pc_sub(p0.v, start_a); Vec3 d1 = pc_sub(p1.v, start_a); Vec3 d2 = pc_sub(p2.v, start_a); Vec3 d3 = pc_sub(p3.v, start_a);
   precise Real a0 = pc_dot(d0, t1) * w0; precise Real b0 = pc_dot(d0, t2) * w0;
@@ -40,7 +56,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   Responses r = pc_free_responses(a, b, ra, rb, n, t1, t2);
 
-  precise Real spread = (a0 * a0 + b0 * b0 + a1 * a1 + b1 * b1 + a2 * a2 + b2 * b2 + a3 * a3 + b3 * b3) * share;
+  precise Real spread = (a0 * a0 + b0 * b0 + a1 * a1 + b1 * b1 + a2 * a2 + b2 * b2 + a3 * a3 + b3 * b3) * share; Real radius = pc_sqrt(spread);
 
   // approach of each point, for restitution
   Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b);
@@ -56,11 +72,13 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
   // missing points take the mean gap of the others, so that the mean of all four is that of those that are there
   precise Real gap = (p0.s * w0 + p1.s * w1 + p2.s * w2 + p3.s * w3) * share;
-  PC_ST(contact_rows, m, ROW_S, p0.s); PC_ST(contact_rows, m, ROW_S + 1u, pc_select(w1 > zero, p1.s, gap)); PC_ST(contact_rows, m, ROW_S + 2u, pc_select(w2 > zero, p2.s, gap)); PC_ST(contact_rows, m, ROW_S + 3u, pc_select(w3 > zero, p3.s, gap));
+  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real noise = reach * PC_INFO(gap_rounding);
+  PC_ST(contact_rows, m, ROW_S, pc_told_gap(p0.s, noise)); PC_ST(contact_rows, m, ROW_S + 1u, pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise));
+  PC_ST(contact_rows, m, ROW_S + 2u, pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise)); PC_ST(contact_rows, m, ROW_S + 3u, pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise));
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
   PC_ST(contact_rows, m, ROW_MU_STATIC, material.v.x);
   PC_ST(contact_rows, m, ROW_MU_KINETIC, material.v.y);
-  PC_ST(contact_rows, m, ROW_RADIUS, pc_sqrt(spread));
+  PC_ST(contact_rows, m, ROW_RADIUS, radius);
   PC_ST(contact_rows, m, ROW_E, material.v.z);
   PC_ST(contact_rows, m, ROW_APPROACH, approach0); PC_ST(contact_rows, m, ROW_APPROACH + 1u, approach1); PC_ST(contact_rows, m, ROW_APPROACH + 2u, approach2); PC_ST(contact_rows, m, ROW_APPROACH + 3u, approach3);
 

@@ -18,12 +18,12 @@ PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real coming, Friction f) {
 PC_FN Real pc_pace(PC_IO Real own, Real x, Real y, Real z) {
   precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum) * PC_INFO(settling_pace); return pc_min(pace, PC_REAL(1.0));
 }
-PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Real preload) {
-  precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, pc_times_preload(mass, preload)) - now) * pace; return pc_snap(next);
+PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Real loose) {
+  precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, loose) - now) * pace; return pc_snap(next);
 }
 
 // `v`: the twist before the visit; `r`: impulses after the visit's one round.
-PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real preload, Mask unsettled, PC_INOUT(Rows) r) {
+PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real loose, Mask unsettled, PC_INOUT(Rows) r) {
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
   Real b0 = PC_LD(contact_rows, m, ROW_B); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   Real m0 = PC_LD(contact_rows, m, ROW_MASS); Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u); Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u); Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
@@ -40,8 +40,8 @@ PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real prel
     precise Real e0 = k0 - l0; precise Real e1 = k1 - l1; precise Real e2 = k2 - l2; precise Real e3 = k3 - l3;
     precise Real v0 = vn + b0 * w1 - a0 * w2 + (o0 * e0 + d01 * e1 + d02 * e2 + d03 * e3); precise Real v1 = vn + b1 * w1 - a1 * w2 + (o1 * e1 + d01 * e0 + d12 * e2 + d13 * e3);
     precise Real v2 = vn + b2 * w1 - a2 * w2 + (o2 * e2 + d02 * e0 + d12 * e1 + d23 * e3); precise Real v3 = vn + b3 * w1 - a3 * w2 + (o3 * e3 + d03 * e0 + d13 * e1 + d23 * e2);
-    k0 = pc_settled_row(PC_PASS v0, gap.s0, c0, k0, p0, preload); k1 = pc_settled_row(PC_PASS v1, gap.s1, c1, k1, p1, preload);
-    k2 = pc_settled_row(PC_PASS v2, gap.s2, c2, k2, p2, preload); k3 = pc_settled_row(PC_PASS v3, gap.s3, c3, k3, p3, preload);
+    k0 = pc_settled_row(PC_PASS v0, gap.s0, c0, k0, p0, loose); k1 = pc_settled_row(PC_PASS v1, gap.s1, c1, k1, p1, loose);
+    k2 = pc_settled_row(PC_PASS v2, gap.s2, c2, k2, p2, loose); k3 = pc_settled_row(PC_PASS v3, gap.s3, c3, k3, p3, loose);
 
     precise Real n0 = k0 - l0; precise Real n1 = k1 - l1; precise Real n2 = k2 - l2; precise Real n3 = k3 - l3;
     Push push = pc_push(PC_PASS m, n0, n1, n2, n3);

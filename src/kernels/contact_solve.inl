@@ -19,5 +19,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, r.touch), b.phase);
   pc_apply(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple);
 }
-#undef pc_held
+#undef pc_kept
 #undef PC_PRELOAD

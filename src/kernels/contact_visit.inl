@@ -4,30 +4,32 @@
 #include "contact_shift.inl"
 
 // New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
-// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint with a preload: it lets go of a share of
-// what goes beyond an impulse that a few weights of the body's own make (`preload`, a velocity), so that what lies alone does not
-// sink. With bodies of trees (PC_MEAN) it lets go of that share of what deviates from a slow mean (docs/joint-trees.md).
+// the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of their impulse.
+// Where one body stands that is a share of what the manifold's load goes beyond a few weights of the body (`loose`), so that what
+// lies alone does not sink, also where one side of it carries more. With bodies of trees (PC_MEAN) it is a share of what deviates
+// from a slow mean, `held` (docs/joint-trees.md).
 #ifdef PC_MEAN
 // (of a contact that is left alone, with a scale of 0, none: it would take up a share of what it held before)
 PC_FN Real pc_mean_held(PC_IO Slot m, uint i, Real mass_scale) { precise Real r = PC_LD(contact_impulses, m, IMPULSE_MEAN + i) * mass_scale; return r; }
-#define pc_held(i, mass) pc_mean_held(PC_PASS m, i, mass_scale)
+PC_FN Real pc_let_go(Real impulse, Real held) { precise Real r = impulse - held; return r; }
+#define pc_kept(i) pc_mean_held(PC_PASS m, i, mass_scale)
 #define PC_PRELOAD
 #else
-PC_FN Real pc_times_preload(Real mass, Real preload) { precise Real r = mass * preload; return r; }
-#define pc_held(i, mass) pc_times_preload(mass, preload)
+PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loose; return r; }
+#define pc_kept(i) loose
 #define PC_PRELOAD , Real preload
 #endif
-PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real held) {
+PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
   Mask open = s > PC_REAL(0.0);
   precise Real gap_rate = s * PC_INFO(inverse_h);
 #ifdef PC_MEAN
   precise Real soft_rate = s * PC_INFO(tree_contact_rate);
   Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed))); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(tree_contact_impulse_scale));
-  precise Real rigid = impulse - mass * (vn + bias); precise Real next = rigid - (rigid - held) * leak;
+  precise Real rigid = impulse - mass * (vn + bias); precise Real next = rigid - pc_let_go(rigid, kept) * leak;
 #else
   precise Real soft_rate = s * PC_INFO(contact_rate);
   Real bias = pc_select(open, gap_rate, soft_rate); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
-  precise Real beyond = impulse - mass * (vn + bias) - held;
+  precise Real rigid = impulse - mass * (vn + bias); Real beyond = pc_let_go(rigid, kept);
   // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
   precise Real give = mass * bias + pc_max(beyond, PC_REAL(0.0)) * leak; precise Real most = mass * PC_INFO(push_speed);
   precise Real next = impulse - mass * vn - pc_max(give, -most);
@@ -56,7 +58,10 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real load = l0 + l1 + l2 + l3;
   precise Real mean = shift.n + (PC_LD(contact_rows, m, ROW_S) + PC_LD(contact_rows, m, ROW_S + 1u) + PC_LD(contact_rows, m, ROW_S + 2u) + PC_LD(contact_rows, m, ROW_S + 3u)) * PC_REAL(0.25);
   precise Real closing = v.vn + pc_max(mean, PC_REAL(0.0)) * PC_INFO(inverse_h) * PC_INFO(gap_weight);
-  precise Real coming = load - closing * pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)) * mass_scale;
+  Real mass = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)); precise Real coming = load - closing * mass * mass_scale;
+#ifndef PC_MEAN
+  precise Real share = mass * preload * pc_inverse_or_zero(coming); precise Real loose = PC_REAL(1.0) - pc_min(share, PC_REAL(1.0));
+#endif
   Mask waits = pc_and(load < PC_TINY, PC_INFO(load_ahead) > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
@@ -65,7 +70,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
   precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_held(0u, m0)); precise Real e0 = k0 - l0;
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_kept(0u)); precise Real e0 = k0 - l0;
   Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
   bool more = PC_ANY(pc_max(others, pc_max(l1, pc_max(l2, l3))) > PC_REAL(0.0));
   Rows now; now.k0 = k0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f;
@@ -76,15 +81,15 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
     Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
     precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
     precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
-    precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; now.k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_held(1u, m1)); precise Real e1 = now.k1 - l1;
+    precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; now.k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_kept(1u)); precise Real e1 = now.k1 - l1;
     Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
     precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
     precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift.n + b2 * shift.turn1 - a2 * shift.turn2);
-    precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; now.k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_held(2u, m2)); precise Real e2 = now.k2 - l2;
+    precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; now.k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_kept(2u)); precise Real e2 = now.k2 - l2;
     Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
     precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
     precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
-    precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_held(3u, m3));
+    precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_kept(3u));
 #ifndef PC_MEAN
     gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
 #endif
@@ -92,7 +97,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 #ifndef PC_MEAN
   Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
-    pc_settle(PC_PASS m, v, gap, mass_scale, preload, unsettled, now);
+    pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }
 #endif
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);

@@ -68,7 +68,7 @@ PC_KERNEL(tree_flush, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) P
 PC_KERNEL(contact_prepare, contact, impulses, PC_READ(contact_ends) PC_READ(contact_order) PC_READ(contact) PC_READ(pose) PC_READ(inertia) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
 PC_KERNEL(contact_refresh, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_READ(motion) PC_WRITE(contact_rows) PC_WRITE(contact_impulses))
 PC_KERNEL(contact_impact, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(force) PC_WRITE(contact_rows) PC_WRITE(delta) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(motion))
-PC_KERNEL(contact_warm, free_contact, impulses, PC_READ(contact_ends) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
+PC_KERNEL(contact_warm, free_contact, impulses, PC_READ(contact_ends) PC_WRITE(velocity_parts) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_rolling, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(material) PC_WRITE(rolling_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, free_contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(tree_contact_warm, tree_contact, impulses, PC_READ(contact_paths) PC_READ(inertia) PC_READ(delta) PC_READ(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending))

@@ -38,5 +38,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_push_side(PC_PASS w, m, 0u, turning, along); pc_push_side(PC_PASS w, m, 1u, turning, along);
 }
 #undef PC_MEAN
-#undef pc_held
+#undef pc_kept
 #undef PC_PRELOAD

@@ -1,12 +1,14 @@
 // The factor of a tree, leaves to root (see tree_sweep.inl).
 
 // Inverse of a joint's freedom with the springs of its angle rows: each as stiff as the joint's own inertia about its
-// axis, many times.
+// axis, many times. The limit of a hinge, whose other angles are locked, is as stiff as they are: a stop. Limits of joints with
+// more freedom yield: stiff ones that meet at an angle tear trees apart.
 PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 bare, Sym3 loose) {
-  Sym3 freedom = bare;
+  Sym3 freedom = bare; precise Real kinds = PC_LD(tree_rows, n, TREE_KIND) + PC_LD(tree_rows, n, TREE_KIND + 1u) + PC_LD(tree_rows, n, TREE_KIND + 2u);
   for (uint i = 0u; i < 3u; i++) {
     Vec3 j = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
-    Real stiffness = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));
+    Mask stops = pc_or(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), kinds > PC_REAL(4.5));
+    Real stiffness = pc_select(stops, PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));
     precise Real spring = stiffness * PC_LD(tree_rows, n, TREE_ON + i) * pc_inverse_or_zero(pc_dot(j, pc_sym_mul(loose, j)));
     PC_ST(tree_rows, n, TREE_SPRING + i, spring); freedom = pc_sym_outer(freedom, j, spring);
   }

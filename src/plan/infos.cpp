@@ -63,7 +63,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
   biased.restitution_threshold = Scalar(from.restitution_threshold);
-  biased.rounding = Scalar(constants::rest_roundings) * std::numeric_limits<Scalar>::epsilon();
+  biased.rounding = Scalar(constants::rest_roundings * epsilon);
+  biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
 
   const auto change = [&](Phase phase, double before, double after) {
     InfoOf<Scalar>& info = infos[unsigned(phase)];
@@ -82,6 +83,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   relax.contact_rate = relax.tree_contact_rate = relax.joint_rate = 0;
   relax.joint_mass_scale = 1;
   relax.load_ahead = 1;
+  relax.gap_weight = 1;  // as the rows themselves will see it
   relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
