@@ -217,9 +217,9 @@ struct Stepper::Inside {
     octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
   }
 
-  void update_contacts(const WorldState& s) {
+  void update_contacts(const WorldState& s, bool faces) {
     schedule.update_contacts(s);
-    octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven);
+    octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven, faces);
   }
 
   void freeze_leaving(WorldState& s) {
@@ -242,8 +242,9 @@ struct Stepper::Inside {
     Detector::Found found;
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
-    if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
-    if (octaves.choose(s, schedule.trees.forest(), settings, dt) || other) schedule.group(octaves.of_bodies());
+    if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s, found.points > found.contacts);
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), settings, dt) || other)
+      schedule.group(octaves.of_bodies());
     PlanSignature wanted = signature(schedule);
     wanted.octaves = octaves.used();
     const double h = substep_length(dt, wanted.substeps);
