@@ -66,6 +66,10 @@ inline constexpr double uneven_masses = 16, heavy_overlap = 0.015, load_overlap 
 /// What stands high on small bodies may need more, too (plan/columns.h): where the weight above the lowest would press them in by more than
 /// the first share of their size (twice the radius of gyration), sub-steps are to bring that down to the second.
 inline constexpr double column_overlap = 0.02, column_aim = 0.005;
+/// Islands of few bodies get more where a column of them as high as the island would shrink by more than the first share of their size;
+/// sub-steps are to bring that down to the second.
+inline constexpr double column_sag = 0.002, sag_aim = 4e-4;
+inline constexpr std::uint32_t small_island = 48;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them, but in islands of more bodies
 /// than that no more than twice as many (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;

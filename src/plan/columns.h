@@ -1,6 +1,6 @@
 // Sub-steps for what stands high on bodies that are small for the sub-step. A contact gives by the load over its lighter body's mass, times
-// the square of the sub-step (docs/impulses.md): where that is no longer small beside the bodies, piles lean and fall. How many bodies
-// of its own kind a body may carry is taken from how high its island is, so that it is known before the load is there.
+// the square of the sub-step (docs/impulses.md): where that is no longer small beside the bodies, piles sink, lean and fall. How many
+// bodies of its own kind a body may carry is taken from how high its island is, so that it is known before the load is there.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,22 +15,28 @@ class TreeNodes;
 
 class Columns {
  public:
-  /// Follows a change of contacts. `faces`: some contact has more than one point, so that something may stand on something.
-  void find(const WorldState& state, const TreeNodes& trees, bool faces);
-  /// Adds what sub-steps of `h` need, up to `highest_octave`.
+  /// Follows a change of contacts.
+  void forget() { listed_ = false; }
+  /// Adds what sub-steps of `h` need, up to `highest_octave`: a function of the present state, whatever was measured before.
   void want(const WorldState& state, const TreeNodes& trees, double h, std::uint8_t highest_octave, Islands& islands,
             std::vector<Wanted>& wanted);
 
  private:
-  struct Column {
-    std::uint32_t bodies = 0;
-    double low = 0, high = 0;  // along gravity, upward [m]
-    double sizes = 0;          // sum over its bodies [m]
+  struct Body {
+    std::uint32_t row, column;
   };
-  void measure(const WorldState& state, const TreeNodes& trees, Islands& islands);
+  struct Column {
+    std::uint32_t root;  // of its island
+    std::uint32_t bodies = 0;
+    double sizes = 0;          // sum over its bodies of twice the largest radius of gyration [m]
+    double low = 0, high = 0;  // along gravity, upward [m]
+  };
+  void list(const WorldState& state, const TreeNodes& trees, Islands& islands);
 
-  std::vector<Column> columns_;               // by the root of an island; empty: not measured since contacts changed
-  double smallest_ = 0, low_ = 0, high_ = 0;  // of all that could stand; smallest_ 0: there is nothing [m]
+  bool listed_ = false;       // since contacts changed
+  std::vector<Body> bodies_;  // that could stand on each other
+  std::vector<Column> columns_;
+  std::vector<std::uint32_t> column_of_;  // by the root of an island
 };
 
 }  // namespace pcphys

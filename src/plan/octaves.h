@@ -39,11 +39,12 @@ class Octaves {
   void update_structure(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing) {
     loads_.find_loops(state, joints, closing);
   }
-  /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses; `faces`: some contact has more than
-  /// one point.
-  void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven, bool faces);
-  /// Of a step of `dt`. False: they are those of the step before.
-  bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, const StepSettings& settings, double dt);
+  /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
+  void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
+  /// Of a step of `dt`. `faces`: some contact has more than one point, so that something may stand on something. False: they are
+  /// those of the step before.
+  bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces, const StepSettings& settings,
+              double dt);
 
   /// By body row; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }

@@ -217,9 +217,9 @@ struct Stepper::Inside {
     octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
   }
 
-  void update_contacts(const WorldState& s, bool faces) {
+  void update_contacts(const WorldState& s) {
     schedule.update_contacts(s);
-    octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven, faces);
+    octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven);
   }
 
   void freeze_leaving(WorldState& s) {
@@ -242,8 +242,8 @@ struct Stepper::Inside {
     Detector::Found found;
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
-    if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s, found.points > found.contacts);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), settings, dt) || other)
+    if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.points > found.contacts, settings, dt) || other)
       schedule.group(octaves.of_bodies());
     PlanSignature wanted = signature(schedule);
     wanted.octaves = octaves.used();
