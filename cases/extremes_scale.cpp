@@ -61,32 +61,27 @@ void masses(Trial& trial, double unit) {
 // ---- C2 ------------------------------------------------------------------------------------------------
 
 /// A body of this kind and half size falls five sizes onto the floor.
-Simulated& drop(Trial& trial, ShapeKind kind, double size, double restitution, bool scaled) {
-  return trial.start(
-      [=](scenes::Builder& builder) {
-        (void)builder.world().set_gravity(down);
-        builder.set_material(0.5, restitution);
-        add_floor(builder);
-        const double half = 0.5 * size;
-        BodyDef def;
-        def.shapes = {kind == ShapeKind::sphere    ? ShapeDef::sphere(half)
-                      : kind == ShapeKind::capsule ? ShapeDef::capsule(half, half)
-                                                   : ShapeDef::box({half, half, half})};
-        def.pose.position = {0, 0, 5.5 * size};
-        builder.add(def);
-      },
-      [=](StepSettings& s) {
-        if (scaled) s.contact_margin *= size;
-      });
+Simulated& drop(Trial& trial, ShapeKind kind, double size, double restitution) {
+  return trial.start([=](scenes::Builder& builder) {
+    (void)builder.world().set_gravity(down);
+    builder.set_material(0.5, restitution);
+    add_floor(builder);
+    const double half = 0.5 * size;
+    BodyDef def;
+    def.shapes = {kind == ShapeKind::sphere    ? ShapeDef::sphere(half)
+                  : kind == ShapeKind::capsule ? ShapeDef::capsule(half, half)
+                                               : ShapeDef::box({half, half, half})};
+    def.pose.position = {0, 0, 5.5 * size};
+    builder.add(def);
+  });
 }
 
-/// `scaled`: the contact margin, a length, is as large as the body asks for; else the default.
-void size_of_drop(Trial& trial, ShapeKind kind, double size, double restitution, bool scaled) {
+void size_of_drop(Trial& trial, ShapeKind kind, double size, double restitution) {
   const double time = std::sqrt(size), dt = trial.dt() * time;
   const long steps = trial.steps(6);
-  Simulated& one = drop(trial, kind, 1, restitution, false);
+  Simulated& one = drop(trial, kind, 1, restitution);
   const Path reference = follow(one, trial.dt(), steps);
-  Simulated& other = drop(trial, kind, size, restitution, scaled);
+  Simulated& other = drop(trial, kind, size, restitution);
   const Path path = follow(other, dt, steps, {}, size);
   // a box that lands flat and bounces turns by its rounding, so in single precision paths part
   const bool bounded = trial.is_double() || restitution == 0 || kind == ShapeKind::sphere;
@@ -226,11 +221,10 @@ void add_scales(std::vector<Case>& cases) {
        {std::pair{ShapeKind::sphere, "sphere"}, {ShapeKind::box, "box"}, {ShapeKind::capsule, "capsule"}})
     for (double s : {1e-3, 1e-2, 100.0, 1e3})
       for (double e : {0.0, 0.5})
-        for (bool scaled : {false, true})
-          size.variants.push_back({.name = name + text(" of %g m", s) + text(", e %g", e) + (scaled ? ", margin scaled" : ""),
-                                   .run = [kind = kind, s, e, scaled](Trial& t) { size_of_drop(t, kind, s, e, scaled); },
-                                   .steps = fine,
-                                   .substeps = {4}});
+        size.variants.push_back({.name = name + text(" of %g m", s) + text(", e %g", e),
+                                 .run = [kind = kind, s, e](Trial& t) { size_of_drop(t, kind, s, e); },
+                                 .steps = fine,
+                                 .substeps = {4}});
   size.variants.push_back({.name = "pyramid of 5 cm boxes", .run = tiny_pyramid, .steps = {1.0 / 60}, .substeps = {4}});
 
   Case& far = cases.emplace_back(Case{"C4", "far from the origin", {}});

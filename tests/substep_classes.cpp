@@ -82,6 +82,22 @@ TEST_CASE("octaves: what each island of a world asks for") {
   CHECK(report.refined == 0);
 }
 
+TEST_CASE("octaves: columns that are high for the sub-step, and pyramids of boxes small for it") {
+  const auto asked = [](double edge, int count, double dt) {
+    World world;
+    (void)must(world.create_body(fixed_box({0, -0.5, 0}, {20, 0.5, 20})));
+    for (int i = 0; i < count; i++)
+      (void)must(world.create_body(box({0, edge * (i + 0.5), 0}, {0.5 * edge, 0.5 * edge, 0.5 * edge}, 100)));
+    Stepper stepper;
+    return stepper.step(world, dt).substeps;
+  };
+  CHECK(asked(1, 5, frame) == 4);
+  CHECK(asked(1, 50, 1.0 / 240) == 4);  // many, and not much beside their size
+  CHECK(asked(0.5, 10, frame) == 16);   // few: they can have it
+  CHECK(asked(0.5, 30, 1.0 / 240) == 16);
+  CHECK(asked(0.05, 60, frame) == 32);  // any number
+}
+
 TEST_CASE("octaves: islands do not feel each other's, by a bit") {
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     Yard both(precision), light(precision, 2, 400), still(precision, 1000, 0);

@@ -57,9 +57,19 @@ inline constexpr double gap_weight = 16;
 inline constexpr double settled_load = 1.5, settled_friction = 0.5;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together. They seldom do.
 inline constexpr double settling_pace = 1.5;
+/// Contacts are kept up to a gap of this share of the smaller shape's radius (of the sphere that holds it), so that what happens is the
+/// same at any size.
+inline constexpr double margin_share = 0.02;
 /// A free body that carries one so many times as heavy may need more sub-steps (docs/impulses.md): where it would be pressed in
-/// by more than the first share of the contact margin, they are to bring that down to the second.
-inline constexpr double uneven_masses = 16, heavy_overlap = 0.75, load_overlap = 0.025;
+/// by more than the first overlap [m], they are to bring that down to the second.
+inline constexpr double uneven_masses = 16, heavy_overlap = 0.015, load_overlap = 5e-4;
+/// What stands high on small bodies may need more, too (plan/columns.h): where the weight above the lowest would press them in by more than
+/// the first share of their size (twice the radius of gyration), sub-steps are to bring that down to the second.
+inline constexpr double column_overlap = 0.02, column_aim = 0.005;
+/// Islands of few bodies get more where a column of them as high as the island would shrink by more than the first share of their size;
+/// sub-steps are to bring that down to the second.
+inline constexpr double column_sag = 0.002, sag_aim = 4e-4;
+inline constexpr std::uint32_t small_island = 48;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them, but in islands of more bodies
 /// than that no more than twice as many (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;

@@ -31,7 +31,7 @@ struct StepSettings {
 
   double push_speed = 3;               // at which an overlap is undone, at most [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
-  double contact_margin = 0.02;        // contacts are kept up to this gap [m]
+  double contact_margin = 0;           // contacts are kept up to this gap [m]; 0: up to margin_share of the smaller shape
   std::size_t max_pairs = 1u << 24;    // more is an error that says how many there are
 
   void set_all(Place place) { integrate = joints = impulses = place; }

@@ -142,9 +142,9 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
   if (structure_ != s.structure_version || serial_ != s.serial) rebuild(s);
   if (!possible_) return {};
   if (s.tables.precision() == Precision::f32)
-    bound<float>(s, dt, options.contact_margin, scratch_f_.shapes);
+    bound<float>(s, dt, options, scratch_f_.shapes);
   else
-    bound<double>(s, dt, options.contact_margin, scratch_d_.shapes);
+    bound<double>(s, dt, options, scratch_d_.shapes);
   pairs_.set_capacity(options.max_pairs);
   const PairReport report = pairs_.update(tight_);
   if (report.overflow)
@@ -167,10 +167,10 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
   return {};
 }
 
-// Each box is grown by half the margin and by how far its shape can come within the step, so that every two
-// shapes that come within the margin of each other have overlapping boxes.
+// Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so that every
+// two shapes that come within the margin of each other have overlapping boxes.
 template <class Scalar>
-void Detector::bound(const WorldState& s, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes) {
+void Detector::bound(const WorldState& s, double dt, const Options& options, std::vector<ShapeView<Scalar>>& shapes) {
   shapes.resize(s.shapes.size());
   const BodyReader<Scalar> bodies(s.tables);
   const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
@@ -188,7 +188,7 @@ void Detector::bound(const WorldState& s, double dt, double margin, std::vector<
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;
     reach_[i] = s.stands(proxy.body) ? 0.0f : std::max(step * twist.speed, strays_ ? went_[proxy.body] : 0.0f) + turned + fall;
-    tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + float(0.5 * margin));
+    tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + (proxy.responds ? float(margin(options, i)) : 0.0f));
   }
   for (Twist& twist : twists_)
     if (twist.turn * step > wild_turn) twist.limit_turn(largest_turn / step);
@@ -289,7 +289,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     } else {
       find(options, view, scratch.shapes[view.shapes[0]], view.there, std::uint32_t(i), manifold);
       const float apart[3] = {float(view.apart[0]), float(view.apart[1]), float(view.apart[2])};
-      if (!closes(manifold, twists_[row_a], twists_[row_b], apart, options.contact_margin, dt, fall,
+      if (!closes(manifold, twists_[row_a], twists_[row_b], apart, margin(options, a, b), dt, fall,
                   proxies_[a].radius + proxies_[b].radius))
         continue;
       to_light_side(manifold, share_of<Scalar>(s.tables, row_a, row_b));
@@ -308,7 +308,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     out[31] = Scalar(impact);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
     if (old < before_rows && s.contacts.keys[old] == key)
-      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(options.contact_margin), out,
+      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(options, a, b)), out,
                         next_.features[row].data());
     found.points += manifold.count;
     found.restitution |= out[30] > 0;

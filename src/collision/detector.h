@@ -1,6 +1,7 @@
 // Finds the contacts of a step: boxes, pairs, manifolds, and each manifold's memory from the last step.
 // What it finds depends on poses and velocities alone, never on what the broad phase remembers.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <initializer_list>
@@ -16,6 +17,7 @@
 #include "collision/pair_filter.h"
 #include "collision/twist.h"
 #include "collision/view.h"
+#include "pcphys/constants.h"
 #include "pcphys/step.h"
 #include "world/state.h"
 
@@ -25,8 +27,8 @@ class Detector {
  public:
   struct Options {
     NarrowPhase narrow = NarrowPhase::native;
-    double contact_margin = 0.02;
-    double least_bounce = 0;  // slower approaches do not bounce [m/s]
+    double contact_margin = 0;  // [m]; 0: by the sizes of the shapes
+    double least_bounce = 0;    // slower approaches do not bounce [m/s]
     std::size_t max_pairs = 0;
   };
   struct Found {
@@ -78,7 +80,8 @@ class Detector {
   void rebuild(const WorldState& state);
   template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
   template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
-  template <class Scalar> void bound(const WorldState& state, double dt, double margin, std::vector<ShapeView<Scalar>>& shapes);
+  template <class Scalar>
+  void bound(const WorldState& state, double dt, const Options& options, std::vector<ShapeView<Scalar>>& shapes);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
   template <class Scalar>
@@ -86,6 +89,13 @@ class Detector {
   template <class Scalar>
   void find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
             std::uint32_t pair, Manifold<Scalar>& manifold);
+  /// Contacts of the shape are kept up to this gap; of a pair, up to the smaller of the two [m].
+  double margin(const Options& options, std::uint32_t shape) const {
+    return options.contact_margin > 0 ? options.contact_margin : constants::margin_share * proxies_[shape].radius;
+  }
+  double margin(const Options& options, std::uint32_t a, std::uint32_t b) const {
+    return std::min(margin(options, a), margin(options, b));
+  }
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
   /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
@@ -129,7 +139,7 @@ inline Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>&
   Sight<Scalar> view = {{a, b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[b], 0};
   BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
   for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
-  view.margin = Scalar(options.contact_margin) + Scalar(reach_[a] + reach_[b]);
+  view.margin = Scalar(margin(options, a, b)) + Scalar(reach_[a] + reach_[b]);
   return view;
 }
 

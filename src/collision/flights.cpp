@@ -123,12 +123,13 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
   const double near = std::max(1e-6 * double(thickness(view.shapes[0], view.shapes[1])),
                                16 * double(std::numeric_limits<Scalar>::epsilon()) * far);
-  f.counts = gap <= options.contact_margin;
+  const double margin = this->margin(options, view.shapes[0], view.shapes[1]);
+  f.counts = gap <= margin;
   if (gap <= near) return to_light_side(f.manifold, share);
   Manifold<Scalar> met = f.manifold;
   const double fall = length(s.gravity) * dt * dt;
   const double t = meet(
-      a, b, view.apart, near, fall + 0.5 * options.contact_margin, dt,
+      a, b, view.apart, near, fall + 0.5 * margin, dt,
       [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& m) { find(options, view, x, y, f.pair, m); },
       met);
   const bool whirls = double(a.spin) > 0 && double(a.twist->turn) * dt > many_corners;

@@ -70,7 +70,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st3_rows(PC_PASS m, ROW_N, n); pc_st3_rows(PC_PASS m, ROW_T, t1); pc_st3_rows(PC_PASS m, ROW_ARM_A, start_a); pc_st3_rows(PC_PASS m, ROW_ARM_B, start_b);
   PC_ST(contact_rows, m, ROW_A, a0); PC_ST(contact_rows, m, ROW_A + 1u, a1); PC_ST(contact_rows, m, ROW_A + 2u, a2); PC_ST(contact_rows, m, ROW_A + 3u, a3);
   PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
-  // missing points take the mean gap of the others, so that the mean of all four is that of those that are there
+  // missing points take the mean gap of the others, so that none is the nearest
   precise Real gap = (p0.s * w0 + p1.s * w1 + p2.s * w2 + p3.s * w3) * share;
   precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real noise = reach * PC_INFO(gap_rounding);
   PC_ST(contact_rows, m, ROW_S, pc_told_gap(p0.s, noise)); PC_ST(contact_rows, m, ROW_S + 1u, pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise));

@@ -41,8 +41,11 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real ke
 
 // Accumulated impulses of the four points and of friction.
 struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
-#ifndef PC_MEAN
 struct Gaps { Real s0; Real s1; Real s2; Real s3; };  // separations of now
+PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
+  precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + PC_LD(contact_rows, m, ROW_B + i) * shift.turn1 - PC_LD(contact_rows, m, ROW_A + i) * shift.turn2); return s;
+}
+#ifndef PC_MEAN
 #include "contact_settle.inl"
 #endif
 
@@ -52,13 +55,24 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
+  // where no manifold of the block has a second point, the rows of the others are zeros
+  Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
+  bool more = PC_ANY(pc_max(others, pc_max(l1, pc_max(l2, l3))) > PC_REAL(0.0));
+  precise Real load = l0 + l1 + l2 + l3; precise Real inverse_load = pc_inverse_or_zero(load);
+  Gaps gap; gap.s0 = pc_gap(PC_PASS m, 0u, shift); gap.s1 = gap.s0; gap.s2 = gap.s0; gap.s3 = gap.s0; Real apart = gap.s0;
+  if (more) {  // lint: allow (as said)
+    gap.s1 = pc_gap(PC_PASS m, 1u, shift); gap.s2 = pc_gap(PC_PASS m, 2u, shift); gap.s3 = pc_gap(PC_PASS m, 3u, shift);
+    // of what carries the load: an edge that stands on a floor does so whatever the gap beside it
+    precise Real carried = (l0 * gap.s0 + l1 * gap.s1 + l2 * gap.s2 + l3 * gap.s3) * inverse_load;
+    apart = pc_select(load > PC_TINY, carried, pc_min(pc_min(gap.s0, gap.s1), pc_min(gap.s2, gap.s3)));
+  }
+
   // friction goes by the load that the normal rows, visited after it, are about to leave, were they rigid: what the soft rows let
   // go of in the biased visit they take up again in the relax visit, and what has just come together has no load yet. (What comes
-  // together later than in the first part of the sub-step, 1 / gap_weight of it, does so elsewhere: its friction is the relax visit's.)
-  precise Real load = l0 + l1 + l2 + l3;
-  precise Real mean = shift.n + (PC_LD(contact_rows, m, ROW_S) + PC_LD(contact_rows, m, ROW_S + 1u) + PC_LD(contact_rows, m, ROW_S + 2u) + PC_LD(contact_rows, m, ROW_S + 3u)) * PC_REAL(0.25);
-  precise Real closing = v.vn + pc_max(mean, PC_REAL(0.0)) * PC_INFO(inverse_h) * PC_INFO(gap_weight);
-  Real mass = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)); precise Real coming = load - closing * mass * mass_scale;
+  // together later than in the first part of the sub-step, 1 / gap_weight of it, does so elsewhere: its friction is the relax visit's.
+  // Where a load is carried already, a gap of a rounding counts as no more than what it is.)
+  precise Real gap_rate = pc_max(apart, PC_REAL(0.0)) * PC_INFO(inverse_h); Real mass = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)); precise Real stops = mass * mass_scale;
+  precise Real late = gap_rate * pc_select(load > PC_TINY, PC_REAL(1.0), PC_INFO(gap_weight)); precise Real coming = load - (v.vn + late) * stops;
 #ifndef PC_MEAN
   precise Real share = mass * preload * pc_inverse_or_zero(coming); precise Real loose = PC_REAL(1.0) - pc_min(share, PC_REAL(1.0));
 #endif
@@ -66,36 +80,24 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
-  // normal rows; where no manifold of the block has a second point, those of the others are zeros
+  // normal rows
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
   precise Real v0 = vn + b0 * w1 - a0 * w2;
-  precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift.n + b0 * shift.turn1 - a0 * shift.turn2);
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, s0, m0, l0, pc_kept(0u)); precise Real e0 = k0 - l0;
-  Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
-  bool more = PC_ANY(pc_max(others, pc_max(l1, pc_max(l2, l3))) > PC_REAL(0.0));
+  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u)); precise Real e0 = k0 - l0;
   Rows now; now.k0 = k0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f;
-#ifndef PC_MEAN
-  Gaps gap; gap.s0 = s0; gap.s1 = s0; gap.s2 = s0; gap.s3 = s0;
-#endif
   if (more) {  // lint: allow (as said)
     Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
     precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
-    precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
-    precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; now.k1 = pc_normal_row(PC_PASS v1, s1, m1, l1, pc_kept(1u)); precise Real e1 = now.k1 - l1;
+    precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; now.k1 = pc_normal_row(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u)); precise Real e1 = now.k1 - l1;
     Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
     precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
-    precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift.n + b2 * shift.turn1 - a2 * shift.turn2);
-    precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; now.k2 = pc_normal_row(PC_PASS v2, s2, m2, l2, pc_kept(2u)); precise Real e2 = now.k2 - l2;
+    precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; now.k2 = pc_normal_row(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u)); precise Real e2 = now.k2 - l2;
     Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
     precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
-    precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
-    precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, s3, m3, l3, pc_kept(3u));
-#ifndef PC_MEAN
-    gap.s1 = s1; gap.s2 = s2; gap.s3 = s3;
-#endif
+    precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
   }
 #ifndef PC_MEAN
-  Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
+  precise Real arriving = load - (v.vn + gap_rate) * stops; Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }

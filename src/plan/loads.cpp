@@ -57,8 +57,7 @@ void Loads::want(const WorldState& state, const StepSettings& settings, double d
     // acceleration that the load would give to what carries it [m/s^2], and how far it is then pressed in [m]
     const double load = -u.ratio * dot(state.tables.get3(Buffer::contact, u.contact, 0), state.gravity);
     const double overlap = load / (frequency * frequency);
-    if (overlap > constants::heavy_overlap * settings.contact_margin)
-      want(u.body, overlap, constants::load_overlap * settings.contact_margin);
+    if (overlap > constants::heavy_overlap) want(u.body, overlap, constants::load_overlap);
   }
   if (state.last_substep == 0) return;
   for (const Loop& l : loops_) {

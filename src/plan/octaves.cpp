@@ -52,13 +52,17 @@ std::uint8_t highest_octave(const StepSettings& settings) {
 
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
   uneven ? loads_.find(state, trees) : loads_.forget_contacts();
+  columns_.forget();
 }
 
-bool Octaves::choose(const WorldState& state, const Forest& forest, const StepSettings& settings, double dt) {
+bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
+                     const StepSettings& settings, double dt) {
   wanted_.clear();
   const std::uint8_t highest = settings.integrator == Integrator::seed ? 0 : highest_octave(settings);
   loads_.want(state, settings, dt, highest, wanted_);
-  want_for_spins(state, forest, substep_length(dt, settings.substeps), highest, wanted_);
+  const double h = substep_length(dt, settings.substeps);
+  if (faces) columns_.want(state, trees, h, highest, islands_, wanted_);
+  want_for_spins(state, forest, h, highest, wanted_);
   before_.swap(of_bodies_);
   of_bodies_.clear();
   used_ = 1;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcphys/step.h"
+#include "plan/columns.h"
 #include "plan/loads.h"
 #include "world/state.h"
 
@@ -40,8 +41,10 @@ class Octaves {
   }
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
-  /// Of a step of `dt`. False: they are those of the step before.
-  bool choose(const WorldState& state, const Forest& forest, const StepSettings& settings, double dt);
+  /// Of a step of `dt`. `faces`: some contact has more than one point, so that something may stand on something. False: they are
+  /// those of the step before.
+  bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces, const StepSettings& settings,
+              double dt);
 
   /// By body row; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
@@ -52,6 +55,7 @@ class Octaves {
 
  private:
   Loads loads_;
+  Columns columns_;
   Islands islands_;
   std::vector<Wanted> wanted_;
   std::vector<std::uint8_t> of_bodies_, before_;

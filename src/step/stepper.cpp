@@ -243,7 +243,8 @@ struct Stepper::Inside {
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
-    if (octaves.choose(s, schedule.trees.forest(), settings, dt) || other) schedule.group(octaves.of_bodies());
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.points > found.contacts, settings, dt) || other)
+      schedule.group(octaves.of_bodies());
     PlanSignature wanted = signature(schedule);
     wanted.octaves = octaves.used();
     const double h = substep_length(dt, wanted.substeps);
