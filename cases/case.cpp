@@ -14,12 +14,12 @@ class Still final : public Simulated {
   Pose pose(int body) const override { return problem_.scene.bodies[std::size_t(body)].start; }
   Vec3 velocity(int) const override { return {}; }
   Vec3 angular_velocity(int) const override { return {}; }
-  void set_wrench(int, const Wrench&) override {}
-  void set_gravity(Vec3) override {}
-  void set_velocity(int, Vec3, Vec3) override {}
 
  protected:
   Status advance(double) override { return {}; }
+  void apply_wrench(int, const Wrench&) override {}
+  void apply_gravity(Vec3) override {}
+  void apply_velocity(int, Vec3, Vec3) override {}
 };
 
 }  // namespace
@@ -40,7 +40,7 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
   const auto fail = [this](const Error& error) {
     if (meter_.error.code == ErrorCode::none) meter_.error = error;
   };
-  const auto make = [&] {
+  const auto make = [this, build, fail] {
     Problem problem{World({conditions_.precision, {}}), {}};
     const scenes::SceneOptions options;
     scenes::Builder builder(problem.world, problem.scene, options);
@@ -52,9 +52,22 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
   if (tune) tune(conditions.settings);
   auto simulated = engine_.start(make(), conditions);
   if (!simulated) fail(simulated.error());
+  again_.push_back([this, make, conditions] { return engine_.start(make(), conditions); });
   running_.push_back(simulated ? std::move(*simulated) : std::make_unique<Still>(make()));
   running_.back()->attach(meter_);
   return *running_.back();
+}
+
+std::optional<double> Trial::time_again() {
+  double sum = 0;
+  for (std::size_t i = 0; i < running_.size(); ++i) {
+    auto anew = again_[i]();
+    if (!anew) return {};
+    const double seconds = (*anew)->repeat(*running_[i]);
+    if (seconds < 0) return {};
+    sum += seconds;
+  }
+  return sum;
 }
 
 void Trial::resolve(SphereContact& contact) {

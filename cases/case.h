@@ -67,6 +67,8 @@ class Trial {
   void set_budget(double seconds) { meter_.budget = seconds; }
   /// To be called when the variant's function is done.
   void finish();
+  /// What the steps take by themselves [s], from a new start with nothing read in between; none where that cannot be told.
+  std::optional<double> time_again();
 
  private:
   Engine& engine_;
@@ -75,6 +77,7 @@ class Trial {
   Meter meter_;
   std::vector<Finding> findings_;
   std::vector<std::unique_ptr<Simulated>> running_;
+  std::vector<std::function<Result<std::unique_ptr<Simulated>>()>> again_;  // makes each of them as it was
 };
 
 struct Variant {

@@ -92,19 +92,31 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
   return rows;
 }
 
+/// With repeats the median of so many runs in which nothing is read; a clock that stops for each reading costs as much as a step of
+/// the least worlds. Without, or where a run takes long, what the trial's own steps took.
+double time_of(Trial& trial, int repeats) {
+  const double first = trial.meter().seconds;
+  if (repeats < 2 || first > seconds_to_repeat || trial.meter().error.code != ErrorCode::none) return first;
+  std::vector<double> seconds;
+  for (int i = 0; i < repeats; ++i) {
+    const auto again = trial.time_again();
+    if (!again) return first;
+    seconds.push_back(*again);
+  }
+  return median(seconds);
+}
+
 std::vector<Row> run_trial(const Selection& selection, const Case& c, const Variant& variant, const Setting& setting,
                            Engine& engine, Engine* gl) {
   constexpr long unlimited = std::numeric_limits<long>::max();
   const auto trial = make_trial(engine, variant, setting, unlimited);
-  std::vector<double> seconds{trial->meter().seconds};
-  while (int(seconds.size()) < selection.repeats && seconds[0] < seconds_to_repeat)
-    seconds.push_back(make_trial(engine, variant, setting, unlimited)->meter().seconds);
+  const double seconds = time_of(*trial, selection.repeats);
   std::string equal;
   if (gl && engine.peer().empty()) {
     const auto there = make_trial(*gl, variant, setting, hashed_steps);
     equal = there->meter().error.code == ErrorCode::none && there->meter().hash == trial->meter().hash ? "equal" : "differs";
   }
-  return rows_of(*trial, c, variant, setting, engine, median(seconds), equal);
+  return rows_of(*trial, c, variant, setting, engine, seconds, equal);
 }
 
 /// Fills in the orders, and adds the row that says whether the first metric's is what it must be.

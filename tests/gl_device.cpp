@@ -71,7 +71,8 @@ bool remember_works(Backend& gl) {
   parity::require(gl.attach(Buffer::velocity_parts, parts.data(), parts.size() * 4));
   for (const Buffer buffer : {Buffer::bodies, Buffer::motion, Buffer::velocity_parts}) parity::require(gl.upload(buffer));
   parity::require(gl.set_infos(&info, 1));
-  parity::require(gl.run(Kernel::remember, 0, {&all, 1}, gl.width(), false));
+  const KernelRun run{Kernel::remember, false, 0, gl.width(), {&all, 1}};
+  parity::require(gl.run({&run, 1}));
   parity::require(gl.finish());
   parity::require(gl.download(Buffer::velocity_parts));
   for (std::size_t row = 0; row < 4; row++)
@@ -301,7 +302,8 @@ TEST_CASE("a kernel whose buffers are missing names the first, and the next call
   const InfoOf<float> info;
   const Range all{0, 2};
   parity::require(gl->set_infos(&info, 1));
-  const Status status = gl->run(Kernel::remember, 0, {&all, 1}, gl->width(), false);
+  const KernelRun run{Kernel::remember, false, 0, gl->width(), {&all, 1}};
+  const Status status = gl->run({&run, 1});
   REQUIRE_FALSE(bool(status));
   CHECK(status.error().message.find("bodies") != std::string::npos);
   CHECK_FALSE(bool(gl->upload(Buffer::motion)));

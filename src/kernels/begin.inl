@@ -1,6 +1,5 @@
 // Start of a step. The stored velocity u is half a sub-step behind the position (stagger.inl).
 #include "stagger.inl"
-#include "world_inertia.inl"
 
 PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear = PC_GATHER(motion, i, 0u);
@@ -30,5 +29,4 @@ PC_FN void pc_kernel(PC_IO Index i) {
 
   PC_SCATTER(delta, i, 0u, pc_quad(pc_zero3(), PC_REAL(0.0)));
   PC_SCATTER(delta, i, 1u, pc_quad(pc_zero3(), PC_REAL(0.0)));
-  pc_store_inertia(PC_PASS i, linear.s);
 }

@@ -1,9 +1,8 @@
 // Stage 1 of a sub-step: forces and drag. With F the drag, a the acceleration:
 //   u' = u + a h phi(F h) - (1 - e^(-F h)) u,   L' = L + T h phi(G h) - (1 - e^(-G h)) L
-// which is exact for constant a, T (errata vi of the method); then the inertia of the new sub-step.
+// which is exact for constant a, T (errata vi of the method).
 // Both are sums of two reals, as positions are: a velocity in one float takes up g h with the rounding of its own
 // last place, the same way each time. Without drag (PC_DRAG not defined) phi = 1: the same bits, less work.
-#include "world_inertia.inl"
 
 #ifdef PC_DRAG
 #include "drag_share.inl"
@@ -58,5 +57,4 @@ PC_FN void pc_kernel(PC_IO Index i) {
   PC_SCATTER(motion, i, 1u, angular);
   PC_SCATTER(velocity_parts, i, 2u, linear_low);
   PC_SCATTER(velocity_parts, i, 3u, angular_low);
-  pc_store_inertia(PC_PASS i, linear.s);
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <deque>
 #include <string>
 
 #include "collision/detector.h"
@@ -80,7 +81,7 @@ struct Stepper::Inside {
   Octaves octaves;
   Runner runner;
   StepReport report;
-  std::vector<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few
+  std::deque<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few; they stay where they are
   const StepPlan* plan = nullptr;
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
@@ -259,10 +260,10 @@ struct Stepper::Inside {
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
-    if (ok = runner.bind(*plan, s, schedule); !ok) return undo(s, ok);
+    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
-    if (ok = runner.run(settings, *plan, s, schedule, fill(s, h), report); !ok) return undo(s, ok);
+    if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
     find_outside(s, schedule.moving_bodies(), outside);
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
@@ -315,13 +316,15 @@ const StepReport& Stepper::step(World& world, double dt) {
   Inside& in = *inside_;
   const std::uint64_t made = in.report.step;
   in.report = {};
-  const auto start = in.began = Clock::now();
+  const bool clocked = in.settings.timings;
+  Clock::time_point start;
+  if (clocked) start = in.began = Clock::now();
   const Status ok = in.step(world, dt);
   if (!ok) in.report.error = ok.error();
   in.report.step = made + (ok ? 1 : 0);
   in.report.bodies = std::uint32_t(world.body_count());
   in.report.joints = std::uint32_t(world.joint_count());
-  in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  if (clocked) in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   return in.report;
 }
 
