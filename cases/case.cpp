@@ -24,17 +24,13 @@ class Still final : public Simulated {
 
 }  // namespace
 
-Trial::Trial(Engine& engine, Precision precision, double dt, std::uint32_t substeps) : engine_(engine), dt_(dt) {
-  conditions_.precision = precision;
-  conditions_.settings.substeps = substeps;
+Trial::Trial(Engine& engine, const Setting& setting) : engine_(engine), setting_(setting) {
+  conditions_.precision = setting.precision;
+  conditions_.settings.substeps = setting.substeps;
   conditions_.settings.restitution_threshold = 0;
 }
 
-bool is_long(double dt) {
-  return std::ranges::any_of(long_steps, [dt](double step) { return std::fabs(dt / step - 1) < 1e-9; });
-}
-
-long Trial::steps(double seconds) const { return std::lround(seconds / dt_); }
+long Trial::steps(double seconds) const { return std::lround(seconds / dt()); }
 
 Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, const std::function<void(StepSettings&)>& tune) {
   const auto fail = [this](const Error& error) {
@@ -80,7 +76,7 @@ void Trial::resolve(SphereContact& contact) {
 }
 
 void Trial::report(std::string metric, double error, std::optional<double> must, std::optional<double> target) {
-  if (is_long(dt_)) must = target = std::nullopt;
+  if (!setting_.bounded) must = target = std::nullopt;
   findings_.push_back({std::move(metric), error, must, target});
 }
 
@@ -91,7 +87,7 @@ void Trial::report_missing(const std::string& why) {
 
 std::optional<double> Trial::at(const Bounds& bounds, std::size_t single) const {
   for (std::size_t i = 0; i < ladder.size(); ++i)
-    if (std::fabs(dt_ / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
+    if (std::fabs(dt() / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
   return {};
 }
 

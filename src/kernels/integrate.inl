@@ -12,8 +12,6 @@ PC_FN Decay pc_slowing(Real drag_times_h) {
   Decay d; d.loss = pc_min(drag_times_h, PC_REAL(1.0)); precise Real left = PC_REAL(1.0) - d.loss;
   d.e = left; d.phi = PC_REAL(1.0); d.phi2 = PC_REAL(0.5); return d;
 }
-#else
-PC_FN Decay pc_slowing(Real drag_times_h) { return pc_decay(drag_times_h); }
 #endif
 #endif
 
@@ -32,8 +30,11 @@ PC_FN void pc_kernel(PC_IO Index i) {
 #ifdef PC_DRAG
   precise Real x = push.s * h;
   precise Real y = turn.s * h;
-  Decay slow = pc_slowing(x);
-  Decay calm = pc_slowing(y);
+#ifdef PC_SEED
+  Decay slow = pc_slowing(x); Decay calm = pc_slowing(y);
+#else
+  Decay slow = pc_decay_of(PC_GATHER(drag_terms, i, 0u)); Decay calm = pc_decay_of(PC_GATHER(drag_terms, i, 1u));
+#endif
   precise Real kick = slow.phi * h;
   precise Real twist = calm.phi * h;
   Share u_share = pc_share(x, linear.v, linear_low.v, slow);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include "collision/detector.h"
@@ -75,7 +76,8 @@ const char* name(Timer timer) {
 
 struct Stepper::Inside {
   StepSettings settings;
-  bool checked = false;  // the settings
+  bool checked = false;               // the settings
+  std::optional<Precision> prepared;  // for worlds of this one, by the settings
   Detector detector;
   Schedule schedule;
   Octaves octaves;
@@ -176,13 +178,20 @@ struct Stepper::Inside {
     }
   }
 
+  Status prepare(Precision precision) {
+    prepared.reset();
+    Status ok = runner.prepare(settings, precision);
+    if (ok) prepared = precision;
+    return ok;
+  }
+
   Status step(World& world, double dt) {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
     if (ok && !checked) ok = check_settings(settings);
     checked = bool(ok);
     if (ok) ok = check_finite(s.gravity, "gravity of the world");
-    if (ok) ok = runner.prepare(settings, s.tables.precision());
+    if (ok && prepared != s.tables.precision()) ok = prepare(s.tables.precision());
     if (ok) ok = call_back(world);
     if (!ok) return ok;
     lap(Timer::forces);
@@ -308,6 +317,7 @@ Status Stepper::configure(const StepSettings& settings) {
   if (Status ok = check_settings(settings); !ok) return ok;
   inside_->settings = settings;
   inside_->checked = true;
+  inside_->prepared.reset();
   return {};
 }
 const StepSettings& Stepper::settings() const { return inside_->settings; }
