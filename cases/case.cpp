@@ -36,7 +36,7 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
   const auto fail = [this](const Error& error) {
     if (meter_.error.code == ErrorCode::none) meter_.error = error;
   };
-  const auto make = [this, build, fail] {
+  const auto make = [&] {
     Problem problem{World({conditions_.precision, {}}), {}};
     const scenes::SceneOptions options;
     scenes::Builder builder(problem.world, problem.scene, options);
@@ -48,7 +48,8 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
   if (tune) tune(conditions.settings);
   auto simulated = engine_.start(make(), conditions);
   if (!simulated) fail(simulated.error());
-  again_.push_back([this, make, conditions] { return engine_.start(make(), conditions); });
+  again_.push_back({{}, conditions});
+  for (int i = 0; i < repeats_; ++i) again_.back().problems.push_back(make());  // now: what `build` refers to may be gone later
   running_.push_back(simulated ? std::move(*simulated) : std::make_unique<Still>(make()));
   running_.back()->attach(meter_);
   return *running_.back();
@@ -57,7 +58,9 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
 std::optional<double> Trial::time_again() {
   double sum = 0;
   for (std::size_t i = 0; i < running_.size(); ++i) {
-    auto anew = again_[i]();
+    if (again_[i].problems.empty()) return {};
+    auto anew = engine_.start(std::move(again_[i].problems.back()), again_[i].conditions);
+    again_[i].problems.pop_back();
     if (!anew) return {};
     const double seconds = (*anew)->repeat(*running_[i]);
     if (seconds < 0) return {};

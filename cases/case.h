@@ -74,6 +74,8 @@ class Trial {
   void set_budget(double seconds) { meter_.budget = seconds; }
   /// To be called when the variant's function is done.
   void finish();
+  /// How often `time_again` may be called.
+  void set_repeats(int repeats) { repeats_ = repeats; }
   /// What the steps take by themselves [s], from a new start with nothing read in between; none where that cannot be told.
   std::optional<double> time_again();
 
@@ -84,7 +86,13 @@ class Trial {
   Meter meter_;
   std::vector<Finding> findings_;
   std::vector<std::unique_ptr<Simulated>> running_;
-  std::vector<std::function<Result<std::unique_ptr<Simulated>>()>> again_;  // makes each of them as it was
+  /// A simulation as it was started.
+  struct Start {
+    std::vector<Problem> problems;
+    Conditions conditions;
+  };
+  std::vector<Start> again_;  // one for each of them
+  int repeats_ = 0;
 };
 
 struct Variant {

@@ -65,9 +65,10 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
   return result;
 }
 
-std::unique_ptr<Trial> make_trial(Engine& engine, const Variant& variant, const Setting& setting, long limit) {
+std::unique_ptr<Trial> make_trial(Engine& engine, const Variant& variant, const Setting& setting, long limit, int repeats = 0) {
   auto trial = std::make_unique<Trial>(engine, setting);
   trial->set_limit(limit);
+  trial->set_repeats(repeats);
   trial->set_budget(engine.budget());
   variant.run(*trial);
   trial->finish();
@@ -126,7 +127,7 @@ double time_of(Trial& trial, int repeats) {
 std::vector<Row> run_trial(const Selection& selection, const Case& c, const Variant& variant, const Setting& setting,
                            Engine& engine, Engine* gl) {
   constexpr long unlimited = std::numeric_limits<long>::max();
-  const auto trial = make_trial(engine, variant, setting, unlimited);
+  const auto trial = make_trial(engine, variant, setting, unlimited, selection.repeats > 1 ? selection.repeats : 0);
   const double seconds = time_of(*trial, selection.repeats);
   std::string equal;
   if (gl && engine.peer().empty()) {

@@ -158,10 +158,10 @@ TEST_CASE("a program whose layout differs from the schema is refused, with buffe
   const auto context = require_context();
   GlScope scope(*context);
   const ProgramCache cache("layout test");
-  const Result<KernelProgram> program = load_kernel(Kernel::integrate, {Precision::f32}, cache);
+  const Result<KernelProgram> program = load_kernel(Kernel::inertia, {Precision::f32}, cache);
   REQUIRE(bool(program));
-  CHECK(bool(check_layout(program->id, Kernel::integrate, Precision::f32)));
-  const Status other_precision = check_layout(program->id, Kernel::integrate, Precision::f64);
+  CHECK(bool(check_layout(program->id, Kernel::inertia, Precision::f32)));
+  const Status other_precision = check_layout(program->id, Kernel::inertia, Precision::f64);
   REQUIRE_FALSE(bool(other_precision));
   CHECK(other_precision.error().code == ErrorCode::device_error);
   CHECK(other_precision.error().message.find("`pose`") != std::string::npos);

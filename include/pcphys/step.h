@@ -49,9 +49,9 @@ struct StepReport {
   /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of the same bodies, joints
   /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
-  std::uint64_t transfer_bytes = 0;  // between host and device
-  std::vector<BodyId> frozen;        // in this step; see World::frozen
-  double total_ms = 0;               // and `ms`: zeros without StepSettings::timings
+  std::uint64_t transfer_bytes = 0;                    // between host and device
+  std::vector<BodyId> frozen;                          // in this step; see World::frozen
+  double total_ms = 0;                                 // and `ms`: zeros without StepSettings::timings
   std::array<double, std::size_t(Timer::count)> ms{};  // by Timer
 
   explicit operator bool() const { return error.code == ErrorCode::none; }

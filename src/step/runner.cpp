@@ -43,10 +43,15 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
   }
 }
 /// Slots whose kernel writes no body are independent of each other: no colours, no barriers between them.
-bool needs_colours(const KernelSchema& k) {
-  for (const Access& a : k.accesses)
-    if (a.write && a.buffer < Buffer::table_buffers && schema(a.buffer).table == Table::body) return true;
-  return false;
+bool needs_colours(Kernel kernel) {
+  static const std::array<bool, kernel_count> known = [] {
+    std::array<bool, kernel_count> needs{};
+    for (std::size_t k = 0; k < kernel_count; k++)
+      for (const Access& a : schema(Kernel(k)).accesses)
+        needs[k] |= a.write && a.buffer < Buffer::table_buffers && schema(a.buffer).table == Table::body;
+    return needs;
+  }();
+  return known[std::size_t(kernel)];
 }
 bool of_contacts(Domain domain) {
   return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
@@ -220,7 +225,7 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
 /// Empty ranges are left out, and those that need not follow one another are joined.
 void Runner::add_run(const PlanEntry& entry, const Schedule& schedule) {
   const KernelSchema& k = schema(entry.kernel);
-  const bool coloured = needs_colours(k);
+  const bool coloured = needs_colours(entry.kernel);
   const std::size_t first = ranges_.size();
   for (const Range& range : ranges_of(k.domain, schedule, entry.octave)) {
     if (range.begin == range.end) continue;
@@ -230,8 +235,11 @@ void Runner::add_run(const PlanEntry& entry, const Schedule& schedule) {
       ranges_.push_back(range);
   }
   // where they stand is known when all are there
-  runs_.push_back({entry.kernel, entry.barrier || entry.again > 0, std::uint32_t(info_index(entry)),
-                   lanes(entry.place, k.domain, schedule), {static_cast<const Range*>(nullptr), ranges_.size() - first}});
+  runs_.push_back({entry.kernel,
+                   entry.barrier || entry.again > 0,
+                   std::uint32_t(info_index(entry)),
+                   lanes(entry.place, k.domain, schedule),
+                   {static_cast<const Range*>(nullptr), ranges_.size() - first}});
 }
 
 void Runner::prepare_calls(const StepPlan& plan, bool timings, const Schedule& schedule) {

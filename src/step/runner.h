@@ -84,7 +84,7 @@ class Runner {
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
   Bound bound_;
-  std::vector<Place> exchanged_;      // where the table of contacts is bound
+  std::vector<Place> exchanged_;  // where the table of contacts is bound
   std::vector<Call> calls_;
   std::vector<KernelRun> runs_;
   std::vector<Range> ranges_;         // of runs_

@@ -88,13 +88,15 @@ struct Stepper::Inside {
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   bool other = false;                                 // than those of the last step
-  InfoInputs infos_from;                              // of the next three
-  std::uint32_t infos_of = 0;                         // octaves, as bits
+  InfoInputs infos_from;                              // of the next four
+  Precision infos_precision = Precision::f32;
+  std::uint32_t infos_of = 0;  // octaves, as bits
   InfoOf<float> infos_f[octave_count][phase_count];
   InfoOf<double> infos_d[octave_count][phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
   int tries = 0;                                // of this step
+  Vec3 sound_gravity;                           // the last that was looked at
   std::vector<Wrench> called;                   // what the callbacks answered in this step
   StepPlan no_plan;
   Clock::time_point began;
@@ -135,17 +137,23 @@ struct Stepper::Inside {
     return plans.emplace_back(wanted, make_plan(wanted)).second;
   }
 
+  template <class Scalar> void fill_octaves(InfoOf<Scalar> (&infos)[octave_count][phase_count]) {
+    for (unsigned octave = 0; octave < octave_count; octave++)
+      if ((octaves.used() & ~infos_of) >> octave & 1) fill_infos(infos_from, infos[octave], octave);
+    infos_of |= octaves.used();
+  }
+
   const void* fill(const WorldState& s, double h) {
+    const Precision precision = s.tables.precision();
     const InfoInputs from(settings, s.gravity, h, s.last_substep);
-    if (!(from == infos_from)) infos_of = 0;
-    infos_from = from;
-    for (unsigned octave = 0; octave < octave_count; octave++) {
-      if (!(octaves.used() >> octave & 1) || infos_of >> octave & 1) continue;
-      fill_infos(from, infos_f[octave], octave);
-      fill_infos(from, infos_d[octave], octave);
-      infos_of |= 1u << octave;
+    if (precision != infos_precision || !(from == infos_from)) {
+      infos_of = 0;
+      infos_from = from;
+      infos_precision = precision;
     }
-    return s.tables.precision() == Precision::f32 ? static_cast<const void*>(infos_f) : infos_d;
+    const bool single = precision == Precision::f32;
+    if (octaves.used() & ~infos_of) single ? fill_octaves(infos_f) : fill_octaves(infos_d);
+    return single ? static_cast<const void*>(infos_f) : infos_d;
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
@@ -190,7 +198,10 @@ struct Stepper::Inside {
     Status ok = check_dt(dt);
     if (ok && !checked) ok = check_settings(settings);
     checked = bool(ok);
-    if (ok) ok = check_finite(s.gravity, "gravity of the world");
+    if (ok && !(s.gravity == sound_gravity)) {
+      ok = check_finite(s.gravity, "gravity of the world");
+      if (ok) sound_gravity = s.gravity;
+    }
     if (ok && prepared != s.tables.precision()) ok = prepare(s.tables.precision());
     if (ok) ok = call_back(world);
     if (!ok) return ok;
@@ -324,8 +335,9 @@ const StepSettings& Stepper::settings() const { return inside_->settings; }
 
 const StepReport& Stepper::step(World& world, double dt) {
   Inside& in = *inside_;
+  static const StepReport blank;
   const std::uint64_t made = in.report.step;
-  in.report = {};
+  in.report = blank;
   const bool clocked = in.settings.timings;
   Clock::time_point start;
   if (clocked) start = in.began = Clock::now();
