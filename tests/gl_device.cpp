@@ -165,7 +165,7 @@ TEST_CASE("a program whose layout differs from the schema is refused, with buffe
   REQUIRE_FALSE(bool(other_precision));
   CHECK(other_precision.error().code == ErrorCode::device_error);
   CHECK(other_precision.error().message.find("`pose`") != std::string::npos);
-  const Status other_bindings = check_layout(program->id, Kernel::begin, Precision::f32);
+  const Status other_bindings = check_layout(program->id, Kernel::advance, Precision::f32);
   REQUIRE_FALSE(bool(other_bindings));
   CHECK(other_bindings.error().message.find("binding") != std::string::npos);
   glDeleteProgram(program->id);
