@@ -79,7 +79,7 @@ class Bench {
 
   Status broad() { return detector_.find_pairs(state(), dt, options_); }
   Status narrow() { return detector_.find_contacts(state(), dt, options_, found_); }
-  Status bind() { return runner_.bind(plan_, state(), schedule_); }
+  Status bind() { return runner_.bind(settings_, plan_, state(), schedule_); }
   /// Colours and layout of contacts, as after a step in which other pairs touch.
   Status lay_out() {
     schedule_.update_contacts(state());
@@ -87,7 +87,8 @@ class Bench {
   }
   Status run(const StepPlan& plan) {
     const bool f32 = world_.precision() == Precision::f32;
-    return runner_.run(settings_, plan, state(), schedule_, f32 ? static_cast<const void*>(infos_f_) : infos_d_, report_);
+    if (auto status = runner_.bind(settings_, plan, state(), schedule_); !status) return status;
+    return runner_.run(state(), schedule_, f32 ? static_cast<const void*>(infos_f_) : infos_d_, report_);
   }
 
   /// Lifts every body by a hand's breadth, or puts it back.

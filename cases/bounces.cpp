@@ -177,17 +177,28 @@ void add_bounces(std::vector<Case>& cases) {
   Case& ball = cases.emplace_back(Case{"A11", "bouncing ball", {}});
   for (const Restitution& r :
        {Restitution{0.25, 3}, Restitution{0.5, 5}, Restitution{0.75, 5}, Restitution{0.9, 5}, Restitution{1, 5}}) {
-    ball.variants.push_back({.name = "e = " + text(r.e), .run = [r](Trial& t) { bouncing(t, r); }, .substeps = {1, 4}});
+    ball.variants.push_back(
+        {.name = "e = " + text(r.e), .run = [r](Trial& t) { bouncing(t, r); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1});
   }
   for (double e : {0.0, 0.5, 0.9}) {
-    ball.variants.push_back({.name = "rest, e = " + text(e), .run = [e](Trial& t) { comes_to_rest(t, e); }, .substeps = {1, 4}});
+    ball.variants.push_back(
+        {.name = "rest, e = " + text(e), .run = [e](Trial& t) { comes_to_rest(t, e); }, .coarse = true, .substeps = {1, 4}});
   }
-  ball.variants.push_back({.name = "1000 bounces", .run = keeps_bouncing, .steps = {ladder[1], ladder[2]}});
+  ball.variants.push_back({.name = "1000 bounces",
+                           .run = keeps_bouncing,
+                           .steps = {ladder[1], ladder[2]},
+                           .coarse = true,
+                           .more_steps = {ladder[0]},
+                           .lost_at = 1});
 
   Case& spin = cases.emplace_back(Case{"A17", "spinning ball bounces", {}});
   spin.variants.push_back({.name = "direct", .run = resolve_bounces, .direct = true});
   for (double e : {0.0, 0.5, 0.8, 1.0}) {
-    spin.variants.push_back({.name = "e = " + text(e), .run = [e](Trial& t) { spin_bounces(t, e); }, .substeps = {1, 4}});
+    spin.variants.push_back({.name = "e = " + text(e),
+                             .run = [e](Trial& t) { spin_bounces(t, e); },
+                             .coarse = true,
+                             .substeps = {1, 4},
+                             .lost_at = 1});
   }
 }
 

@@ -14,27 +14,23 @@ class Still final : public Simulated {
   Pose pose(int body) const override { return problem_.scene.bodies[std::size_t(body)].start; }
   Vec3 velocity(int) const override { return {}; }
   Vec3 angular_velocity(int) const override { return {}; }
-  void set_wrench(int, const Wrench&) override {}
-  void set_gravity(Vec3) override {}
-  void set_velocity(int, Vec3, Vec3) override {}
 
  protected:
   Status advance(double) override { return {}; }
+  void apply_wrench(int, const Wrench&) override {}
+  void apply_gravity(Vec3) override {}
+  void apply_velocity(int, Vec3, Vec3) override {}
 };
 
 }  // namespace
 
-Trial::Trial(Engine& engine, Precision precision, double dt, std::uint32_t substeps) : engine_(engine), dt_(dt) {
-  conditions_.precision = precision;
-  conditions_.settings.substeps = substeps;
+Trial::Trial(Engine& engine, const Setting& setting) : engine_(engine), setting_(setting) {
+  conditions_.precision = setting.precision;
+  conditions_.settings.substeps = setting.substeps;
   conditions_.settings.restitution_threshold = 0;
 }
 
-bool is_long(double dt) {
-  return std::ranges::any_of(long_steps, [dt](double step) { return std::fabs(dt / step - 1) < 1e-9; });
-}
-
-long Trial::steps(double seconds) const { return std::lround(seconds / dt_); }
+long Trial::steps(double seconds) const { return std::lround(seconds / dt()); }
 
 Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, const std::function<void(StepSettings&)>& tune) {
   const auto fail = [this](const Error& error) {
@@ -52,9 +48,25 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
   if (tune) tune(conditions.settings);
   auto simulated = engine_.start(make(), conditions);
   if (!simulated) fail(simulated.error());
+  again_.push_back({{}, conditions});
+  for (int i = 0; i < repeats_; ++i) again_.back().problems.push_back(make());  // now: what `build` refers to may be gone later
   running_.push_back(simulated ? std::move(*simulated) : std::make_unique<Still>(make()));
   running_.back()->attach(meter_);
   return *running_.back();
+}
+
+std::optional<double> Trial::time_again() {
+  double sum = 0;
+  for (std::size_t i = 0; i < running_.size(); ++i) {
+    if (again_[i].problems.empty()) return {};
+    auto anew = engine_.start(std::move(again_[i].problems.back()), again_[i].conditions);
+    again_[i].problems.pop_back();
+    if (!anew) return {};
+    const double seconds = (*anew)->repeat(*running_[i]);
+    if (seconds < 0) return {};
+    sum += seconds;
+  }
+  return sum;
 }
 
 void Trial::resolve(SphereContact& contact) {
@@ -67,7 +79,7 @@ void Trial::resolve(SphereContact& contact) {
 }
 
 void Trial::report(std::string metric, double error, std::optional<double> must, std::optional<double> target) {
-  if (is_long(dt_)) must = target = std::nullopt;
+  if (!setting_.bounded) must = target = std::nullopt;
   findings_.push_back({std::move(metric), error, must, target});
 }
 
@@ -78,7 +90,7 @@ void Trial::report_missing(const std::string& why) {
 
 std::optional<double> Trial::at(const Bounds& bounds, std::size_t single) const {
   for (std::size_t i = 0; i < ladder.size(); ++i)
-    if (std::fabs(dt_ / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
+    if (std::fabs(dt() / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
   return {};
 }
 

@@ -17,9 +17,8 @@ namespace pcphys::cases {
 /// The step lengths that errors are compared at [s].
 inline constexpr std::array<double, 4> ladder{1.0 / 60, 1.0 / 240, 1.0 / 1200, 1e-4};
 
-/// Longer ones that smooth motion is run at too, since methods of high order are of use there; nothing has a bound there [s].
+/// Longer ones, at which nothing has a bound: they show what little work brings, and where methods of high order are of use [s].
 inline constexpr std::array<double, 2> long_steps{1.0 / 15, 1.0 / 30};
-bool is_long(double dt);
 
 /// One bound a step of the ladder.
 using Bounds = std::array<double, 4>;
@@ -31,13 +30,21 @@ struct Finding {
   std::optional<double> must, target;
 };
 
+/// With what a variant is run once.
+struct Setting {
+  Precision precision = Precision::f64;
+  double dt = 0;
+  std::uint32_t substeps = 1;
+  bool bounded = true;  // what it reports is held to the case's bounds
+};
+
 /// One run of a variant: an engine, a precision, a step length and a number of sub-steps.
 class Trial {
  public:
-  Trial(Engine& engine, Precision precision, double dt, std::uint32_t substeps);
+  Trial(Engine& engine, const Setting& setting);
   Trial(const Trial&) = delete;
 
-  double dt() const { return dt_; }
+  double dt() const { return setting_.dt; }
   std::uint32_t substeps() const { return conditions_.settings.substeps; }
   bool is_double() const { return conditions_.precision == Precision::f64; }
   /// Steps that make up this time [s].
@@ -67,27 +74,42 @@ class Trial {
   void set_budget(double seconds) { meter_.budget = seconds; }
   /// To be called when the variant's function is done.
   void finish();
+  /// How often `time_again` may be called.
+  void set_repeats(int repeats) { repeats_ = repeats; }
+  /// What the steps take by themselves [s], from a new start with nothing read in between; none where that cannot be told.
+  std::optional<double> time_again();
 
  private:
   Engine& engine_;
   Conditions conditions_;
-  double dt_;
+  Setting setting_;
   Meter meter_;
   std::vector<Finding> findings_;
   std::vector<std::unique_ptr<Simulated>> running_;
+  /// A simulation as it was started.
+  struct Start {
+    std::vector<Problem> problems;
+    Conditions conditions;
+  };
+  std::vector<Start> again_;  // one for each of them
+  int repeats_ = 0;
 };
 
 struct Variant {
   std::string name;
   std::function<void(Trial&)> run;
   std::vector<double> steps{ladder.begin(), ladder.end()};
-  bool smooth = false;  // runs at long_steps too
+  bool coarse = false;  // runs at long_steps too
   std::vector<std::uint32_t> substeps{1};
-  bool single = true;          // runs in single precision too
-  bool direct = false;         // uses `resolve`: in pcphys alone, with steps of its own
-  bool own = false;            // of a setting that pcphys alone has
-  std::string second_order{};  // the metric whose slope must be 1.9 at least, in double
-  std::vector<double> slow{};  // step lengths that only --all runs
+  std::vector<double> more_steps{};            // and these, without bounds either
+  std::vector<std::uint32_t> more_substeps{};  // the same
+  bool single = true;                          // runs in single precision too
+  bool direct = false;                         // uses `resolve`: in pcphys alone, with steps of its own
+  bool own = false;                            // of a setting that pcphys alone has
+  std::string second_order{};                  // the metric whose slope must be 1.9 at least, in double
+  bool order_is_target = false;                // should, not must
+  std::optional<double> lost_at{};  // the first metric is then as large as the motion itself: the run tells nothing of it
+  std::vector<double> slow{};       // step lengths that only --all runs
 };
 
 struct Case {

@@ -125,19 +125,28 @@ void ball_and_chain(Trial& trial, int links, double radius, double load) {
 }  // namespace
 
 void add_chains(std::vector<Case>& cases) {
-  const std::vector<double> step{1.0 / 240};
+  const std::vector<double> step{1.0 / 240}, longer{1.0 / 30, 1.0 / 60};
+  const std::vector<std::uint32_t> fewer{1, 2};  // sub-steps
   Case& hanging = cases.emplace_back(Case{"B1", "hanging chain, its last link 1 to 1e6 times as heavy", {}});
   for (int links : {10, 50, 200})
     for (double ratio : {1.0, 100.0, 1e4, 1e6}) {
       char name[64];
       std::snprintf(name, sizeof name, "%d links, 1:%g", links, ratio);
-      hanging.variants.push_back(
-          {.name = name, .run = [=](Trial& t) { at_rest(t, links, ratio); }, .steps = step, .substeps = {4}});
+      hanging.variants.push_back({.name = name,
+                                  .run = [=](Trial& t) { at_rest(t, links, ratio); },
+                                  .steps = step,
+                                  .substeps = {4},
+                                  .more_steps = longer,
+                                  .more_substeps = fewer,
+                                  .lost_at = 1});
       if (links == 10 || (links == 50 && ratio <= 100))
         hanging.variants.push_back({.name = std::string(name) + ", mode",
                                     .run = [=](Trial& t) { first_mode(t, links, ratio); },
                                     .steps = step,
-                                    .substeps = {4}});
+                                    .substeps = {4},
+                                    .more_steps = longer,
+                                    .more_substeps = fewer,
+                                    .lost_at = 1});
     }
 
   Case& swing = cases.emplace_back(Case{"B2", "chain let go from level", {}});
@@ -151,22 +160,41 @@ void add_chains(std::vector<Case>& cases) {
                              Reference{"10 links, 1:1", "B02_swing_N10_r1.csv", 10, 1, 1.2e-4}})
     swing.variants.push_back({.name = r.name,
                               .run = [r, csv = read_csv(r.file)](Trial& t) { swing_reference(t, r.links, r.ratio, csv, r.must); },
+                              .coarse = true,
                               .substeps = {1, 4},
-                              .second_order = "position [m]"});
+                              .more_substeps = {2},
+                              .second_order = "position [m]",
+                              .lost_at = r.links * link_length});
   for (int links : {10, 50})
     for (double ratio : {1.0, 100.0, 1e4}) {
       char name[64];
       std::snprintf(name, sizeof name, "%d links, 1:%g, 5 s", links, ratio);
-      swing.variants.push_back(
-          {.name = name, .run = [=](Trial& t) { swing_long(t, links, ratio); }, .steps = step, .substeps = {4}});
+      swing.variants.push_back({.name = name,
+                                .run = [=](Trial& t) { swing_long(t, links, ratio); },
+                                .steps = step,
+                                .substeps = {4},
+                                .more_steps = longer,
+                                .more_substeps = fewer,
+                                .lost_at = 1});
     }
 
   const std::vector<double> frame{1.0 / 60};
-  cases.push_back(
-      {"B6",
-       "ball and chain",
-       {{.name = "32 links, 1:585", .run = [](Trial& t) { ball_and_chain(t, 32, 2, 585); }, .steps = frame, .substeps = {4}},
-        {.name = "40 links, 1:672", .run = [](Trial& t) { ball_and_chain(t, 40, 8, 672); }, .steps = frame, .substeps = {4}}}});
+  cases.push_back({"B6",
+                   "ball and chain",
+                   {{.name = "32 links, 1:585",
+                     .run = [](Trial& t) { ball_and_chain(t, 32, 2, 585); },
+                     .steps = frame,
+                     .substeps = {4},
+                     .more_steps = {1.0 / 30},
+                     .more_substeps = fewer,
+                     .lost_at = 1},
+                    {.name = "40 links, 1:672",
+                     .run = [](Trial& t) { ball_and_chain(t, 40, 8, 672); },
+                     .steps = frame,
+                     .substeps = {4},
+                     .more_steps = {1.0 / 30},
+                     .more_substeps = fewer,
+                     .lost_at = 1}}});
 }
 
 }  // namespace pcphys::cases

@@ -58,8 +58,8 @@ Status run_plan(const StepSettings& settings, const StepPlan& plan, double dt, W
   const FlushSubnormals flush;
   runner.forget();
   if (auto status = runner.prepare(settings, world.precision()); !status) return status;
-  if (auto status = runner.bind(plan, s, schedule); !status) return status;
-  return runner.run(settings, plan, s, schedule, infos, report);
+  if (auto status = runner.bind(settings, plan, s, schedule); !status) return status;
+  return runner.run(s, schedule, infos, report);
 }
 
 }  // namespace

@@ -108,16 +108,16 @@ void add_free_motion(std::vector<Case>& cases) {
   Case& drag = cases.emplace_back(Case{"A1", "free fall with linear drag, against the closed form", {}});
   for (const auto& [name, f] : {std::pair{"F = 0.5 1/s", 0.5}, {"F = 1 1/s", 1.0}, {"F = 5 1/s", 5.0}, {"F = 30 1/s", 30.0}})
     drag.variants.push_back(
-        {.name = name, .run = [f = f](Trial& t) { fall_with_drag(t, f); }, .steps = with_long_step(), .smooth = true});
+        {.name = name, .run = [f = f](Trial& t) { fall_with_drag(t, f); }, .steps = with_long_step(), .coarse = true});
   for (const auto& [name, f] :
        {std::pair{"seed, F = 0.5 1/s", 0.5}, {"seed, F = 1 1/s", 1.0}, {"seed, F = 5 1/s", 5.0}, {"seed, F = 30 1/s", 30.0}})
     drag.variants.push_back(
         {.name = name, .run = [f = f](Trial& t) { fall_by_seed(t, f); }, .steps = with_long_step(), .own = true});
-  cases.push_back({"A2", "projectile", {{.name = "thrown", .run = projectile, .steps = with_long_step(), .smooth = true}}});
+  cases.push_back({"A2", "projectile", {{.name = "thrown", .run = projectile, .steps = with_long_step(), .coarse = true}}});
   cases.push_back({"A5",
                    "constant torque spins a box up",
-                   {{.name = "10 s", .run = [](Trial& t) { spin_up(t, 10); }, .smooth = true},
-                    {.name = "off at 5 s", .run = [](Trial& t) { spin_up(t, 5); }, .smooth = true}}});
+                   {{.name = "10 s", .run = [](Trial& t) { spin_up(t, 10); }, .coarse = true, .lost_at = 1},
+                    {.name = "off at 5 s", .run = [](Trial& t) { spin_up(t, 5); }, .coarse = true, .lost_at = 1}}});
 }
 
 }  // namespace pcphys::cases

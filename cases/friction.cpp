@@ -96,7 +96,7 @@ void all_directions(Trial& trial) {
 void add_friction(std::vector<Case>& cases) {
   Case& box = cases.emplace_back(Case{"A21", "box on an incline", {}});
   const auto add = [&box](const char* name, void (*run)(Trial&, const Slide&), const Slide& s) {
-    box.variants.push_back({.name = name, .run = [=](Trial& t) { run(t, s); }, .substeps = {1, 4}});
+    box.variants.push_back({.name = name, .run = [=](Trial& t) { run(t, s); }, .coarse = true, .substeps = {1, 4}});
   };
   const auto sticks_10 = [](Trial& t, const Slide& s) { sticks(t, s, 10); };
   box.variants.push_back({.name = "a, stick 100 s",
@@ -105,6 +105,7 @@ void add_friction(std::vector<Case>& cases) {
                                 sticks(t, {0.6, 0.6}, 100);
                               },
                           .steps = {ladder[0], ladder[1], ladder[2]},
+                          .coarse = true,
                           .substeps = {1, 4}});
   add("a, mu = 1.01 tan", sticks_10, {1.01 * tangent, 1.01 * tangent});
   add("a, mu = .99 tan", slides, {0.99 * tangent, 0.99 * tangent});
@@ -117,7 +118,7 @@ void add_friction(std::vector<Case>& cases) {
   add("e, level, mu = .2", stops, {0.2, 0.2, 2, 0});
   add("e, level, mu = .4", stops, {0.4, 0.4, 2, 0});
   add("e, level, mu = .7", stops, {0.7, 0.7, 2, 0});
-  box.variants.push_back({.name = "f, 8 directions", .run = all_directions, .substeps = {1, 4}});
+  box.variants.push_back({.name = "f, 8 directions", .run = all_directions, .coarse = true, .substeps = {1, 4}});
 }
 
 }  // namespace pcphys::cases

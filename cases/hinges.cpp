@@ -135,12 +135,15 @@ void stop_at_limit(Trial& trial) {
 
 // ---- A20 -----------------------------------------------------------------------------------------------
 
-/// Step lengths: 1/60 and 1/240 s in turn, or uniform in [0.5, 1.5] / 240 s.
-std::vector<double> step_lengths(bool random, double seconds) {
+constexpr double mean_of_random = 1.0 / 240, mean_of_turns = 0.5 * (1.0 / 60 + 1.0 / 240);
+
+/// Step lengths: 1/60 and 1/240 s in turn, or uniform in [0.5, 1.5] / 240 s; or all of them in proportion to another mean.
+std::vector<double> step_lengths(bool random, double mean, double seconds) {
+  const double scale = mean / (random ? mean_of_random : mean_of_turns);
   std::vector<double> lengths;
   scenes::Random draws(20);
   for (double t = 0; t < seconds; t += lengths.back())
-    lengths.push_back(random ? draws.between(0.5, 1.5) / 240 : lengths.size() % 2 ? 1.0 / 240 : 1.0 / 60);
+    lengths.push_back(scale * (random ? draws.between(0.5, 1.5) / 240 : lengths.size() % 2 ? 1.0 / 240 : 1.0 / 60));
   return lengths;
 }
 
@@ -176,8 +179,8 @@ double swing_error(Trial& trial, const std::vector<double>& lengths) {
 }
 
 void changing_swing(Trial& trial, bool random) {
-  const double longest = random ? 1.5 / 240 : 1.0 / 60;
-  const double error = swing_error(trial, step_lengths(random, 10));
+  const double longest = (random ? 1.5 : 1.6) * trial.dt();
+  const double error = swing_error(trial, step_lengths(random, trial.dt(), 10));
   const double constant = swing_error(trial, std::vector<double>(std::size_t(std::lround(10 / longest)), longest));
   // below what the free flights are allowed it is rounding
   trial.report("position [m]", error, std::max(4 * constant, trial.either(1e-10, 1e-3)));
@@ -193,7 +196,7 @@ void changing_fall(Trial& trial, bool random, double drag) {
   });
   double t = 0;
   Worst worst;
-  for (double dt : step_lengths(random, 5)) {
+  for (double dt : step_lengths(random, trial.dt(), 5)) {
     run.step(dt);
     t += dt;
     worst.add(length(run.pose(0).position - thrown(v0, down, drag, t)));
@@ -217,22 +220,33 @@ void add_hinges(std::vector<Case>& cases) {
     };
     const std::string end = std::string(", ") + suffix;
     doors.variants.push_back(
-        {.name = "a, free" + end, .run = run(Motor::none, open), .smooth = true, .second_order = "angle [rad]"});
+        {.name = "a, free" + end, .run = run(Motor::none, open), .coarse = true, .second_order = "angle [rad]", .lost_at = 1});
+    doors.variants.push_back({.name = "b, motor" + end,
+                              .run = run(Motor::joint, driven),
+                              .coarse = true,
+                              .second_order = "angle [rad]",
+                              .lost_at = 1});
+    doors.variants.push_back({.name = "b, host's torque" + end, .run = run(Motor::host, driven), .coarse = true, .lost_at = 1});
     doors.variants.push_back(
-        {.name = "b, motor" + end, .run = run(Motor::joint, driven), .smooth = true, .second_order = "angle [rad]"});
-    doors.variants.push_back({.name = "b, host's torque" + end, .run = run(Motor::host, driven), .smooth = true});
-    doors.variants.push_back(
-        {.name = "b, drag" + end, .run = run(Motor::drag, driven), .smooth = true, .second_order = "angle [rad]"});
+        {.name = "b, drag" + end, .run = run(Motor::drag, driven), .coarse = true, .second_order = "angle [rad]", .lost_at = 1});
   }
-  cases.push_back({"A19", "angle limit as a stop", {{.name = "from 90 deg", .run = stop_at_limit, .substeps = {1, 4}}}});
+  cases.push_back(
+      {"A19", "angle limit as a stop", {{.name = "from 90 deg", .run = stop_at_limit, .coarse = true, .substeps = {1, 4}}}});
 
   Case& changing = cases.emplace_back(Case{"A20", "steps of changing length; dt is their mean", {}});
   for (bool random : {false, true}) {
     const std::string prefix = random ? "random, " : "alternating, ";
-    const std::vector<double> mean{random ? 1.0 / 240 : 0.5 * (1.0 / 60 + 1.0 / 240)};
-    changing.variants.push_back({.name = prefix + "A7", .run = [=](Trial& t) { changing_swing(t, random); }, .steps = mean});
-    changing.variants.push_back({.name = prefix + "A1b", .run = [=](Trial& t) { changing_fall(t, random, 0.5); }, .steps = mean});
-    changing.variants.push_back({.name = prefix + "A2", .run = [=](Trial& t) { changing_fall(t, random, 0); }, .steps = mean});
+    const double mean = random ? mean_of_random : mean_of_turns;
+    const std::vector<double> steps{mean}, more{8 * mean, 4 * mean, 2 * mean, mean / 4};
+    changing.variants.push_back({.name = prefix + "A7",
+                                 .run = [=](Trial& t) { changing_swing(t, random); },
+                                 .steps = steps,
+                                 .more_steps = more,
+                                 .lost_at = 0.5});
+    changing.variants.push_back(
+        {.name = prefix + "A1b", .run = [=](Trial& t) { changing_fall(t, random, 0.5); }, .steps = steps, .more_steps = more});
+    changing.variants.push_back(
+        {.name = prefix + "A2", .run = [=](Trial& t) { changing_fall(t, random, 0); }, .steps = steps, .more_steps = more});
   }
 }
 

@@ -181,21 +181,21 @@ void add_impacts(std::vector<Case>& cases) {
     const std::vector<Collision> rows = collisions(mass);
     spheres.variants.push_back(
         {.name = std::string(name) + ", direct", .run = [rows](Trial& t) { resolve(t, rows); }, .direct = true});
-    spheres.variants.push_back({.name = name, .run = [rows](Trial& t) { collide(t, rows); }});
+    spheres.variants.push_back({.name = name, .run = [rows](Trial& t) { collide(t, rows); }, .coarse = true, .lost_at = 1});
     spheres.variants.push_back({.name = std::string(name) + ", touching",
                                 .run = [rows](Trial& t) { touch(t, rows); },
                                 .steps = {1e-8},
                                 .single = false});
   }
   Case& chains = cases.emplace_back(Case{"A18", "Newton's cradle, a mass chain, a struck rod", {}});
-  chains.variants = {{.name = "cradle, gaps", .run = [](Trial& t) { cradle(t, 1e-3); }},
-                     {.name = "cradle, touching", .run = [](Trial& t) { cradle(t, 0); }},
-                     {.name = "masses 1, 2, 4", .run = mass_chain}};
+  chains.variants = {{.name = "cradle, gaps", .run = [](Trial& t) { cradle(t, 1e-3); }, .coarse = true, .lost_at = 1},
+                     {.name = "cradle, touching", .run = [](Trial& t) { cradle(t, 0); }, .coarse = true, .lost_at = 1},
+                     {.name = "masses 1, 2, 4", .run = mass_chain, .coarse = true, .lost_at = 1}};
   for (const auto& [name, s] :
        {std::pair{"rod, d = .25, e = 0", Strike{0.25, 0, 2 - 2 * 0.533503781826, 0.533503781826, 1.597954618}},
         {"rod, d = .25, e = 1", Strike{0.25, 1, -0.134015127, 1.067007563652, 3.195909236}},
         {"rod, d = .5, e = 1", Strike{0.5, 1, 0.665600853, 0.667199573674, 3.996802558}}})
-    chains.variants.push_back({.name = name, .run = [s = s](Trial& t) { strike(t, s); }});
+    chains.variants.push_back({.name = name, .run = [s = s](Trial& t) { strike(t, s); }, .coarse = true, .lost_at = 1});
 }
 
 }  // namespace pcphys::cases

@@ -207,8 +207,13 @@ void add_loops(std::vector<Case>& cases) {
     double load;
   };
   for (const Bridge& b : {Bridge{"one pin", 1, 0}, {"two pins", 2, 0}, {"one pin, 100 kg", 1, 100}, {"one pin, 1e4 kg", 1, 1e4}})
-    hung.variants.push_back(
-        {.name = b.name, .run = [b](Trial& t) { bridge(t, b.pins, b.load); }, .steps = {1.0 / 240}, .substeps = {4}});
+    hung.variants.push_back({.name = b.name,
+                             .run = [b](Trial& t) { bridge(t, b.pins, b.load); },
+                             .steps = {1.0 / 240},
+                             .substeps = {4},
+                             .more_steps = {1.0 / 30, 1.0 / 60},
+                             .more_substeps = {1, 2},
+                             .lost_at = 1});
 
   const Csv linkage = read_csv("B07_fourbar.csv");
   cases.push_back({"B7",
@@ -216,16 +221,29 @@ void add_loops(std::vector<Case>& cases) {
                    {{.name = "four-bar, pins",
                      .run = [linkage](Trial& t) { four_bar(t, false, linkage); },
                      .steps = {1.0 / 60, 1.0 / 240, 1.0 / 1200},
-                     .substeps = {1, 4}},
+                     .substeps = {1, 4},
+                     .second_order = "rocker [deg]",
+                     .order_is_target = true,
+                     .lost_at = 180 / std::numbers::pi},
                     {.name = "four-bar, hinges",
                      .run = [linkage](Trial& t) { four_bar(t, true, linkage); },
                      .steps = {1.0 / 60, 1.0 / 240, 1.0 / 1200},
-                     .substeps = {1, 4}},
-                    {.name = "ring of 20", .run = ring, .steps = {1.0 / 240}, .substeps = {4}}}});
+                     .substeps = {1, 4},
+                     .second_order = "rocker [deg]",
+                     .order_is_target = true,
+                     .lost_at = 180 / std::numbers::pi},
+                    {.name = "ring of 20",
+                     .run = ring,
+                     .steps = {1.0 / 240},
+                     .substeps = {4},
+                     .more_steps = {1.0 / 30, 1.0 / 60},
+                     .more_substeps = {1, 2},
+                     .lost_at = 1}}});
 
-  cases.push_back({"B11",
-                   "grid of 100 x 100 balls and joints",
-                   {{.name = "top row fixed", .run = grid, .steps = {1.0 / 60}, .substeps = {4}}}});
+  cases.push_back(
+      {"B11",
+       "grid of 100 x 100 balls and joints",
+       {{.name = "top row fixed", .run = grid, .steps = {1.0 / 60}, .substeps = {4}, .more_substeps = {1, 2}, .lost_at = 1}}});
 }
 
 }  // namespace pcphys::cases

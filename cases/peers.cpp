@@ -14,14 +14,13 @@ class Other final : public Simulated {
   Vec3 velocity(int body) const override { return peer_->velocity(std::size_t(body)); }
   Vec3 angular_velocity(int body) const override { return peer_->angular_velocity(std::size_t(body)); }
 
-  void set_wrench(int body, const Wrench& wrench) override { check(peer_->set_wrench(std::size_t(body), wrench)); }
-  void set_gravity(Vec3 gravity) override { check(peer_->set_gravity(gravity)); }
-  void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity) override {
-    check(peer_->set_velocity(std::size_t(body), velocity, angular_velocity));
-  }
-
  protected:
   Status advance(double dt) override { return peer_->step(dt); }
+  void apply_wrench(int body, const Wrench& wrench) override { check(peer_->set_wrench(std::size_t(body), wrench)); }
+  void apply_gravity(Vec3 gravity) override { check(peer_->set_gravity(gravity)); }
+  void apply_velocity(int body, Vec3 velocity, Vec3 angular_velocity) override {
+    check(peer_->set_velocity(std::size_t(body), velocity, angular_velocity));
+  }
 
  private:
   void check(const Status& status) {

@@ -172,29 +172,37 @@ void add_pendulums(std::vector<Case>& cases) {
   cases.push_back(
       {"A6",
        "heavy symmetric top",
-       {{.name = "a, steady", .run = top("A06a_heavy_top_steady.csv", steady), .smooth = true, .second_order = "azimuth [rad]"},
+       {{.name = "a, steady",
+         .run = top("A06a_heavy_top_steady.csv", steady),
+         .coarse = true,
+         .second_order = "azimuth [rad]",
+         .lost_at = 1},
         {.name = "b, cusps",
          .run = top("A06b_heavy_top_cuspidal.csv", cuspidal),
-         .smooth = true,
-         .second_order = "azimuth [rad]"},
-        {.name = "sleeping", .run = [](Trial& t) { sleeping_top(t, 60, 0, 60, false); }, .smooth = true},
-        {.name = "below critical", .run = [](Trial& t) { sleeping_top(t, 25, 1e-3, 10, true); }, .smooth = true}}});
+         .coarse = true,
+         .second_order = "azimuth [rad]",
+         .lost_at = 1},
+        {.name = "sleeping", .run = [](Trial& t) { sleeping_top(t, 60, 0, 60, false); }, .coarse = true, .lost_at = 1},
+        {.name = "below critical", .run = [](Trial& t) { sleeping_top(t, 25, 1e-3, 10, true); }, .coarse = true}}});
 
   Case& compound = cases.emplace_back(Case{"A7", "compound pendulum", {}});
   for (const Amplitude& a : amplitudes)
     compound.variants.push_back({.name = a.name,
                                  .run = [a, reference = read_csv(a.file)](Trial& t) { swing(t, a, reference); },
-                                 .smooth = true,
+                                 .coarse = true,
                                  .substeps = {1, 4},
-                                 .second_order = "position [m]"});
-  compound.variants.push_back({.name = "90 deg, 1000 s", .run = long_swing, .steps = {ladder[0], ladder[1]}, .single = false});
+                                 .second_order = "position [m]",
+                                 .lost_at = 0.5});
+  compound.variants.push_back(
+      {.name = "90 deg, 1000 s", .run = long_swing, .steps = {ladder[0], ladder[1]}, .coarse = true, .single = false});
   cases.push_back({"A8",
                    "double compound pendulum",
                    {{.name = "from level",
                      .run = double_pendulum,
-                     .smooth = true,
+                     .coarse = true,
                      .substeps = {1, 4},
-                     .second_order = "position until 2 s [m]"}}});
+                     .second_order = "position until 2 s [m]",
+                     .lost_at = 0.5}}});
 }
 
 }  // namespace pcphys::cases

@@ -85,19 +85,36 @@ void slides_then_rolls(Trial& trial, double spin) {
 }  // namespace
 
 void add_rolling(std::vector<Case>& cases) {
-  cases.push_back({"A22",
-                   "sphere on an incline",
-                   {{.name = "rolls, mu = .5", .run = [](Trial& t) { rolls(t, 0.5, 0.4); }, .substeps = {1, 4}},
-                    {.name = "rolls, shell", .run = [](Trial& t) { rolls(t, 0.5, 2.0 / 3); }, .substeps = {1, 4}},
-                    {.name = "slides, mu = .1", .run = [](Trial& t) { slides(t, 0.1); }, .substeps = {1, 4}},
-                    {.name = "1 % above least mu",
-                     .run = [](Trial& t) { rolls(t, 1.01 * std::tan(incline) * 2 / 7, 0.4); },
-                     .substeps = {1, 4}},
-                    {.name = "1 % below least mu", .run = slips_below_threshold, .substeps = {1, 4}}}});
+  cases.push_back(
+      {"A22",
+       "sphere on an incline",
+       {{.name = "rolls, mu = .5", .run = [](Trial& t) { rolls(t, 0.5, 0.4); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1},
+        {.name = "rolls, shell",
+         .run = [](Trial& t) { rolls(t, 0.5, 2.0 / 3); },
+         .coarse = true,
+         .substeps = {1, 4},
+         .lost_at = 1},
+        {.name = "slides, mu = .1", .run = [](Trial& t) { slides(t, 0.1); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1},
+        {.name = "1 % above least mu",
+         .run = [](Trial& t) { rolls(t, 1.01 * std::tan(incline) * 2 / 7, 0.4); },
+         .coarse = true,
+         .substeps = {1, 4},
+         .lost_at = 1},
+        {.name = "1 % below least mu", .run = slips_below_threshold, .coarse = true, .substeps = {1, 4}, .lost_at = 1}}});
   cases.push_back({"A23",
                    "sliding to rolling",
-                   {{.name = "forward", .run = [](Trial& t) { slides_then_rolls(t, 0); }, .substeps = {1, 4}},
-                    {.name = "backspin", .run = [](Trial& t) { slides_then_rolls(t, -35); }, .substeps = {1, 4}}}});
+                   {{.name = "forward",
+                     .run = [](Trial& t) { slides_then_rolls(t, 0); },
+                     .coarse = true,
+                     .substeps = {1, 4},
+                     .second_order = "displacement [m]",
+                     .order_is_target = true},
+                    {.name = "backspin",
+                     .run = [](Trial& t) { slides_then_rolls(t, -35); },
+                     .coarse = true,
+                     .substeps = {1, 4},
+                     .second_order = "displacement [m]",
+                     .order_is_target = true}}});
 }
 
 }  // namespace pcphys::cases

@@ -193,17 +193,20 @@ void tumble_with_drag(Trial& trial) {
 void add_rotation(std::vector<Case>& cases) {
   Case& top = cases.emplace_back(Case{"A3", "torque-free symmetric top", {}});
   for (const auto& [name, axis] : {std::pair{"about z", 2}, {"about x", 0}, {"about y", 1}})
-    top.variants.push_back({.name = name, .run = [axis = axis](Trial& t) { symmetric_top(t, axis); }, .smooth = true});
-  cases.push_back({"A4",
-                   "torque-free asymmetric box",
-                   {{.name = "b, tumble", .run = generic_tumble, .smooth = true, .second_order = "attitude [rad]"},
-                    {.name = "a, flips", .run = flips, .smooth = true, .second_order = "attitude until 4 s [rad]"},
-                    {.name = "a, flip times", .run = flip_instants, .smooth = true, .single = false},
-                    {.name = "energy 1000 s", .run = long_tumble, .steps = {ladder[0], ladder[1]}, .single = false},
-                    {.name = "1e5 steps", .run = many_steps, .steps = {1e-3}}}});
-  cases.push_back({"A10",
-                   "tumbling box with drag",
-                   {{.name = "thrown", .run = tumble_with_drag, .smooth = true, .second_order = "attitude [rad]"}}});
+    top.variants.push_back(
+        {.name = name, .run = [axis = axis](Trial& t) { symmetric_top(t, axis); }, .coarse = true, .lost_at = 1});
+  cases.push_back(
+      {"A4",
+       "torque-free asymmetric box",
+       {{.name = "b, tumble", .run = generic_tumble, .coarse = true, .second_order = "attitude [rad]", .lost_at = 1},
+        {.name = "a, flips", .run = flips, .coarse = true, .second_order = "attitude until 4 s [rad]", .lost_at = 1},
+        {.name = "a, flip times", .run = flip_instants, .coarse = true, .single = false, .lost_at = 1},
+        {.name = "energy 1000 s", .run = long_tumble, .steps = {ladder[0], ladder[1]}, .coarse = true, .single = false},
+        {.name = "1e5 steps", .run = many_steps, .steps = {1e-3}}}});
+  cases.push_back(
+      {"A10",
+       "tumbling box with drag",
+       {{.name = "thrown", .run = tumble_with_drag, .coarse = true, .second_order = "attitude [rad]", .lost_at = 1}}});
 }
 
 }  // namespace pcphys::cases

@@ -18,6 +18,8 @@ struct Row {
   std::string metric;
   double error = 0;
   std::optional<double> must, target;
+  bool bounded = true;  // Setting::bounded
+  bool lost = false;    // Variant::lost_at
   bool pass = true;
   double ns_per_body_step = 0, total_ms = 0;
   std::string peer;
@@ -33,11 +35,12 @@ struct Selection {
   std::string variant;  // only those whose names start with this
   bool single = true, twice = true;
   std::optional<double> dt;
-  bool slow = false;   // what takes long too
-  bool gl = false;     // the first steps of every trial on gl as well
-  int device = -1;     // of gl, as EGL numbers them; -1: the first that works
-  bool first = false;  // those first steps alone: hashes, no errors
-  int repeats = 1;     // times are medians; a trial of more than a second runs once
+  bool slow = false;    // what takes long too
+  bool coarse = false;  // what has no bounds too: Variant::coarse and so on
+  bool gl = false;      // the first steps of every trial on gl as well
+  int device = -1;      // of gl, as EGL numbers them; -1: the first that works
+  bool first = false;   // those first steps alone: hashes, no errors
+  int repeats = 1;      // times are medians; a trial of more than a second runs once
 };
 
 /// Errors: unknown_name for a case that is not in the groups.

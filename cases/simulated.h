@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "direct.h"
 #include "pcphys/step.h"
@@ -45,9 +47,12 @@ class Simulated {
   virtual Vec3 angular_velocity(int body) const = 0;
 
   /// Acts from now on, in place of what was set before. An engine that cannot do it reports an error.
-  virtual void set_wrench(int body, const Wrench& wrench);
-  virtual void set_gravity(Vec3 gravity);
-  virtual void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity);
+  void set_wrench(int body, const Wrench& wrench) { carry_out(Push{body, wrench}); }
+  void set_gravity(Vec3 gravity) { carry_out(Pull{gravity}); }
+  void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity) { carry_out(Start{body, velocity, angular_velocity}); }
+  /// Does on this simulation, which has just been started, what was done to another one, and nothing else. What it takes [s], but
+  /// for the first step, in which engines set themselves up: as if that had taken as long as the others. Below zero: an error.
+  double repeat(const Simulated& other);
   /// About the origin, as the engine keeps it: what is read in phase with the positions swings about that [kg m^2/s].
   virtual Vec3 kept_angular_momentum() const;
   /// Of the whole state, where the engine has one.
@@ -64,12 +69,36 @@ class Simulated {
 
  protected:
   virtual Status advance(double dt) = 0;
+  virtual void apply_wrench(int body, const Wrench& wrench);
+  virtual void apply_gravity(Vec3 gravity);
+  virtual void apply_velocity(int body, Vec3 velocity, Vec3 angular_velocity);
   void refuse(const std::string& what);
 
   Problem problem_;
   bool frozen_allowed_ = false;
 
  private:
+  struct Steps {
+    double dt;
+    long count;
+  };
+  struct Push {
+    int body;
+    Wrench wrench;
+  };
+  struct Pull {
+    Vec3 gravity;
+  };
+  struct Start {
+    int body;
+    Vec3 velocity, angular_velocity;
+  };
+  using Deed = std::variant<Steps, Push, Pull, Start>;
+  void carry_out(const Deed& deed);
+  void record(double dt, long count);
+  void apply(const Deed& deed);
+
+  std::vector<Deed> deeds_;  // so far
   std::vector<MassProperties> masses_;
   double moving_ = 0;
   Meter* meter_ = nullptr;

@@ -218,38 +218,76 @@ void add_stacks(std::vector<Case>& cases) {
     std::snprintf(text, sizeof text, format, x);
     return std::string(text);
   };
+  const std::vector<double> longer{1.0 / 30, 1.0 / 60};
+  const std::vector<std::uint32_t> fewer{1, 2};  // sub-steps
   Case& heavy = cases.emplace_back(Case{"B3", "heavy on light", {}});
   for (double top : {10.0, 100.0, 1e3, 1e4})
     heavy.variants.push_back({.name = name("tower of 10, top x%g", top),
                               .run = [=](Trial& t) { heavy_tower(t, 10, top, top <= 100); },
                               .steps = fine,
-                              .substeps = {4}});
+                              .substeps = {4},
+                              .more_steps = longer,
+                              .more_substeps = fewer,
+                              .lost_at = 0.5});
   for (double top : {1.0, 100.0, 1e4, 1e6})
     heavy.variants.push_back({.name = name("two boxes, 1:%g", top),
                               .run = [=](Trial& t) { heavy_tower(t, 2, top, top <= 1e4); },
                               .steps = fine,
-                              .substeps = {4}});
+                              .substeps = {4},
+                              .more_steps = longer,
+                              .more_substeps = fewer,
+                              .lost_at = 0.5});
   for (double top : {100.0, 200.0, 300.0})
     heavy.variants.push_back({.name = name("pyramid of 10, top x%g", top),
                               .run = [=](Trial& t) { heavy_pyramid(t, top); },
                               .steps = fine,
-                              .substeps = {4}});
+                              .substeps = {4},
+                              .more_steps = longer,
+                              .more_substeps = fewer,
+                              .lost_at = 0.5});
 
   Case& towers = cases.emplace_back(Case{"B4", "towers of cubes", {}});
   for (int count : {10, 20, 30, 40, 100})
     towers.variants.push_back({.name = std::to_string(count) + " cubes",
                                .run = [=](Trial& t) { plain_tower(t, count); },
                                .steps = {1.0 / 60, 1.0 / 240},
-                               .substeps = {4}});
+                               .substeps = {4},
+                               .more_steps = {1.0 / 30},
+                               .more_substeps = fewer,
+                               .lost_at = 0.5});
 
   cases.push_back(
       {"B9",
        "card house, arch, jenga, dominoes",
-       {{.name = "cards", .run = [](Trial& t) { card_house(t, StepSettings{}.contact_margin); }, .steps = fine, .substeps = {4}},
-        {.name = "cards, margin 0.5 mm", .run = [](Trial& t) { card_house(t, 5e-4); }, .steps = fine, .substeps = {4}},
-        {.name = "arch", .run = arch, .steps = {1.0 / 60}, .substeps = {4}},
-        {.name = "jenga", .run = jenga, .steps = fine, .substeps = {4}},
-        {.name = "dominoes", .run = dominoes, .steps = fine, .substeps = {4}}}});
+       {{.name = "cards",
+         .run = [](Trial& t) { card_house(t, StepSettings{}.contact_margin); },
+         .steps = fine,
+         .substeps = {4},
+         .more_steps = longer,
+         .more_substeps = fewer,
+         .lost_at = 0.5},
+        {.name = "cards, margin 0.5 mm",
+         .run = [](Trial& t) { card_house(t, 5e-4); },
+         .steps = fine,
+         .substeps = {4},
+         .more_steps = longer,
+         .more_substeps = fewer,
+         .lost_at = 0.5},
+        {.name = "arch",
+         .run = arch,
+         .steps = {1.0 / 60},
+         .substeps = {4},
+         .more_steps = {1.0 / 30},
+         .more_substeps = fewer,
+         .lost_at = 0.5},
+        {.name = "jenga",
+         .run = jenga,
+         .steps = fine,
+         .substeps = {4},
+         .more_steps = longer,
+         .more_substeps = fewer,
+         .lost_at = 0.5},
+        {.name = "dominoes", .run = dominoes, .steps = fine, .substeps = {4}, .more_steps = longer, .more_substeps = fewer}}});
 }
 
 }  // namespace pcphys::cases

@@ -32,6 +32,7 @@ Json to_json(const cases::Row& row) {
           {"must", or_null(row.must)},
           {"target", or_null(row.target)},
           {"pass", row.pass},
+          {"lost", row.lost},
           {"ns_per_body_step", row.ns_per_body_step},
           {"total_ms", row.total_ms},
           {"peer", or_null(row.peer)},
@@ -84,6 +85,7 @@ Result<cases::Selection> resolve(const CaseOptions& options, const std::string& 
   selection.groups = groups;
   selection.names = options.names;
   selection.slow = options.all;
+  selection.coarse = true;
   if (auto status = check_choice("precision", options.precision, {"float", "double", "both"}); !status) return status.error();
   if (auto status = check_choice("backend", options.backend, {"cpu", "gl"}); !status) return status.error();
   if (auto status = check_range("device", options.device, -1, 1000); !status) return status.error();

@@ -71,7 +71,8 @@ bool remember_works(Backend& gl) {
   parity::require(gl.attach(Buffer::velocity_parts, parts.data(), parts.size() * 4));
   for (const Buffer buffer : {Buffer::bodies, Buffer::motion, Buffer::velocity_parts}) parity::require(gl.upload(buffer));
   parity::require(gl.set_infos(&info, 1));
-  parity::require(gl.run(Kernel::remember, 0, {&all, 1}, gl.width(), false));
+  const KernelRun run{Kernel::remember, false, 0, gl.width(), {&all, 1}};
+  parity::require(gl.run({&run, 1}));
   parity::require(gl.finish());
   parity::require(gl.download(Buffer::velocity_parts));
   for (std::size_t row = 0; row < 4; row++)
@@ -157,14 +158,14 @@ TEST_CASE("a program whose layout differs from the schema is refused, with buffe
   const auto context = require_context();
   GlScope scope(*context);
   const ProgramCache cache("layout test");
-  const Result<KernelProgram> program = load_kernel(Kernel::integrate, {Precision::f32}, cache);
+  const Result<KernelProgram> program = load_kernel(Kernel::inertia, {Precision::f32}, cache);
   REQUIRE(bool(program));
-  CHECK(bool(check_layout(program->id, Kernel::integrate, Precision::f32)));
-  const Status other_precision = check_layout(program->id, Kernel::integrate, Precision::f64);
+  CHECK(bool(check_layout(program->id, Kernel::inertia, Precision::f32)));
+  const Status other_precision = check_layout(program->id, Kernel::inertia, Precision::f64);
   REQUIRE_FALSE(bool(other_precision));
   CHECK(other_precision.error().code == ErrorCode::device_error);
   CHECK(other_precision.error().message.find("`pose`") != std::string::npos);
-  const Status other_bindings = check_layout(program->id, Kernel::begin, Precision::f32);
+  const Status other_bindings = check_layout(program->id, Kernel::advance, Precision::f32);
   REQUIRE_FALSE(bool(other_bindings));
   CHECK(other_bindings.error().message.find("binding") != std::string::npos);
   glDeleteProgram(program->id);
@@ -301,7 +302,8 @@ TEST_CASE("a kernel whose buffers are missing names the first, and the next call
   const InfoOf<float> info;
   const Range all{0, 2};
   parity::require(gl->set_infos(&info, 1));
-  const Status status = gl->run(Kernel::remember, 0, {&all, 1}, gl->width(), false);
+  const KernelRun run{Kernel::remember, false, 0, gl->width(), {&all, 1}};
+  const Status status = gl->run({&run, 1});
   REQUIRE_FALSE(bool(status));
   CHECK(status.error().message.find("bodies") != std::string::npos);
   CHECK_FALSE(bool(gl->upload(Buffer::motion)));

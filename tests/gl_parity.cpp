@@ -17,6 +17,7 @@ struct Call {
 };
 constexpr Call step_calls[] = {
     {Kernel::begin, 0},
+    {Kernel::inertia, 0},
     {Kernel::contact_prepare, 0},
     {Kernel::tree_drive_rates, 0},
     {Kernel::joint_drives, 0},

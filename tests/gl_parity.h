@@ -171,7 +171,9 @@ template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info
     require(gl.upload(access.buffer));
   }
   require(gl.set_infos(state.infos.data(), state.infos.size()));
-  require(gl.run(kernel, info, ranges_of(kernel, state, gl.width()), gl.width(), true));
+  const std::vector<Range> ranges = ranges_of(kernel, state, gl.width());
+  const KernelRun run{kernel, true, std::uint32_t(info), gl.width(), ranges};
+  require(gl.run({&run, 1}));
   require(gl.finish());
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);

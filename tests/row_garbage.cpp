@@ -16,7 +16,7 @@ namespace {
 
 std::uint32_t garbage = 0;  // of each 32 bits of the rows
 
-/// A backend whose rows are the test's memory, filled anew whenever a step reserves them.
+/// A CPU backend whose rows are the test's memory, filled anew in every step.
 class SpoilingBackend final : public Backend {
  public:
   explicit SpoilingBackend(std::unique_ptr<Backend> inner, std::size_t real_bytes)
@@ -29,16 +29,16 @@ class SpoilingBackend final : public Backend {
   Status reserve(Buffer buffer, std::size_t slots) override {
     AlignedBytes& rows = rows_[buffer];
     rows.resize(slots * schema(buffer).reals * real_bytes_);
-    for (std::size_t i = 0; i + 4 <= rows.size(); i += 4) std::memcpy(rows.data() + i, &garbage, 4);
-    if (Status ok = inner_->attach(buffer, rows.data(), rows.size()); !ok) return ok;
-    return inner_->upload(buffer);
+    return inner_->attach(buffer, rows.data(), rows.size());
   }
   Status upload(Buffer buffer) override { return inner_->upload(buffer); }
   Status download(Buffer buffer) override { return inner_->download(buffer); }
-  Status set_infos(const void* infos, std::size_t count) override { return inner_->set_infos(infos, count); }
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool barrier) override {
-    return inner_->run(kernel, info, ranges, lanes, barrier);
+  Status set_infos(const void* infos, std::size_t count) override {  // each step
+    for (auto& [buffer, rows] : rows_)
+      for (std::size_t i = 0; i + 4 <= rows.size(); i += 4) std::memcpy(rows.data() + i, &garbage, 4);
+    return inner_->set_infos(infos, count);
   }
+  Status run(std::span<const KernelRun> runs) override { return inner_->run(runs); }
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override { return inner_->take_flag(buffer, quad); }
   Status finish() override { return inner_->finish(); }
 

@@ -48,8 +48,10 @@ class FailingBackend final : public Backend {
   Status set_infos(const void* infos, std::size_t count) override {
     return perhaps([&] { return gl_->set_infos(infos, count); });
   }
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool barrier) override {
-    return perhaps([&] { return gl_->run(kernel, info, ranges, lanes, barrier); });
+  Status run(std::span<const KernelRun> runs) override {
+    for (const KernelRun& one : runs)
+      if (Status ok = perhaps([&] { return gl_->run({&one, 1}); }); !ok) return ok;
+    return {};
   }
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override { return gl_->take_flag(buffer, quad); }
   Status finish() override {

@@ -65,33 +65,59 @@ def hashes(rows):
     return f"{told.count('equal')} of {len(told)} equal" if told else "-"
 
 
+def met(row):
+    return row["error"] is not None and row["error"] <= row["target"]
+
+
+def reached(rows):
+    """Of the rows with a target, how many reach it."""
+    aimed = [r for r in rows if r["target"] is not None]
+    return f"{sum(map(met, aimed))} of {len(aimed)}" if aimed else "-"
+
+
+def targets_missed(rows):
+    lines = ["| case | variants | metric | rows | worst: error (target) | at |", "|---|---|---|---|---|---|"]
+    far = [r for r in rows if r["target"] is not None and not met(r)]
+    for (case, metric), of_metric in group(far, "case", "metric").items():
+        worst = max(of_metric, key=lambda r: excess(r, "target"))
+        lines.append(f"| {case} | {named_variants(of_metric)} | {cell(metric)} | {len(of_metric)} | "
+                     f"{number(worst['error'])} ({number(worst['target'])}) | {at(worst)} |")
+    return lines if far else []
+
+
 def summary(rows, titles):
-    lines = ["| case | | double | single | slope | hash on gl |", "|---|---|---|---|---|---|"]
+    lines = ["| case | | double | single | targets | slope | hash on gl |", "|---|---|---|---|---|---|---|"]
     for (case,), of_case in group(rows, "case").items():
         by = {p: [r for r in of_case if r["precision"] == p] for p in ("double", "float")}
         lines.append(f"| {case} | {titles.get(case, '')} | {passed(by['double'])} | {passed(by['float'])} | "
-                     f"{orders(of_case)} | {hashes(of_case)} |")
+                     f"{reached(of_case)} | {orders(of_case)} | {hashes(of_case)} |")
     return lines
 
 
-def excess(row):
+def excess(row, bound="must"):
     if row["error"] is None:
         return math.inf
-    return row["error"] / row["must"] if row["must"] else math.inf
+    return row["error"] / row[bound] if row[bound] else math.inf
+
+
+def named_variants(rows):
+    variants = list(dict.fromkeys(r["variant"] for r in rows))
+    return "; ".join(variants[:3]) + (f" and {len(variants) - 3} more" if len(variants) > 3 else "")
+
+
+def at(row):
+    return f"{row['variant']}, {row['precision']}, dt {step(row['dt'])}, n = {row['substeps']}"
 
 
 def misses(rows):
     lines = ["| case | variants | metric | rows | worst: error (must) | at |", "|---|---|---|---|---|---|"]
     for (case, metric), of_metric in group([r for r in rows if not r["pass"]], "case", "metric").items():
         worst = max(of_metric, key=excess)
-        variants = list(dict.fromkeys(r["variant"] for r in of_metric))
-        named = "; ".join(variants[:3]) + (f" and {len(variants) - 3} more" if len(variants) > 3 else "")
         must = "finite" if worst["must"] is None else number(worst["must"])
-        at = f"{worst['variant']}, {worst['precision']}, dt {step(worst['dt'])}, n = {worst['substeps']}"
         error = f"{number(worst['error'])} ({must})"
         if worst["failure"]:
             error = cell(worst["failure"].rstrip("."))
-        lines.append(f"| {case} | {named} | {cell(metric)} | {len(of_metric)} | {error} | {at} |")
+        lines.append(f"| {case} | {named_variants(of_metric)} | {cell(metric)} | {len(of_metric)} | {error} | {at(worst)} |")
     return lines
 
 
@@ -102,10 +128,46 @@ def drawn(rows):
     return [r for r in rows if r["metric"] == rows[0]["metric"]]
 
 
+def went_through(rows):
+    """Those that did not fail: not by themselves, and not by an error as large as the motion."""
+    return [r for r in rows if r["error"] is not None and not r.get("lost")]
+
+
 def beaten(row, own):
     """Whether one of our runs took no longer and erred no more."""
-    return row["error"] is None or any(
-        r["error"] is not None and r["total_ms"] <= row["total_ms"] and r["error"] <= row["error"] for r in own)
+    return not went_through([row]) or any(
+        r["total_ms"] <= row["total_ms"] and r["error"] <= row["error"] for r in went_through(own))
+
+
+def front(rows):
+    """Of the runs those that no other one beats, by run time, as logarithms of time and error."""
+    points = []
+    for r in sorted(went_through(rows), key=lambda r: (r["total_ms"], r["error"])):
+        error = math.log10(max(r["error"], FLOOR))
+        if not points or error < points[-1][1]:
+            points.append((math.log10(r["total_ms"]), error))
+    return points
+
+
+def height(curve, x):
+    """Of the line through the points, at an abscissa between its ends."""
+    for (x0, y0), (x1, y1) in zip(curve, curve[1:]):
+        if x0 <= x <= x1:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0) if x1 > x0 else min(y0, y1)
+    return curve[0][1] if x <= curve[0][0] else curve[-1][1]
+
+
+def lies_under(own, other):
+    """Whether our curve is nowhere above the other, over the run times that both cover. Where they share none, every run of the
+    other must be beaten."""
+    ours, theirs = front(own), front(other)
+    if not theirs or not ours:
+        return not theirs
+    first, last = max(ours[0][0], theirs[0][0]), min(ours[-1][0], theirs[-1][0])
+    if first > last:
+        return all(beaten(r, own) for r in other)
+    places = [first, last] + [x for x, _ in ours + theirs if first < x < last]
+    return all(height(ours, x) <= height(theirs, x) + 1e-9 for x in places)
 
 
 def contest(rows):
@@ -113,9 +175,10 @@ def contest(rows):
     peers = list(dict.fromkeys(r["peer"] for r in rows if r["peer"]))
     if not peers:
         return []
-    lines, under, cases, lost = [], 0, 0, []
+    lines, under, shared, cases, lost, above = [], 0, 0, 0, [], []
     for (case,), of_case in group(rows, "case").items():
         tally = {peer: [0, 0] for peer in peers}
+        crossed = []
         for (variant,), of_variant in group(of_case, "variant").items():
             shown = drawn(of_variant)
             own = [r for r in shown if not r["peer"]]
@@ -123,23 +186,33 @@ def contest(rows):
                 won = sum(beaten(r, own) for r in series)
                 tally[peer][0] += won
                 tally[peer][1] += len(series)
+                if not lies_under(own, series):
+                    crossed.append(f"{variant}: {peer}")
                 if won < len(series):
                     lost.append((case, variant, peer, len(series) - won, len(series)))
         if not any(total for _, total in tally.values()):
             continue
         cases += 1
         under += all(won == total for won, total in tally.values())
+        shared += not crossed
+        above += [f"* {case}: {cell('; '.join(crossed))}"] if crossed else []
         lines.append(f"| {case} | " + " | ".join(f"{won} of {total}" if total else "-" for won, total in tally.values()) + " |")
     head = ["", "## Beside other engines", "",
             "Runs of each engine that have one of pcphys's beneath them or to their left in the diagram: no longer, and no "
-            "larger an error; a run that failed counts as beneath.", "",
-            f"**In {under} of {cases} cases pcphys's curve lies under every peer's at every run time.**", "",
+            "larger an error. A run that failed counts as beneath, and so does one whose error is as large as the motion itself "
+            "(`lost_at` of the variants in `cases/*.cpp`: a phase lost by a radian, a joint apart by a link); of pcphys such runs "
+            "beat nothing.", "",
+            f"**In {under} of {cases} cases every run of every peer is beaten in this way**: pcphys's staircase lies under every peer's "
+            "at every run time, the shortest of the peer's included, where a run can be beaten only by a cheaper one.", "",
+            f"**In {shared} of {cases} cases pcphys's curve lies under every peer's at every run time that both cover**: lines "
+            "through the runs that no other of the same engine beats, time and error as logarithms.", "",
             "| case | " + " | ".join(peers) + " |", "|---" * (len(peers) + 1) + "|"]
     tail = ["", "Where a peer has a run that none of ours is under:", ""]
     for (case,), of_case in group([dict(zip(("case", "variant", "peer", "runs", "of"), l)) for l in lost], "case").items():
         named = "; ".join(f"{l['variant']}: {l['peer']} {l['runs']} of {l['of']}" for l in of_case)
         tail.append(f"* {case}: {cell(named)}")
-    return head + lines + (tail if lost else [])
+    crossings = ["", "Where a peer's curve comes below ours at run times that both cover:", ""] + above
+    return head + lines + (tail if lost else []) + (crossings if above else [])
 
 
 # ---- diagrams --------------------------------------------------------------------------------------
@@ -254,6 +327,7 @@ def generated_part(rows, titles, pictures):
     lines += [f"{len(own)} rows; of those that have a bound, {passed(own)} pass.", ""]
     lines += summary(own, titles)
     lines += ["", "## Rows that miss", ""] + misses(own)
+    lines += ["", "## Targets", "", f"Besides a bound, a row may have a target: {reached(own)} reach theirs.", ""] + targets_missed(own)
     lines += contest(rows)
     if pictures:
         lines += ["", "## Work-precision diagrams", ""]

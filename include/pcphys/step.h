@@ -27,7 +27,7 @@ struct StepSettings {
   NarrowPhase narrow = NarrowPhase::native;
   int device = -1;            // EGL device; -1: the first that works
   bool host_context = false;  // use the GL context that is current on this thread
-  bool timings = true;        // clock each stage (StepReport::ms); on GL this waits for the device after each
+  bool timings = true;        // clock the step and each stage (StepReport); on GL this waits for the device after each
 
   double push_speed = 3;               // at which an overlap is undone, at most [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
@@ -49,10 +49,10 @@ struct StepReport {
   /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of the same bodies, joints
   /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
-  std::uint64_t transfer_bytes = 0;  // between host and device
-  std::vector<BodyId> frozen;        // in this step; see World::frozen
-  double total_ms = 0;
-  std::array<double, std::size_t(Timer::count)> ms{};  // by Timer; zeros without StepSettings::timings
+  std::uint64_t transfer_bytes = 0;                    // between host and device
+  std::vector<BodyId> frozen;                          // in this step; see World::frozen
+  double total_ms = 0;                                 // and `ms`: zeros without StepSettings::timings
+  std::array<double, std::size_t(Timer::count)> ms{};  // by Timer
 
   explicit operator bool() const { return error.code == ErrorCode::none; }
 };

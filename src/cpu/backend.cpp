@@ -1,7 +1,8 @@
 // The CPU backend: kernels run in place on the world's tables, in the lane count that was chosen.
+#include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "cpu/kernels.h"
 #include "cpu/workers.h"
@@ -27,9 +28,10 @@ class CpuBackend final : public Backend {
  public:
   /// `narrower`: also kernels of fewer lanes, for what would leave lanes empty.
   CpuBackend(const CpuKernels& kernels, bool narrower, const Workers* workers) : kernels_(kernels), workers_(workers) {
+    of_lanes_[kernels.lanes] = &kernels;
     if (!narrower) return;
     for (std::uint32_t lanes : {1u, 4u})
-      if (lanes < kernels.lanes) narrower_.push_back(find_kernels(kernels.f64 ? Precision::f64 : Precision::f32, lanes));
+      if (lanes < kernels.lanes) of_lanes_[lanes] = find_kernels(kernels.f64 ? Precision::f64 : Precision::f32, lanes);
   }
 
   std::string device() const override {
@@ -37,8 +39,8 @@ class CpuBackend final : public Backend {
   }
   std::uint32_t width() const override { return kernels_.lanes; }
   std::uint32_t width_for(std::uint32_t count) const override {
-    for (const CpuKernels* k : narrower_)
-      if (count <= k->lanes) return k->lanes;
+    for (std::uint32_t lanes = std::max(count, 1u); lanes < width(); lanes++)
+      if (of_lanes_[lanes]) return lanes;
     return width();
   }
 
@@ -58,17 +60,17 @@ class CpuBackend final : public Backend {
     infos_ = static_cast<const std::byte*>(infos);
     return {};
   }
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool) override {
-    const CpuKernels* kernels = &kernels_;
-    for (const CpuKernels* k : narrower_)
-      if (k->lanes == lanes) kernels = k;
-    const auto part = kernels->run[std::size_t(kernel)];
-    const std::byte* with = infos_ + info * (kernels->f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>));
-    if (workers_ && workers_->threads() > 1) {
-      share(part, with, ranges, schema(kernel).domain == Domain::body ? lanes : 1);
-      return {};
+  Status run(std::span<const KernelRun> runs) override {
+    const bool shared = workers_ && workers_->threads() > 1;
+    const std::size_t info_bytes = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
+    for (const KernelRun& r : runs) {
+      const auto part = of_lanes_[r.lanes]->run[std::size_t(r.kernel)];
+      const std::byte* with = infos_ + r.info * info_bytes;
+      if (shared)
+        share(part, with, r.ranges, schema(r.kernel).domain == Domain::body ? r.lanes : 1);
+      else
+        for (const Range& range : r.ranges) part({buffers_.data(), with, range.begin, range.end});
     }
-    for (const Range& range : ranges) part({buffers_.data(), with, range.begin, range.end});
     return {};
   }
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override {
@@ -79,6 +81,7 @@ class CpuBackend final : public Backend {
 
  private:
   template <class Scalar> static bool take(Scalar* flag) { return std::exchange(*flag, Scalar(0)) != 0; }
+  static constexpr std::uint32_t most_lanes = 8;
   static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
 
   /// `unit`: what no piece may cut.
@@ -90,7 +93,7 @@ class CpuBackend final : public Backend {
   }
 
   const CpuKernels& kernels_;
-  std::vector<const CpuKernels*> narrower_;  // ascending
+  std::array<const CpuKernels*, most_lanes + 1> of_lanes_{};  // null: none, or not asked for
   const Workers* workers_;
   std::array<void*, buffer_count> buffers_{};
   std::array<AlignedBytes, buffer_count> scratch_;

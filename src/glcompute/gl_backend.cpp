@@ -33,7 +33,7 @@ class GlBackend final : public Backend {
   Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
   Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
   Status set_infos(const void* infos, std::size_t count) override;
-  Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t, bool barrier) override;
+  Status run(std::span<const KernelRun> runs) override;
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override;
   Status finish() override;
 
@@ -46,6 +46,7 @@ class GlBackend final : public Backend {
   Status hold();
   void release();
   Status bind(Kernel kernel, std::size_t info);
+  void dispatch_all(const KernelRun& run);
   void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end);
 
   std::unique_ptr<GlContext> context_;
@@ -190,23 +191,29 @@ void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::
   }
 }
 
-Status GlBackend::run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t, bool barrier) {
-  barrier_due_ |= barrier;
-  if (std::all_of(ranges.begin(), ranges.end(), [](const Range& r) { return r.begin >= r.end; })) return {};
-  if (Status status = hold(); !status) return status;
-  if (Status status = bind(kernel, info); !status) {
-    release();
-    return status;
-  }
-  const std::uint32_t lanes = schema(kernel).domain == Domain::body ? 1 : gl_width;
-  for (const Range& range : ranges) {
+void GlBackend::dispatch_all(const KernelRun& run) {
+  const std::uint32_t lanes = schema(run.kernel).domain == Domain::body ? 1 : gl_width;
+  for (const Range& range : run.ranges) {
     if (range.begin >= range.end) continue;
     if (barrier_due_) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    dispatch(programs_[std::size_t(kernel)].range, range.begin * lanes, range.end * lanes);
+    dispatch(programs_[std::size_t(run.kernel)].range, range.begin * lanes, range.end * lanes);
     barrier_due_ = true;  // each range may read what the one before wrote
     writes_pending_ = true;
   }
   barrier_due_ = false;  // what runs next says itself whether it reads what this one wrote
+}
+
+Status GlBackend::run(std::span<const KernelRun> runs) {
+  if (Status status = hold(); !status) return status;
+  for (const KernelRun& run : runs) {
+    barrier_due_ |= run.barrier;
+    if (std::all_of(run.ranges.begin(), run.ranges.end(), [](const Range& r) { return r.begin >= r.end; })) continue;
+    if (Status status = bind(run.kernel, run.info); !status) {
+      release();
+      return status;
+    }
+    dispatch_all(run);
+  }
   return {};
 }
 

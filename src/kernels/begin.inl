@@ -1,6 +1,8 @@
 // Start of a step. The stored velocity u is half a sub-step behind the position (stagger.inl).
 #include "stagger.inl"
-#include "world_inertia.inl"
+#ifdef PC_DRAG
+#include "drag_share.inl"
+#endif
 
 PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear = PC_GATHER(motion, i, 0u);
@@ -28,7 +30,14 @@ PC_FN void pc_kernel(PC_IO Index i) {
   PC_SCATTER(velocity_parts, i, 2u, linear_low);
   PC_SCATTER(velocity_parts, i, 3u, angular_low);
 
+#ifdef PC_DRAG
+  // of all sub-steps, which are of one length
+  Real h = PC_INFO(h); precise Real x = push.s * h; precise Real y = turn.s * h;
+  Decay slow = pc_decay(x); Decay calm = slow;
+  if (PC_ANY(pc_or(x < y, y < x))) calm = pc_decay(y);  // lint: allow (equal ones give the same)
+  PC_SCATTER(drag_terms, i, 0u, pc_terms_of(slow));
+  PC_SCATTER(drag_terms, i, 1u, pc_terms_of(calm));
+#endif
   PC_SCATTER(delta, i, 0u, pc_quad(pc_zero3(), PC_REAL(0.0)));
   PC_SCATTER(delta, i, 1u, pc_quad(pc_zero3(), PC_REAL(0.0)));
-  pc_store_inertia(PC_PASS i, linear.s);
 }

@@ -1,9 +1,8 @@
 // Stage 1 of a sub-step: forces and drag. With F the drag, a the acceleration:
 //   u' = u + a h phi(F h) - (1 - e^(-F h)) u,   L' = L + T h phi(G h) - (1 - e^(-G h)) L
-// which is exact for constant a, T (errata vi of the method); then the inertia of the new sub-step.
+// which is exact for constant a, T (errata vi of the method).
 // Both are sums of two reals, as positions are: a velocity in one float takes up g h with the rounding of its own
 // last place, the same way each time. Without drag (PC_DRAG not defined) phi = 1: the same bits, less work.
-#include "world_inertia.inl"
 
 #ifdef PC_DRAG
 #include "drag_share.inl"
@@ -13,8 +12,6 @@ PC_FN Decay pc_slowing(Real drag_times_h) {
   Decay d; d.loss = pc_min(drag_times_h, PC_REAL(1.0)); precise Real left = PC_REAL(1.0) - d.loss;
   d.e = left; d.phi = PC_REAL(1.0); d.phi2 = PC_REAL(0.5); return d;
 }
-#else
-PC_FN Decay pc_slowing(Real drag_times_h) { return pc_decay(drag_times_h); }
 #endif
 #endif
 
@@ -33,8 +30,11 @@ PC_FN void pc_kernel(PC_IO Index i) {
 #ifdef PC_DRAG
   precise Real x = push.s * h;
   precise Real y = turn.s * h;
-  Decay slow = pc_slowing(x);
-  Decay calm = pc_slowing(y);
+#ifdef PC_SEED
+  Decay slow = pc_slowing(x); Decay calm = pc_slowing(y);
+#else
+  Decay slow = pc_decay_of(PC_GATHER(drag_terms, i, 0u)); Decay calm = pc_decay_of(PC_GATHER(drag_terms, i, 1u));
+#endif
   precise Real kick = slow.phi * h;
   precise Real twist = calm.phi * h;
   Share u_share = pc_share(x, linear.v, linear_low.v, slow);
@@ -58,5 +58,4 @@ PC_FN void pc_kernel(PC_IO Index i) {
   PC_SCATTER(motion, i, 1u, angular);
   PC_SCATTER(velocity_parts, i, 2u, linear_low);
   PC_SCATTER(velocity_parts, i, 3u, angular_low);
-  pc_store_inertia(PC_PASS i, linear.s);
 }

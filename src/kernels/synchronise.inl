@@ -6,9 +6,9 @@
 //   h (phi - phi2) / phi (a - F u) + half of what constraints changed.
 #ifdef PC_DRAG
 #include "drag_share.inl"
-PC_FN Vec3 pc_half_change(PC_IO Vec3 now, Vec3 before, Vec3 a, Real drag) {
+PC_FN Vec3 pc_half_change(PC_IO Vec3 now, Vec3 before, Vec3 a, Real drag, Decay d) {
   Real h = PC_INFO(h);
-  precise Real x = drag * h; Decay d = pc_decay(x);
+  precise Real x = drag * h;
   Share s = pc_share(x, before, pc_zero3(), d);
   precise Real kick = d.phi * h; precise Vec3 change = a * kick - s.gone;
   precise Vec3 constraints = ((now - s.kept) - change) * PC_REAL(0.5);
@@ -34,8 +34,8 @@ PC_FN void pc_kernel(PC_IO Index i) {
 #ifdef PC_DRAG
   Quad turn = PC_GATHER(force, i, 1u);
   Mask dynamic_body = linear.s > PC_REAL(0.0);
-  Vec3 u = pc_select3(dynamic_body, pc_half_change(PC_PASS linear.v, linear_before.v, acceleration, push.s), pc_zero3());
-  Vec3 l = pc_select3(dynamic_body, pc_half_change(PC_PASS angular.v, angular_before.v, turn.v, turn.s), pc_zero3());
+  Vec3 u = pc_select3(dynamic_body, pc_half_change(PC_PASS linear.v, linear_before.v, acceleration, push.s, pc_decay_of(PC_GATHER(drag_terms, i, 0u))), pc_zero3());
+  Vec3 l = pc_select3(dynamic_body, pc_half_change(PC_PASS angular.v, angular_before.v, turn.v, turn.s, pc_decay_of(PC_GATHER(drag_terms, i, 1u))), pc_zero3());
 #else
   precise Vec3 u = (linear.v - linear_before.v) * PC_REAL(0.5);
   precise Vec3 l = (angular.v - angular_before.v) * PC_REAL(0.5);

@@ -49,6 +49,7 @@ void Loads::find_loops(const WorldState& state, const SolvedJoints& joints, std:
 
 void Loads::want(const WorldState& state, const StepSettings& settings, double dt, std::uint8_t highest_octave,
                  std::vector<Wanted>& wanted) const {
+  if (uneven_.empty() && loops_.empty()) return;
   const auto want = [&](std::uint32_t body, double value, double aim) {
     if (const std::uint8_t octave = octave_for(value, aim, highest_octave); octave > 0) wanted.push_back({body, octave, true});
   };

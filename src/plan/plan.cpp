@@ -124,6 +124,10 @@ void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32
   if (s.tree_drives) b.kernel(Kernel::tree_drive_rates, phase, substep);
   if (s.joint_drives) b.kernel(Kernel::joint_drives, phase, substep);
 }
+// of the poses that a sub-step begins with; forces do not change them
+void look_at_inertia(Builder& b, const PlanSignature& s, std::uint32_t substep) {
+  if (s.joints() || s.trees || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
+}
 void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.free_joints) b.kernel(s.joint_drives ? Kernel::joint_solve_driven : Kernel::joint_solve, phase, substep);
 }
@@ -137,6 +141,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (k + 1 == count && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
+  if (k > 0) look_at_inertia(b, s, k);
   if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
   if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
   // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
@@ -178,6 +183,7 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   b.enter(octave);
   look_at_drives(b, s, Phase::first, 0);
   b.kernel(with.begin, Phase::first, 0);
+  look_at_inertia(b, s, 0);
   if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < count; k++) substep(b, s, with, k, count);
   if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);

@@ -9,6 +9,7 @@ namespace pcphys {
 
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted) {
+  if (forest.trees() == 0) return;
   const double most = constants::largest_joint_turn / h;
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);

@@ -20,6 +20,16 @@ struct Range {
   std::uint32_t begin, end;
 };
 
+/// One run of a kernel over ranges, one after the other: each may read what the one before wrote (the colours of a constraint
+/// graph).
+struct KernelRun {
+  Kernel kernel;
+  bool barrier;         // it also reads what an earlier run wrote
+  std::uint32_t info;   // which of the blocks of `set_infos`
+  std::uint32_t lanes;  // one of `width_for`
+  std::span<const Range> ranges;
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -43,10 +53,8 @@ class Backend {
 
   /// All info blocks of a step, `count` times InfoOf<Scalar>, in the precision of the world.
   virtual Status set_infos(const void* infos, std::size_t count) = 0;
-  /// Runs a kernel with info block `info` over the ranges, one after the other: each may read what the one
-  /// before wrote (the colours of a constraint graph). `lanes`: one of `width_for`. `barrier`: it also reads
-  /// what an earlier run wrote.
-  virtual Status run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t lanes, bool barrier) = 0;
+  /// Runs kernels, one after the other.
+  virtual Status run(std::span<const KernelRun> runs) = 0;
   /// Takes down a flag that kernels raise (PC_RAISE: the last real of quad `quad` of a buffer's first row) and says whether it
   /// was up. On a device this waits for what was asked for so far.
   virtual Result<bool> take_flag(Buffer buffer, std::uint32_t quad) = 0;

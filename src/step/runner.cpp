@@ -43,10 +43,15 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
   }
 }
 /// Slots whose kernel writes no body are independent of each other: no colours, no barriers between them.
-bool needs_colours(const KernelSchema& k) {
-  for (const Access& a : k.accesses)
-    if (a.write && a.buffer < Buffer::table_buffers && schema(a.buffer).table == Table::body) return true;
-  return false;
+bool needs_colours(Kernel kernel) {
+  static const std::array<bool, kernel_count> known = [] {
+    std::array<bool, kernel_count> needs{};
+    for (std::size_t k = 0; k < kernel_count; k++)
+      for (const Access& a : schema(Kernel(k)).accesses)
+        needs[k] |= a.write && a.buffer < Buffer::table_buffers && schema(a.buffer).table == Table::body;
+    return needs;
+  }();
+  return known[std::size_t(kernel)];
 }
 bool of_contacts(Domain domain) {
   return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
@@ -103,20 +108,24 @@ std::string Runner::device(Place place) const {
 Status Runner::prepare(const StepSettings& s, Precision precision) {
   gl_ = takes_part(Place::gl, s);
   if (!workers_ || threads_ != s.threads) {
+    bound_ = {};
     at(Place::cpu) = {};
     workers_ = std::make_unique<Workers>(s.threads);
     threads_ = s.threads;
   }
   for (Place place : {Place::cpu, Place::gl}) {
     Device& d = at(place);
-    if (!takes_part(place, s)) continue;
+    d.takes_part = takes_part(place, s);
+    if (!d.takes_part) continue;
     const bool fits = d.backend && d.precision == precision &&
                       (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
     if (fits) continue;
+    bound_ = {};
     auto made = place == Place::cpu ? make_cpu_backend(precision, s.lanes, workers_.get())
                                     : gl_backend_maker()(precision, s.device, s.host_context);
     if (!made) return made.error();
     d = {};
+    d.takes_part = true;
     d.backend = std::move(*made);
     d.precision = precision;
     d.lanes = s.lanes;
@@ -127,13 +136,18 @@ Status Runner::prepare(const StepSettings& s, Precision precision) {
 }
 
 void Runner::forget() {
+  bound_ = {};
   for (Device& d : devices_) d.copies = {};
 }
 
-void Runner::keep(const WorldState& state, Buffer buffer) {
+bool Runner::keeps(Buffer buffer) const {
   const bool lasts = holds(buffer, Role::state) || holds(buffer, Role::input);
   const Table table = schema(buffer).table;
-  if ((lasts || gl_) && table != Table::contact && table != Table::node) rollback_.keep(state.tables, buffer);
+  return (lasts || gl_) && table != Table::contact && table != Table::node;
+}
+
+void Runner::keep(const WorldState& state, Buffer buffer) {
+  if (keeps(buffer)) rollback_.keep(state.tables, buffer);
 }
 
 void Runner::undo(WorldState& state) {
@@ -152,12 +166,25 @@ Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes)
   return d.backend->attach(buffer, host, bytes);
 }
 
-Status Runner::bind(const StepPlan& plan, WorldState& state, Schedule& schedule) {
+Status Runner::attach_table(Place place, Buffer buffer, WorldState& state) {
+  AlignedBytes& rows = state.tables.bytes(buffer);
+  return attach(place, buffer, rows.data(), rows.size());
+}
+
+Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule) {
+  const Bound now{&plan, state.serial, state.tables.layout(), schedule.changes(), settings.timings};
+  if (now == bound_) {
+    for (const Place place : exchanged_)
+      if (Status ok = attach_table(place, Buffer::contact, state); !ok) return ok;
+    return {};
+  }
+  bound_ = {};  // until all of it stands
+  exchanged_.clear();
   for (const PlanBinding& b : plan.bindings) {
     Status ok;
+    if (b.buffer == Buffer::contact) exchanged_.push_back(b.place);
     if (b.buffer < Buffer::table_buffers) {
-      AlignedBytes& rows = state.tables.bytes(b.buffer);
-      ok = attach(b.place, b.buffer, rows.data(), rows.size());
+      ok = attach_table(b.place, b.buffer, state);
     } else {
       pack(b.domain, lanes(b.place, b.domain, schedule), schedule);
       if (std::vector<std::uint32_t>* list = list_of(b.buffer, schedule))
@@ -167,6 +194,8 @@ Status Runner::bind(const StepPlan& plan, WorldState& state, Schedule& schedule)
     }
     if (!ok) return ok;
   }
+  prepare_calls(plan, settings.timings, schedule);
+  bound_ = now;
   return {};
 }
 
@@ -193,71 +222,97 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
   return at(place).backend->width_for(side_by_side(domain, schedule));
 }
 
-std::span<const Range> Runner::of_octave(std::span<const Range> ranges, bool coloured) {
-  ranges_.clear();
-  for (const Range& range : ranges) {
+/// Empty ranges are left out, and those that need not follow one another are joined.
+void Runner::add_run(const PlanEntry& entry, const Schedule& schedule) {
+  const KernelSchema& k = schema(entry.kernel);
+  const bool coloured = needs_colours(entry.kernel);
+  const std::size_t first = ranges_.size();
+  for (const Range& range : ranges_of(k.domain, schedule, entry.octave)) {
     if (range.begin == range.end) continue;
-    if (!coloured && !ranges_.empty() && ranges_.back().end == range.begin)
+    if (!coloured && ranges_.size() > first && ranges_.back().end == range.begin)
       ranges_.back().end = range.end;
     else
       ranges_.push_back(range);
   }
-  return ranges_;
+  // where they stand is known when all are there
+  runs_.push_back({entry.kernel,
+                   entry.barrier || entry.again > 0,
+                   std::uint32_t(info_index(entry)),
+                   lanes(entry.place, k.domain, schedule),
+                   {static_cast<const Range*>(nullptr), ranges_.size() - first}});
 }
 
-Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule) {
-  const KernelSchema& k = schema(entry.kernel);
-  std::span<const Range> ranges = ranges_of(k.domain, schedule, entry.octave);
-  const Range all = ranges.empty() ? Range{0, 0} : Range{ranges.front().begin, ranges.back().end};
-  if (schedule.grouped())
-    ranges = of_octave(ranges, needs_colours(k));
-  else if (ranges.size() > 1 && !needs_colours(k))
-    ranges = std::span<const Range>(&all, 1);
+void Runner::prepare_calls(const StepPlan& plan, bool timings, const Schedule& schedule) {
+  calls_.clear();
+  runs_.clear();
+  ranges_.clear();
+  const PlanEntry* before = nullptr;
+  for (const PlanEntry& entry : plan.entries) {
+    const bool kernel = entry.kind == PlanEntry::Kind::kernel;
+    const bool clocked = timings && before && (timer_of(*before) != timer_of(entry) || before->place != entry.place);
+    if (clocked) calls_.back().last = true;
+    const bool joins = kernel && before && before->kind == PlanEntry::Kind::kernel && before->place == entry.place &&
+                       before->again == 0 && entry.again == 0 && !clocked && !(gl_ && entry.place == Place::cpu);
+    if (!joins) calls_.push_back({&entry, std::uint32_t(runs_.size()), 0, false});
+    if (kernel) {
+      add_run(entry, schedule);
+      calls_.back().count++;
+    }
+    before = &entry;
+  }
+  if (!calls_.empty()) calls_.back().last = timings;
+  std::size_t first = 0;
+  for (KernelRun& run : runs_) {
+    run.ranges = std::span(ranges_).subspan(first, run.ranges.size());
+    first += run.ranges.size();
+  }
+  infos_ = std::uint32_t(phase_count) * (plan.entries.empty() ? 1 : 1 + plan.entries.back().octave);
+  kept_.clear();
+  for (const Buffer buffer : plan.overwritten)
+    if (keeps(buffer)) kept_.push_back(buffer);
+}
+
+Status Runner::kernels(const Call& call, WorldState& state) {
+  const PlanEntry& entry = *call.entry;
+  const std::span<const KernelRun> runs(runs_.data() + call.first, call.count);
   Backend& backend = *at(entry.place).backend;
-  // nothing to do, but later entries count on its barrier
-  if (ranges.empty()) return entry.barrier ? backend.run(entry.kernel, info_index(entry), ranges, 1, true) : Status{};
-  if (gl_ && entry.place == Place::cpu)
-    for (const Access& a : k.accesses)
+  if (gl_ && entry.place == Place::cpu && !runs[0].ranges.empty())
+    for (const Access& a : schema(entry.kernel).accesses)
       if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
-  const std::uint32_t width = lanes(entry.place, k.domain, schedule);
-  if (entry.again == 0) return backend.run(entry.kernel, info_index(entry), ranges, width, entry.barrier);
+  // (one without ranges has nothing to do, but later ones count on its barrier)
+  if (entry.again == 0 || runs[0].ranges.empty()) return backend.run(runs);
   for (std::uint32_t i = 0; i < entry.again; i++) {
     const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad);
     if (!struck) return struck.error();
     if (!*struck) break;
-    if (Status ok = backend.run(entry.kernel, info_index(entry), ranges, width, true); !ok) return ok;
+    if (Status ok = backend.run(runs); !ok) return ok;
   }
   return {};
 }
 
-Status Runner::entry(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report) {
-  if (entry.kind == PlanEntry::Kind::kernel) return kernel(entry, state, schedule);
+Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report) {
+  const PlanEntry& entry = *call.entry;
+  if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state);
   if (entry.kind == PlanEntry::Kind::download) return transfer(entry, state, report);
   return upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
 }
 
-Status Runner::run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
-                   StepReport& report) {
-  const std::size_t info_count = plan.entries.empty() ? phase_count : (1u + plan.entries.back().octave) * phase_count;
-  for (Place place : {Place::cpu, Place::gl})
-    if (takes_part(place, settings))
-      if (Status ok = at(place).backend->set_infos(infos, info_count); !ok) return ok;
-  for (const Buffer buffer : plan.overwritten) {
-    keep(state, buffer);
-    if (!gl_) state.tables.touch(buffer);  // else kernel by kernel, as devices follow them
-  }
+Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
+  for (Device& d : devices_)
+    if (d.takes_part)
+      if (Status ok = d.backend->set_infos(infos, infos_); !ok) return ok;
+  for (const Buffer buffer : kept_) rollback_.keep(state.tables, buffer);
+  if (!gl_)  // else kernel by kernel, as devices follow them
+    for (const Buffer buffer : bound_.plan->overwritten) state.tables.touch(buffer);
   Clock::time_point began;
-  if (settings.timings) began = Clock::now();
-  for (std::size_t i = 0; i < plan.entries.size(); i++) {
-    const PlanEntry& e = plan.entries[i];
-    if (Status ok = entry(e, state, schedule, report); !ok) return ok;
-    if (!settings.timings) continue;
-    const PlanEntry* next = i + 1 < plan.entries.size() ? &plan.entries[i + 1] : nullptr;
-    if (next && timer_of(*next) == timer_of(e) && next->place == e.place) continue;
+  if (bound_.timings) began = Clock::now();
+  for (const Call& c : calls_) {
+    if (Status ok = call(c, state, schedule, report); !ok) return ok;
+    if (!c.last) continue;
     if (gl_)
       if (Status done = at(Place::gl).backend->finish(); !done) return done;
     const auto now = Clock::now();
-    report.ms[std::size_t(timer_of(e))] += std::chrono::duration<double, std::milli>(now - began).count();
+    report.ms[std::size_t(timer_of(*c.entry))] += std::chrono::duration<double, std::milli>(now - began).count();
     began = now;
   }
   if (gl_)

@@ -18,10 +18,11 @@ class Runner {
  public:
   /// Makes the backends that the settings ask for, keeping those that still fit.
   Status prepare(const StepSettings& settings, Precision precision);
-  /// Everything a plan binds: lists and colours packed for their backends, buffers attached.
-  Status bind(const StepPlan& plan, WorldState& state, Schedule& schedule);
-  Status run(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, const void* infos,
-             StepReport& report);
+  /// Everything a plan binds: lists and colours packed for their backends, buffers attached. Where nothing of it has changed since
+  /// the last step, that step's bindings stand. The plan stays where it is until another one is bound.
+  Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
+  /// Runs the plan that was bound.
+  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
 
   /// Before a step changes a buffer of a table, so that `undo` can put it back. Contacts are not copied: the detector
   /// has their last list; nor, on the CPU alone, is scratch.
@@ -50,21 +51,45 @@ class Runner {
     std::uint32_t lanes = 0;  // that were asked for
     int index = -1;
     bool host_context = false;
+    bool takes_part = false;  // in the steps that come
     std::array<Copy, buffer_count> copies{};
+  };
+
+  /// What a step's bindings follow from. (The table of contacts, which changes places with its next one in each step, is
+  /// attached anew each time.)
+  struct Bound {
+    const StepPlan* plan = nullptr;
+    std::uint64_t world = 0, layout = 0, schedule = 0;
+    bool timings = false;
+    friend bool operator==(const Bound&, const Bound&) = default;
+  };
+  /// What a backend is asked for at once: a transfer, or kernels, `count` of runs_ from `first` on.
+  struct Call {
+    const PlanEntry* entry;  // the first of them
+    std::uint32_t first = 0, count = 0;
+    bool last = false;  // of a stage that is clocked
   };
 
   Device& at(Place place) { return devices_[std::size_t(place)]; }
   Status attach(Place place, Buffer buffer, void* host, std::size_t bytes);
   Status upload(Buffer buffer, std::uint64_t version, StepReport& report);
   std::uint32_t lanes(Place place, Domain domain, const Schedule& schedule);
-  Status entry(const PlanEntry& entry, WorldState& state, Schedule& schedule, StepReport& report);
-  Status kernel(const PlanEntry& entry, WorldState& state, Schedule& schedule);
+  Status attach_table(Place place, Buffer buffer, WorldState& state);
+  /// Finds calls_, and what undo must find.
+  void prepare_calls(const StepPlan& plan, bool timings, const Schedule& schedule);
+  void add_run(const PlanEntry& entry, const Schedule& schedule);
+  Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
+  Status kernels(const Call& call, WorldState& state);
+  bool keeps(Buffer buffer) const;
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
-  /// Without those that are empty; joined where they need not follow one another.
-  std::span<const Range> of_octave(std::span<const Range> ranges, bool coloured);
-
-  std::vector<Range> ranges_;         // of the kernel that runs
+  Bound bound_;
+  std::vector<Place> exchanged_;  // where the table of contacts is bound
+  std::vector<Call> calls_;
+  std::vector<KernelRun> runs_;
+  std::vector<Range> ranges_;         // of runs_
+  std::uint32_t infos_ = 0;           // how many blocks of them
+  std::vector<Buffer> kept_;          // what the plan overwrites and undo must find
   std::unique_ptr<Workers> workers_;  // outlives the backends
   std::uint32_t threads_ = 0;         // that were asked for
   std::array<Device, 2> devices_;     // by Place

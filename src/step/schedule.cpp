@@ -232,6 +232,7 @@ void Schedule::update_structure(const WorldState& state) {
 }
 
 void Schedule::group(std::span<const std::uint8_t> octaves) {
+  changes_++;
   octaves_.assign(octaves.begin(), octaves.end());
   const OctaveOf of{octaves_, octaves.empty() ? 1u : 1u + *std::ranges::max_element(octaves)};
   bodies.clear();

@@ -141,12 +141,17 @@ class Schedule {
  public:
   /// Follows a change of the world's objects.
   void update_structure(const WorldState& state);
-  void update_contacts(const WorldState& state) { contacts.colour(state, state.contacts.ends, 1, trees.nodes()); }
+  void update_contacts(const WorldState& state) {
+    changes_++;
+    contacts.colour(state, state.contacts.ends, 1, trees.nodes());
+  }
   /// Sorts everything that moves by octave; `octaves` by body row, empty: all of octave 0. After each update_structure.
   void group(std::span<const std::uint8_t> octaves);
   /// Places in `bodies`.
   std::span<const Range> ranges(unsigned octave) const { return std::span(body_ranges_).subspan(octave, 1); }
   bool grouped() const { return body_ranges_.size() > 1; }
+  /// Counts the changes of all that stands here, but for how it is packed.
+  std::uint64_t changes() const { return changes_; }
 
   std::vector<std::uint32_t> bodies;  // rows that move; those of an octave padded with row 0 to a multiple of `padding`
   std::uint32_t moving = 0;           // without the padding
@@ -164,6 +169,7 @@ class Schedule {
   std::vector<std::uint32_t> rows_;  // those that move
   std::vector<std::uint8_t> octaves_;
   std::vector<Range> body_ranges_;
+  std::uint64_t changes_ = 0;
 };
 
 }  // namespace pcphys

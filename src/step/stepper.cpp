@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <deque>
+#include <optional>
 #include <string>
 
 #include "collision/detector.h"
@@ -74,24 +76,27 @@ const char* name(Timer timer) {
 
 struct Stepper::Inside {
   StepSettings settings;
-  bool checked = false;  // the settings
+  bool checked = false;               // the settings
+  std::optional<Precision> prepared;  // for worlds of this one, by the settings
   Detector detector;
   Schedule schedule;
   Octaves octaves;
   Runner runner;
   StepReport report;
-  std::vector<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few
+  std::deque<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few; they stay where they are
   const StepPlan* plan = nullptr;
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   bool other = false;                                 // than those of the last step
-  InfoInputs infos_from;                              // of the next three
-  std::uint32_t infos_of = 0;                         // octaves, as bits
+  InfoInputs infos_from;                              // of the next four
+  Precision infos_precision = Precision::f32;
+  std::uint32_t infos_of = 0;  // octaves, as bits
   InfoOf<float> infos_f[octave_count][phase_count];
   InfoOf<double> infos_d[octave_count][phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
   int tries = 0;                                // of this step
+  Vec3 sound_gravity;                           // the last that was looked at
   std::vector<Wrench> called;                   // what the callbacks answered in this step
   StepPlan no_plan;
   Clock::time_point began;
@@ -132,17 +137,23 @@ struct Stepper::Inside {
     return plans.emplace_back(wanted, make_plan(wanted)).second;
   }
 
+  template <class Scalar> void fill_octaves(InfoOf<Scalar> (&infos)[octave_count][phase_count]) {
+    for (unsigned octave = 0; octave < octave_count; octave++)
+      if ((octaves.used() & ~infos_of) >> octave & 1) fill_infos(infos_from, infos[octave], octave);
+    infos_of |= octaves.used();
+  }
+
   const void* fill(const WorldState& s, double h) {
+    const Precision precision = s.tables.precision();
     const InfoInputs from(settings, s.gravity, h, s.last_substep);
-    if (!(from == infos_from)) infos_of = 0;
-    infos_from = from;
-    for (unsigned octave = 0; octave < octave_count; octave++) {
-      if (!(octaves.used() >> octave & 1) || infos_of >> octave & 1) continue;
-      fill_infos(from, infos_f[octave], octave);
-      fill_infos(from, infos_d[octave], octave);
-      infos_of |= 1u << octave;
+    if (precision != infos_precision || !(from == infos_from)) {
+      infos_of = 0;
+      infos_from = from;
+      infos_precision = precision;
     }
-    return s.tables.precision() == Precision::f32 ? static_cast<const void*>(infos_f) : infos_d;
+    const bool single = precision == Precision::f32;
+    if (octaves.used() & ~infos_of) single ? fill_octaves(infos_f) : fill_octaves(infos_d);
+    return single ? static_cast<const void*>(infos_f) : infos_d;
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
@@ -175,13 +186,23 @@ struct Stepper::Inside {
     }
   }
 
+  Status prepare(Precision precision) {
+    prepared.reset();
+    Status ok = runner.prepare(settings, precision);
+    if (ok) prepared = precision;
+    return ok;
+  }
+
   Status step(World& world, double dt) {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
     if (ok && !checked) ok = check_settings(settings);
     checked = bool(ok);
-    if (ok) ok = check_finite(s.gravity, "gravity of the world");
-    if (ok) ok = runner.prepare(settings, s.tables.precision());
+    if (ok && !(s.gravity == sound_gravity)) {
+      ok = check_finite(s.gravity, "gravity of the world");
+      if (ok) sound_gravity = s.gravity;
+    }
+    if (ok && prepared != s.tables.precision()) ok = prepare(s.tables.precision());
     if (ok) ok = call_back(world);
     if (!ok) return ok;
     lap(Timer::forces);
@@ -260,10 +281,10 @@ struct Stepper::Inside {
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
-    if (ok = runner.bind(*plan, s, schedule); !ok) return undo(s, ok);
+    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
-    if (ok = runner.run(settings, *plan, s, schedule, fill(s, h), report); !ok) return undo(s, ok);
+    if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
     find_outside(s, schedule.moving_bodies(), outside);
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
@@ -308,21 +329,25 @@ Status Stepper::configure(const StepSettings& settings) {
   if (Status ok = check_settings(settings); !ok) return ok;
   inside_->settings = settings;
   inside_->checked = true;
+  inside_->prepared.reset();
   return {};
 }
 const StepSettings& Stepper::settings() const { return inside_->settings; }
 
 const StepReport& Stepper::step(World& world, double dt) {
   Inside& in = *inside_;
+  static const StepReport blank;
   const std::uint64_t made = in.report.step;
-  in.report = {};
-  const auto start = in.began = Clock::now();
+  in.report = blank;
+  const bool clocked = in.settings.timings;
+  Clock::time_point start;
+  if (clocked) start = in.began = Clock::now();
   const Status ok = in.step(world, dt);
   if (!ok) in.report.error = ok.error();
   in.report.step = made + (ok ? 1 : 0);
   in.report.bodies = std::uint32_t(world.body_count());
   in.report.joints = std::uint32_t(world.joint_count());
-  in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  if (clocked) in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   return in.report;
 }
 

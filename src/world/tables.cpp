@@ -11,6 +11,7 @@ Tables::Tables(Precision precision) : precision_(precision) {
 
 void Tables::resize(Table table, std::uint32_t rows) {
   const std::uint32_t before = rows_[std::size_t(table)];
+  layout_++;
   for (std::size_t b = 0; b < table_buffer_count; b++)
     if (schema(Buffer(b)).table == table) {
       bytes_[b].resize(rows * row_bytes(Buffer(b)));

@@ -41,6 +41,8 @@ class Tables {
   /// Counts the changes of a buffer, so that a device knows when its copy is old.
   std::uint64_t version(Buffer buffer) const { return versions_[std::size_t(buffer)]; }
   void touch(Buffer buffer) { versions_[std::size_t(buffer)]++; }
+  /// Counts the changes of where buffers stand and how long they are, but for what `exchange` does.
+  std::uint64_t layout() const { return layout_; }
 
   // one value at a time, in double, for the border
   double get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const;
@@ -57,6 +59,7 @@ class Tables {
   std::array<AlignedBytes, table_buffer_count> bytes_;
   std::array<std::uint32_t, table_count> rows_{};
   std::array<std::uint64_t, table_buffer_count> versions_{};
+  std::uint64_t layout_ = 0;
 };
 
 }  // namespace pcphys
