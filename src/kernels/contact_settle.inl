@@ -5,12 +5,12 @@
 const uint SETTLE_ROUNDS = 16u;  // of a visit that takes rounds; all lanes make as many
 
 // Whether rounds are needed: more than one point, and in the biased visit a load settled_load times what holds, or friction
-// that changes by settled_friction of its limit.
-PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real coming, Friction f) {
-  precise Real more = coming - load * PC_INFO(settled_load);
+// that changes by settled_friction of its limit. (Bodies that stand side by side press each other by rounding alone: no load.)
+PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real coming, Real mass, Friction f) {
+  precise Real least = mass * PC_INFO(least_load); precise Real more = coming - load * PC_INFO(settled_load);
   precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC) * PC_INFO(settled_friction); precise Real square = limit * limit;
   Real biased = pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MASS + 1u));
-  return pc_and(biased > PC_REAL(0.0), pc_or(more > PC_REAL(0.0), change > square));
+  return pc_and(pc_and(biased > PC_REAL(0.0), coming > least), pc_or(more > PC_REAL(0.0), change > square));
 }
 
 // In a round all rows move at once, so that no point comes before another: each by a share of what would stop its own point that

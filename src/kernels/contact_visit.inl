@@ -95,7 +95,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 #endif
   }
 #ifndef PC_MEAN
-  Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, f);
+  Mask unsettled = pc_unsettled(PC_PASS m, load, ahead, mass, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }
