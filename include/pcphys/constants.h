@@ -55,6 +55,8 @@ inline constexpr double gap_weight = 16;
 /// One visit solves a manifold's rows well enough unless the load is so many times what the last sub-step left, or friction
 /// changes by such a share of its limit: then it takes rounds (contact_settle.inl).
 inline constexpr double settled_load = 1.5, settled_friction = 0.5;
+/// Not for loads below this share of what gravity makes in a sub-step: those are rounding.
+inline constexpr double least_load = 0.01;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together. They seldom do.
 inline constexpr double settling_pace = 1.5;
 /// Contacts are kept up to a gap of this share of the smaller shape's radius (of the sphere that holds it), so that what happens is the

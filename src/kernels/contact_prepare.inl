@@ -72,7 +72,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_B, b0); PC_ST(contact_rows, m, ROW_B + 1u, b1); PC_ST(contact_rows, m, ROW_B + 2u, b2); PC_ST(contact_rows, m, ROW_B + 3u, b3);
   // missing points take the mean gap of the others, so that none is the nearest
   precise Real gap = (p0.s * w0 + p1.s * w1 + p2.s * w2 + p3.s * w3) * share;
-  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real noise = reach * PC_INFO(gap_rounding);
+  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real rounding = reach * PC_INFO(gap_rounding);
+  Real noise = pc_select(pc_or(flight > zero, material.v.z > zero), zero, rounding);  // (of what bounces the instant counts)
   PC_ST(contact_rows, m, ROW_S, pc_told_gap(p0.s, noise)); PC_ST(contact_rows, m, ROW_S + 1u, pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise));
   PC_ST(contact_rows, m, ROW_S + 2u, pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise)); PC_ST(contact_rows, m, ROW_S + 3u, pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise));
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);

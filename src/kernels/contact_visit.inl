@@ -97,7 +97,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
     precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
   }
 #ifndef PC_MEAN
-  precise Real arriving = load - (v.vn + gap_rate) * stops; Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, f);
+  precise Real arriving = load - (v.vn + gap_rate) * stops; Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, mass, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }

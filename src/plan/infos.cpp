@@ -43,6 +43,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.settled_load = Scalar(constants::settled_load);
   biased.settled_friction = Scalar(constants::settled_friction);
   biased.settling_pace = Scalar(constants::settling_pace);
+  biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
   biased.impulse_trend = Scalar(constants::impulse_trend);
   biased.tree_contact_rate = Scalar(of_tree.rate);
