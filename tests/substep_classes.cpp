@@ -93,7 +93,7 @@ TEST_CASE("octaves: columns that are high for the sub-step, and pyramids of boxe
   };
   CHECK(asked(1, 5, frame) == 4);
   CHECK(asked(1, 50, 1.0 / 240) == 4);  // many, and not much beside their size
-  CHECK(asked(0.5, 10, frame) == 16);   // few: they can have it
+  CHECK(asked(0.5, 10, frame) == 32);   // few: they can have it
   CHECK(asked(0.5, 30, 1.0 / 240) == 16);
   CHECK(asked(0.05, 60, frame) == 32);  // any number
 }

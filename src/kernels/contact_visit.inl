@@ -57,14 +57,14 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 
   // where no manifold of the block has a second point, the rows of the others are zeros
   Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u), pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
-  bool more = PC_ANY(pc_max(others, pc_max(l1, pc_max(l2, l3))) > PC_REAL(0.0));
+  Mask several = pc_max(others, pc_max(l1, pc_max(l2, l3))) > PC_REAL(0.0); bool more = PC_ANY(several);
   precise Real load = l0 + l1 + l2 + l3; precise Real inverse_load = pc_inverse_or_zero(load);
   Gaps gap; gap.s0 = pc_gap(PC_PASS m, 0u, shift); gap.s1 = gap.s0; gap.s2 = gap.s0; gap.s3 = gap.s0; Real apart = gap.s0;
   if (more) {  // lint: allow (as said)
     gap.s1 = pc_gap(PC_PASS m, 1u, shift); gap.s2 = pc_gap(PC_PASS m, 2u, shift); gap.s3 = pc_gap(PC_PASS m, 3u, shift);
     // of what carries the load: an edge that stands on a floor does so whatever the gap beside it
     precise Real carried = (l0 * gap.s0 + l1 * gap.s1 + l2 * gap.s2 + l3 * gap.s3) * inverse_load;
-    apart = pc_select(load > PC_TINY, carried, pc_min(pc_min(gap.s0, gap.s1), pc_min(gap.s2, gap.s3)));
+    Real nearest = pc_min(pc_min(gap.s0, gap.s1), pc_min(gap.s2, gap.s3)); apart = pc_select(several, pc_select(load > PC_TINY, carried, nearest), apart);
   }
 
   // friction goes by the load that the normal rows, visited after it, are about to leave, were they rigid: what the soft rows let
