@@ -71,12 +71,13 @@ constexpr long steps_a_look = 10;
 
 class OwnEngine final : public Engine {
  public:
-  OwnEngine(Place place, std::uint32_t lanes) : place_(place), lanes_(lanes) {}
+  OwnEngine(Place place, std::uint32_t lanes, int device) : place_(place), lanes_(lanes), device_(device) {}
 
   Result<std::unique_ptr<Simulated>> start(Problem problem, const Conditions& conditions) override {
     StepSettings settings = conditions.settings;
     settings.set_all(place_);
     settings.lanes = lanes_;
+    settings.device = device_;
     settings.timings = false;
     return std::unique_ptr<Simulated>(std::make_unique<Own>(std::move(problem), shared_, settings));
   }
@@ -88,6 +89,7 @@ class OwnEngine final : public Engine {
  private:
   Place place_;
   std::uint32_t lanes_;
+  int device_;
   SharedStepper shared_;
 };
 
@@ -171,6 +173,8 @@ double Simulated::repeat(const Simulated& other) {
   return (thread_clock() - begin - clock_cost()) * double(made) / double(made - 1);
 }
 
-std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes) { return std::make_unique<OwnEngine>(place, lanes); }
+std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes, int device) {
+  return std::make_unique<OwnEngine>(place, lanes, device);
+}
 
 }  // namespace pcphys::cases

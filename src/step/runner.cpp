@@ -280,7 +280,8 @@ Status Runner::kernels(const Call& call, WorldState& state) {
     for (const Access& a : schema(entry.kernel).accesses)
       if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
   if (entry.again == 0) return backend.run(runs);
-  for (std::uint32_t i = 0; i < entry.again && !runs[0].ranges.empty(); i++) {
+  if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
+  for (std::uint32_t i = 0; i < entry.again; i++) {
     const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad);
     if (!struck) return struck.error();
     if (!*struck) break;
