@@ -211,7 +211,7 @@ void add_loops(std::vector<Case>& cases) {
                              .run = [b](Trial& t) { bridge(t, b.pins, b.load); },
                              .steps = {1.0 / 240},
                              .substeps = {4},
-                             .more_steps = {1.0 / 30, 1.0 / 60},
+                             .more_steps = {1.0 / 60},
                              .more_substeps = {1, 2},
                              .lost_at = 1});
 
@@ -236,7 +236,7 @@ void add_loops(std::vector<Case>& cases) {
                      .run = ring,
                      .steps = {1.0 / 240},
                      .substeps = {4},
-                     .more_steps = {1.0 / 30, 1.0 / 60},
+                     .more_steps = {1.0 / 60},
                      .more_substeps = {1, 2},
                      .lost_at = 1}}});
 

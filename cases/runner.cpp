@@ -110,13 +110,6 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
   return rows;
 }
 
-/// Of a motion that was cut short nothing is known but its hash.
-void drop_error(Row& row) {
-  row.error = std::numeric_limits<double>::quiet_NaN();
-  row.must = row.target = std::nullopt;
-  row.pass = row.gl != "differs";
-}
-
 /// With repeats the median of so many runs in which nothing is read; a clock that stops for each reading costs as much as a step of
 /// the least worlds. Without, or where a run takes long, what the trial's own steps took.
 double time_of(Trial& trial, int repeats) {
@@ -129,6 +122,14 @@ double time_of(Trial& trial, int repeats) {
     seconds.push_back(*again);
   }
   return median(seconds);
+}
+
+/// Of a motion that was cut short nothing is known but its hash.
+void drop_error(Row& row) {
+  row.error = std::numeric_limits<double>::quiet_NaN();
+  row.must = row.target = std::nullopt;
+  row.lost = false;
+  row.pass = row.gl != "differs";
 }
 
 std::vector<Row> run_trial(const Selection& selection, const Case& c, const Variant& variant, const Setting& setting,

@@ -40,7 +40,7 @@ struct Selection {
   bool gl = false;      // the first steps of every trial on gl as well
   int device = -1;      // of gl, as EGL numbers them; -1: the first that works
   bool first = false;   // those first steps alone: hashes, no errors
-  int repeats = 1;      // times are medians; a trial of more than a second runs once
+  int repeats = 1;      // above 1, times are medians of so many runs in which nothing is read
 };
 
 /// Errors: unknown_name for a case that is not in the groups.

@@ -218,7 +218,7 @@ void add_stacks(std::vector<Case>& cases) {
     std::snprintf(text, sizeof text, format, x);
     return std::string(text);
   };
-  const std::vector<double> longer{1.0 / 30, 1.0 / 60};
+  const std::vector<double> longer{1.0 / 60};
   const std::vector<std::uint32_t> fewer{1, 2};  // sub-steps
   Case& heavy = cases.emplace_back(Case{"B3", "heavy on light", {}});
   for (double top : {10.0, 100.0, 1e3, 1e4})
@@ -252,7 +252,6 @@ void add_stacks(std::vector<Case>& cases) {
                                .run = [=](Trial& t) { plain_tower(t, count); },
                                .steps = {1.0 / 60, 1.0 / 240},
                                .substeps = {4},
-                               .more_steps = {1.0 / 30},
                                .more_substeps = fewer,
                                .lost_at = 0.5});
 

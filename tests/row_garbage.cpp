@@ -16,7 +16,7 @@ namespace {
 
 std::uint32_t garbage = 0;  // of each 32 bits of the rows
 
-/// A CPU backend whose rows are the test's memory, filled anew in every step.
+/// A backend whose rows are the test's memory, filled anew before each step.
 class SpoilingBackend final : public Backend {
  public:
   explicit SpoilingBackend(std::unique_ptr<Backend> inner, std::size_t real_bytes)
@@ -33,7 +33,8 @@ class SpoilingBackend final : public Backend {
   }
   Status upload(Buffer buffer) override { return inner_->upload(buffer); }
   Status download(Buffer buffer) override { return inner_->download(buffer); }
-  Status set_infos(const void* infos, std::size_t count) override {  // each step
+  /// Once a step, before it runs.
+  Status set_infos(const void* infos, std::size_t count) override {
     for (auto& [buffer, rows] : rows_)
       for (std::size_t i = 0; i + 4 <= rows.size(); i += 4) std::memcpy(rows.data() + i, &garbage, 4);
     return inner_->set_infos(infos, count);

@@ -204,10 +204,10 @@ void GlBackend::dispatch_all(const KernelRun& run) {
 }
 
 Status GlBackend::run(std::span<const KernelRun> runs) {
-  if (Status status = hold(); !status) return status;
   for (const KernelRun& run : runs) {
     barrier_due_ |= run.barrier;
-    if (std::all_of(run.ranges.begin(), run.ranges.end(), [](const Range& r) { return r.begin >= r.end; })) continue;
+    if (std::ranges::all_of(run.ranges, [](const Range& r) { return r.begin >= r.end; })) continue;
+    if (Status status = hold(); !status) return status;
     if (Status status = bind(run.kernel, run.info); !status) {
       release();
       return status;

@@ -279,8 +279,8 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   if (gl_ && entry.place == Place::cpu && !runs[0].ranges.empty())
     for (const Access& a : schema(entry.kernel).accesses)
       if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
-  // (one without ranges has nothing to do, but later ones count on its barrier)
-  if (entry.again == 0 || runs[0].ranges.empty()) return backend.run(runs);
+  if (entry.again == 0) return backend.run(runs);
+  if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
   for (std::uint32_t i = 0; i < entry.again; i++) {
     const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad);
     if (!struck) return struck.error();
