@@ -92,19 +92,29 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
   return rows;
 }
 
+/// Of a motion that was cut short nothing is known but its hash.
+void drop_error(Row& row) {
+  row.error = std::numeric_limits<double>::quiet_NaN();
+  row.must = row.target = std::nullopt;
+  row.pass = row.gl != "differs";
+}
+
 std::vector<Row> run_trial(const Selection& selection, const Case& c, const Variant& variant, const Setting& setting,
                            Engine& engine, Engine* gl) {
-  constexpr long unlimited = std::numeric_limits<long>::max();
-  const auto trial = make_trial(engine, variant, setting, unlimited);
+  const long limit = selection.first ? hashed_steps : std::numeric_limits<long>::max();
+  const auto trial = make_trial(engine, variant, setting, limit);
   std::vector<double> seconds{trial->meter().seconds};
   while (int(seconds.size()) < selection.repeats && seconds[0] < seconds_to_repeat)
-    seconds.push_back(make_trial(engine, variant, setting, unlimited)->meter().seconds);
+    seconds.push_back(make_trial(engine, variant, setting, limit)->meter().seconds);
   std::string equal;
   if (gl && engine.peer().empty()) {
     const auto there = make_trial(*gl, variant, setting, hashed_steps);
     equal = there->meter().error.code == ErrorCode::none && there->meter().hash == trial->meter().hash ? "equal" : "differs";
   }
-  return rows_of(*trial, c, variant, setting, engine, median(seconds), equal);
+  auto rows = rows_of(*trial, c, variant, setting, engine, median(seconds), equal);
+  if (selection.first)
+    for (Row& row : rows) drop_error(row);
+  return rows;
 }
 
 /// Fills in the orders, and adds the row that says whether the first metric's is what it must be.
@@ -163,7 +173,7 @@ std::size_t count_trials(const Selection& selection, std::span<Engine* const> en
 
 std::vector<Row> run(const Selection& selection, std::span<Engine* const> engines,
                      const std::function<void(std::span<const Row>)>& tell, const std::function<void(std::size_t)>& progress) {
-  const std::unique_ptr<Engine> gl = selection.gl ? make_pcphys(Place::gl) : nullptr;
+  const std::unique_ptr<Engine> gl = selection.gl ? make_pcphys(Place::gl, 0, selection.device) : nullptr;
   std::vector<Row> all;
   std::size_t done = 0;
   for (const Case* c : selected(selection))

@@ -33,9 +33,11 @@ struct Selection {
   std::string variant;  // only those whose names start with this
   bool single = true, twice = true;
   std::optional<double> dt;
-  bool slow = false;  // what takes long too
-  bool gl = false;    // the first steps of every trial on gl as well
-  int repeats = 1;    // times are medians; a trial of more than a second runs once
+  bool slow = false;   // what takes long too
+  bool gl = false;     // the first steps of every trial on gl as well
+  int device = -1;     // of gl, as EGL numbers them; -1: the first that works
+  bool first = false;  // those first steps alone: hashes, no errors
+  int repeats = 1;     // times are medians; a trial of more than a second runs once
 };
 
 /// Errors: unknown_name for a case that is not in the groups.

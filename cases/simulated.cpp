@@ -56,12 +56,13 @@ class Own final : public Simulated {
 
 class OwnEngine final : public Engine {
  public:
-  OwnEngine(Place place, std::uint32_t lanes) : place_(place), lanes_(lanes) {}
+  OwnEngine(Place place, std::uint32_t lanes, int device) : place_(place), lanes_(lanes), device_(device) {}
 
   Result<std::unique_ptr<Simulated>> start(Problem problem, const Conditions& conditions) override {
     StepSettings settings = conditions.settings;
     settings.set_all(place_);
     settings.lanes = lanes_;
+    settings.device = device_;
     settings.timings = false;
     return std::unique_ptr<Simulated>(std::make_unique<Own>(std::move(problem), stepper_, settings));
   }
@@ -73,6 +74,7 @@ class OwnEngine final : public Engine {
  private:
   Place place_;
   std::uint32_t lanes_;
+  int device_;
   Stepper stepper_;
 };
 
@@ -122,6 +124,8 @@ void Simulated::set_wrench(int, const Wrench&) { refuse("This engine takes no fo
 void Simulated::set_gravity(Vec3) { refuse("This engine's gravity cannot change."); }
 void Simulated::set_velocity(int, Vec3, Vec3) { refuse("This engine's velocities cannot be set."); }
 
-std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes) { return std::make_unique<OwnEngine>(place, lanes); }
+std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes, int device) {
+  return std::make_unique<OwnEngine>(place, lanes, device);
+}
 
 }  // namespace pcphys::cases

@@ -100,7 +100,7 @@ class Engine {
 };
 
 /// `lanes` as in StepSettings.
-std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes = 0);
+std::unique_ptr<Engine> make_pcphys(Place place, std::uint32_t lanes = 0, int device = -1);
 /// A peer by its name in peers/peer.h; nullptr when it was not found. Its trials fail for what it has no equal of, and
 /// when their steps take longer than `budget` [s].
 std::unique_ptr<Engine> make_peer(std::string_view name, double budget);

@@ -86,10 +86,15 @@ Result<cases::Selection> resolve(const CaseOptions& options, const std::string& 
   selection.slow = options.all;
   if (auto status = check_choice("precision", options.precision, {"float", "double", "both"}); !status) return status.error();
   if (auto status = check_choice("backend", options.backend, {"cpu", "gl"}); !status) return status.error();
+  if (auto status = check_range("device", options.device, -1, 1000); !status) return status.error();
   if (auto status = check_range("repeats", options.repeats, 1, 1000); !status) return status.error();
   selection.single = options.precision != "double";
   selection.twice = options.precision != "float";
   selection.gl = options.backend == "gl";
+  selection.first = options.first;
+  selection.device = int(options.device);
+  if (selection.first && !selection.gl)
+    return Error{ErrorCode::bad_argument, "--first compares the first 600 steps of cpu and gl; it needs --backend gl."};
   selection.repeats = int(options.repeats);
   if (!options.dt.empty()) {
     const auto dt = time_step(options.dt);
@@ -136,6 +141,9 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--dt", options.dt, "this step length only [s], also as a fraction");
   app.add_option("--backend", options.backend, "gl: run the first 600 steps of everything there too, and compare hashes")
+      ->capture_default_str();
+  app.add_flag("--first", options.first, "with --backend gl: those 600 steps alone, for the hashes; no errors");
+  app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
       ->capture_default_str();
   app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 1 s runs once")
       ->capture_default_str();

@@ -37,7 +37,8 @@ struct CaseOptions {
   long long repeats = 1;
   std::string peers = "none";
   double budget = 5;  // of stepping, for each trial of a peer [s]
-  bool all = false, list = false;
+  bool all = false, list = false, first = false;
+  long long device = -1;
   std::string json, csv;
 };
 

@@ -57,6 +57,7 @@ class GlBackend final : public Backend {
   std::size_t info_bytes_ = 0, info_stride_ = 0, info_count_ = 0, info_capacity_ = 0;
   std::vector<char> info_staging_;
   bool writes_pending_ = false;  // of dispatches, not yet visible to transfers
+  bool barrier_due_ = false;     // asked for by a run that had nothing to do: the plan counts on it all the same
   bool held_ = false;            // the context stays current from the first run to finish
 };
 
@@ -190,6 +191,8 @@ void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::
 }
 
 Status GlBackend::run(Kernel kernel, std::size_t info, std::span<const Range> ranges, std::uint32_t, bool barrier) {
+  barrier_due_ |= barrier;
+  if (std::all_of(ranges.begin(), ranges.end(), [](const Range& r) { return r.begin >= r.end; })) return {};
   if (Status status = hold(); !status) return status;
   if (Status status = bind(kernel, info); !status) {
     release();
@@ -198,11 +201,12 @@ Status GlBackend::run(Kernel kernel, std::size_t info, std::span<const Range> ra
   const std::uint32_t lanes = schema(kernel).domain == Domain::body ? 1 : gl_width;
   for (const Range& range : ranges) {
     if (range.begin >= range.end) continue;
-    if (barrier) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    if (barrier_due_) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     dispatch(programs_[std::size_t(kernel)].range, range.begin * lanes, range.end * lanes);
-    barrier = true;  // each range may read what the one before wrote
+    barrier_due_ = true;  // each range may read what the one before wrote
     writes_pending_ = true;
   }
+  barrier_due_ = false;  // what runs next says itself whether it reads what this one wrote
   return {};
 }
 

@@ -59,7 +59,7 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
-  pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3());
+  pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3()); pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_RC, pc_zero3());
   // masses in units of the tree's: determinants stay in the range of reals whatever bodies weigh
   Real total = PC_REAL(0.0);
   for (uint k = 0u; k < t.count; k++) { Quad moments = PC_GATHER(mass, PC_ENDS(tree_ends, PC_NODE(m, t.first + k), 0u), 0u); precise Real sum = total + moments.s; total = sum; }

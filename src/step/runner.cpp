@@ -213,11 +213,12 @@ Status Runner::kernel(const PlanEntry& entry, WorldState& state, Schedule& sched
     ranges = of_octave(ranges, needs_colours(k));
   else if (ranges.size() > 1 && !needs_colours(k))
     ranges = std::span<const Range>(&all, 1);
-  if (ranges.empty()) return {};
+  Backend& backend = *at(entry.place).backend;
+  // nothing to do, but later entries count on its barrier
+  if (ranges.empty()) return entry.barrier ? backend.run(entry.kernel, info_index(entry), ranges, 1, true) : Status{};
   if (gl_ && entry.place == Place::cpu)
     for (const Access& a : k.accesses)
       if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
-  Backend& backend = *at(entry.place).backend;
   const std::uint32_t width = lanes(entry.place, k.domain, schedule);
   if (entry.again == 0) return backend.run(entry.kernel, info_index(entry), ranges, width, entry.barrier);
   for (std::uint32_t i = 0; i < entry.again; i++) {
