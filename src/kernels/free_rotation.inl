@@ -2,13 +2,20 @@
 // Rotation under constant world angular momentum L, by splitting the free rigid body
 //   H = |L|^2 / (2 I_m) + (1/I_a - 1/I_m) Pi_a^2 / 2 + (1/I_c - 1/I_m) Pi_c^2 / 2,   Pi = q* L,
 // with m the axis of the middle moment: the first term is one world rotation about L and commutes with the
-// rest; the other two are rotations about body axes, c about that of the smallest moment. They are composed in fourth order
-// where both turn by more than 1e-5 radian, and below as half a, c, half a (Strang). L is exact.
+// rest; the other two are rotations about body axes, c about that of the smallest moment. They are composed in fourth order where
+// both turn by more than PC_FINE_TURN, and below, where no more than rounding is to be had, as half a, c, half a (Strang). L is exact.
 // Two equal moments: the middle one is among them, one term vanishes and the motion is exact; three equal
 // moments: one rotation. (McLachlan and Quispel, Splitting methods, Acta Numerica 11, 2002, section 3.)
 // A body that turns against its middle axis by more than a radian does so in up to 16 such parts, and what they are off in
 // energy is turned back: the splitting alone keeps |L| but finds other axes there, and a box gained half its energy. Beyond
 // 8 radians, where a pose no longer tells how far it turned, it moves along its polhode as if it were 8.
+
+// The square of that angle: 1e-5 rad, and 1.4e-3 in single precision.
+#ifdef PC_DOUBLE
+#define PC_FINE_TURN PC_REAL(1e-10)
+#else
+#define PC_FINE_TURN PC_REAL(2e-6)
+#endif
 
 // What a sub-step changes in an orientation q: W q B - q = (W - 1) (q B) + q (B - 1).
 PC_FN Quaternion pc_change(Turn world, Quaternion q, Turn body) {
@@ -98,7 +105,7 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   precise Real twice = pc_dot(start.pi, pc_times(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
   Real inverse_a = pc_dot(a, inverse); Real inverse_c = pc_dot(c, inverse);
   Mask fast = pc_and(pc_or(square_a > inverse_a, square_c > inverse_c), pc_and(pc_abs(rate_a) > PC_REAL(0.0), pc_abs(rate_c) > PC_REAL(0.0)));
-  precise Real least_a = inverse_a * PC_REAL(1e-10); precise Real least_c = inverse_c * PC_REAL(1e-10);
+  precise Real least_a = inverse_a * PC_FINE_TURN; precise Real least_c = inverse_c * PC_FINE_TURN;
   Mask fine = pc_and(square_a > least_a, square_c > least_c); Mask plain = pc_select(fine, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); Spin s = start;
   if (PC_ANY(fine)) s = pc_fourth_order(start, a, c, rate_a, rate_c, half_h, h);  // lint: allow (selected below)
   if (PC_ANY(plain)) s = pc_spin_select(fine, s, pc_strang(start, a, c, rate_a, rate_c, half_h, h));  // lint: allow (other lanes keep what they have)
