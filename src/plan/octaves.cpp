@@ -11,6 +11,7 @@
 namespace pcphys {
 
 void Islands::build(const WorldState& state) {
+  if (std::exchange(built_, true)) return;
   parent_.resize(state.bodies.size());
   std::iota(parent_.begin(), parent_.end(), 0u);
   size_.assign(parent_.size(), 1);
@@ -53,6 +54,7 @@ std::uint8_t highest_octave(const StepSettings& settings) {
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
   uneven ? loads_.find(state, trees) : loads_.forget_contacts();
   columns_.forget();
+  islands_.forget();
 }
 
 bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,

@@ -22,6 +22,9 @@ inline constexpr std::uint32_t most_substeps = 1000;
 /// follows their way from sub-step to sub-step; fixed ones do not.
 class Islands {
  public:
+  /// Follows a change of contacts, joints or kinds of bodies.
+  void forget() { built_ = false; }
+  /// Once for each change.
   void build(const WorldState& state);
   /// The lowest row of the body's island.
   std::uint32_t root(std::uint32_t body) const;
@@ -30,6 +33,7 @@ class Islands {
 
  private:
   void join(std::uint32_t a, std::uint32_t b);
+  bool built_ = false;
   std::vector<std::uint32_t> parent_, size_;  // by body row
 };
 

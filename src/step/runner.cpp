@@ -1,5 +1,6 @@
 #include "step/runner.h"
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -22,8 +23,12 @@ Timer timer_of(const PlanEntry& entry) {
 bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
 
 std::size_t info_index(const PlanEntry& entry) { return std::size_t{entry.octave} * phase_count + std::size_t(entry.phase); }
-/// Where contact_impact raises its flag: the property `some_struck`.
-constexpr std::uint32_t flag_quad = 2;
+/// Where contact_impact raises its flag.
+std::uint32_t flag_quad() {
+  static const std::uint32_t quad =
+      std::ranges::find(properties(), std::string_view("some_struck"), &PropertySchema::name)->offset / 4;
+  return quad;
+}
 
 /// The list or slot array behind a buffer that is no table's, or null.
 std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
@@ -282,7 +287,7 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   if (entry.again == 0) return backend.run(runs);
   if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
   for (std::uint32_t i = 0; i < entry.again; i++) {
-    const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad);
+    const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad());
     if (!struck) return struck.error();
     if (!*struck) break;
     if (Status ok = backend.run(runs); !ok) return ok;
