@@ -1,6 +1,5 @@
 // Pins how far the direct solve of joint trees goes, and says where it ends: loops under
-// tension; masses; spins too fast for the sub-step. What is marked may_fail is what a
-// host would wish for and does not get yet; the figures are those measured when this was written.
+// tension; masses; spins too fast for the sub-step. The figures are those measured when this was written.
 #include <random>
 
 #include "support_trees.h"
