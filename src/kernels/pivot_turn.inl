@@ -46,7 +46,7 @@ PC_FN Motion pc_kick(Motion m, Vec3 torque, Real time) {
   TwoSum sum = pc_two_sum(m.l, pc_madd(m.low, torque, time)); Motion o = m; o.l = sum.sum; o.low = sum.low; return o;
 }
 PC_FN Quaternion pc_facing(Motion m) { return pc_quaternion(m.at.q.v, m.at.q.s); }
-// The frame is that of the principal axes about the pin; what the turns change of it is summed, so that each rounds as little as it turns.
+// The frame is that of the principal axes about the pin; what the turns change of it is summed, and brought to its length once.
 PC_FN Motion pc_swing_on(Pivot p, Motion start, Real h) {
   Motion m = start; Quad about = pc_quad(p.inverse, p.middle); Quaternion back = pc_conjugate(p.axes); Vec3 arm = pc_rotate(back, p.arm);
   Quaternion q = pc_facing(start); Quaternion first = pc_quaternion_mul(q, p.axes); Quaternion frame = first; Quaternion change = pc_quaternion(pc_zero3(), PC_REAL(0.0));
@@ -58,7 +58,7 @@ PC_FN Motion pc_swing_on(Pivot p, Motion start, Real h) {
     precise Vec3 v = change.v + turn.v; precise Real w = change.w + turn.w; change = pc_quaternion(v, w);
     precise Vec3 now_v = first.v + v; precise Real now_w = first.w + w; frame = pc_quaternion(now_v, now_w);
   }
-  m.at = pc_turned(q, start.at.low, pc_quaternion_mul(change, back)); return m;
+  m.at = pc_righted(pc_turned(q, start.at.low, pc_quaternion_mul(change, back))); return m;
 }
 // The same of a hinge, whose axis stays where it is: one angle, and the torque of a weight that goes round. What it gains of the momentum
 // about the axis is summed by itself, and so is the angle: of either no digit is lost between the kicks.
