@@ -127,7 +127,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   Quaternion q = pc_quaternion(turned.v, turned.s); Vec3 r = pc_from_pin(p, q); Mask swings = pc_swings(p); Mask hinged = pc_select(swings, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); Vec3 axis = pc_hinge_axis(p, q);
   Vec3 all = pc_torque(p, r); Vec3 torque = pc_select3(swings, all, pc_along(axis, all));
-  Motion start; start.l = pc_about_pin(p, r, linear.v, angular.v); start.low = pc_about_pin(p, r, u_low.v, l_low.v);
+  // the momentum of before to the bit, and beside it what was given since: their sum as one real would round anew each time
+  Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v));
+  Motion start; start.l = pc_about_pin(p, r, u_before.v, l_before.v); start.low = pc_add(given, pc_about_pin(p, r, u_low.v, l_low.v));
   Turn straight = pc_turn(pc_straightening(PC_PASS n)); start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
   precise Real back = -half_h; start = pc_kick(start, torque, back);  // in phase with the pose: it has had a whole kick and was half a one behind
   Motion next = start;
@@ -148,7 +150,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 kept = pc_about_pin(p, r_next, now.u, now.l); precise Vec3 lost = (next.l - kept) + next.low; Vec3 low = pc_select3(swings, lost, pc_along(axis, lost));
   pc_add_impulse(PC_PASS n, pc_scale(pc_sub(now.u, linear.v), p.mass), pc_sub(now.l, angular.v), pc_scale(pc_add(r, r_next), PC_REAL(0.5)));
   // the velocities that are read are half a kick ahead: of what acts from a distance that of now, of the rest half of the last
-  Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v)); Vec3 change = pc_sub(torque_next, torque); Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
+  Vec3 change = pc_sub(torque_next, torque); Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
 
   Mask exists = linear.s > PC_REAL(0.0); Vec3 zero = pc_zero3(); Real none = PC_REAL(0.0);
   pc_st6_tree(PC_PASS n, TREE_X, pc_six(now.u, now.l)); pc_st6_tree(PC_PASS n, TREE_F, pc_six(step, pc_scale(rotation.v, two))); PC_ST(tree_rows, n, TREE_C, square);

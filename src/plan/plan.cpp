@@ -139,7 +139,8 @@ void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 
 /// A sub-step; `count`: of how many.
 void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32_t k, std::uint32_t count) {
-  if (k + 1 == count && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
+  // pivots go on from the momentum of before; the last change of velocities is that of the last sub-step
+  if (s.pivots || (k + 1 == count && s.integrator != Integrator::seed)) b.kernel(Kernel::remember, Phase::biased, k);
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
   if (k > 0) look_at_inertia(b, s, k);
