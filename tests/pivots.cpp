@@ -1,8 +1,10 @@
 // Pins that a body on a pivot has nothing to solve for where no limit, motor or contact acts, what its joint is then said to hold, and
 // that hinges and pins side by side give the same bits in every lane width and on GL (kernels/pivot_turn.inl).
+#include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "plan/plan.h"
 #include "support_physics.h"
 
 using namespace physics;
@@ -61,6 +63,25 @@ TEST_CASE("pivots: where nothing but forces acts on them, no tree is solved") {
     run.step(0.01);
     CHECK_FALSE(left_out(run).contains("tree solve"));
   }
+}
+
+TEST_CASE("pivots: a contact brings the tree solve back, and all of it") {
+  PlanSignature s;
+  s.bodies = s.trees = s.pivots = s.pivots_bare = true;
+  const auto solves = [&s](Kernel kernel) {
+    const StepPlan plan = make_plan(s);
+    return std::ranges::count_if(plan.entries, [kernel](const PlanEntry& e) { return e.kernel == kernel; });
+  };
+  for (Kernel kernel : {Kernel::tree_solve, Kernel::tree_again, Kernel::tree_relax, Kernel::inertia}) {
+    s.tree_contacts = false;
+    CHECK(solves(kernel) == 0);
+    s.tree_contacts = true;
+    CHECK(solves(kernel) == s.substeps);
+  }
+  s.tree_contacts = false;
+  CHECK(solves(Kernel::remember) == s.substeps);
+  s.pivots = false;
+  CHECK(solves(Kernel::remember) == 1);
 }
 
 TEST_CASE("pivots: the pin holds what hangs on it, and a hinge the moment across its axis") {
