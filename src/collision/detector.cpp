@@ -42,7 +42,7 @@ bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const flo
     const double gap = double(m.points[i].separation) - margin;
     if (gap <= 0) return true;
     const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    const Passing p = passing(a, b, n, r, apart);
+    const Passing<float> p = passing(a, b, n, r, apart);
     const double closing = std::max(0.0, double(p.closing));
     if (gap > fall + closing * dt) continue;
     const double until = closing * dt > gap ? gap / closing : dt;
@@ -73,9 +73,6 @@ double bounding_radius(const ShapeDef& d) {
   }
 }
 
-// Beyond it, turning closes no gap that is larger than the body: spins of everyday scenes keep their contacts' bits [rad].
-constexpr float wild_turn = 100.0f;
-
 /// Half a shape's thickness [m].
 float inner_radius(const ShapeDef& d) {
   if (d.kind == ShapeKind::plane) return std::numeric_limits<float>::infinity();
@@ -83,8 +80,6 @@ float inner_radius(const ShapeDef& d) {
   if (d.kind == ShapeKind::hull) return float(d.convex.inner_radius());
   return float(d.kind == ShapeKind::cylinder ? std::min(d.size.x, d.size.y) : d.size.x);
 }
-
-constexpr float largest_turn = 2.0f;  // beyond it a turning surface comes no further outward [rad]
 
 }  // namespace
 
@@ -190,8 +185,7 @@ void Detector::bound(const WorldState& s, double dt, const Options& options, std
     reach_[i] = s.stands(proxy.body) ? 0.0f : std::max(step * twist.speed, strays_ ? went_[proxy.body] : 0.0f) + turned + fall;
     tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + (proxy.responds ? float(margin(options, i)) : 0.0f));
   }
-  for (Twist& twist : twists_)
-    if (twist.turn * step > wild_turn) twist.limit_turn(largest_turn / step);
+  for (Twist& twist : twists_) twist.limit_turn(dt);
 }
 
 template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }
