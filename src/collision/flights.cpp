@@ -1,6 +1,7 @@
 #include "collision/flights.h"
 
 #include <limits>
+#include <type_traits>
 
 #include "collision/detector.h"
 #include "collision/hook.h"
@@ -111,8 +112,11 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const auto mover = [&](int side) {
     const Proxy& p = proxies_[view.shapes[side]];
     const Twist& t = twists_[view.rows[side]];
-    TwistOf<Scalar> own = s.stands(view.rows[side]) ? TwistOf<Scalar>() : twist_of<Scalar, Scalar>(s.tables, view.rows[side]);
-    own.limit_turn(dt);
+    TwistOf<Scalar> own;
+    if constexpr (std::is_same_v<Scalar, float>)
+      own = t;
+    else if (!s.stands(view.rows[side]))
+      own = twist_of<Scalar, Scalar>(s.tables, view.rows[side]), own.limit_turn(dt);
     return Mover<Scalar>{&scratch.shapes[view.shapes[side]], own, t.across * p.lever_across + t.turn * p.lever_any, p.centred};
   };
   const Mover<Scalar> a = mover(0), b = mover(1);
