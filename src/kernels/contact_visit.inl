@@ -1,8 +1,10 @@
-// One visit of a manifold's rows: friction at the centre, then the normal rows together, with accumulated impulses, from the relative twist at its centre to the change of its impulses.
+// One visit of a manifold's rows: friction at the centre, then the normal rows together (with accumulated impulses), from the relative
+// twist at its centre to the change of its impulses.
 #include "contact_friction.inl"
+#include "contact_together.inl"
 #include "contact_shift.inl"
 
-// New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
+// What one normal row asks for, as a change of its impulse. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of their impulse.
 // Where one body stands that is a share of what the manifold's load goes beyond a few weights of the body (`loose`), so that what
 // lies alone does not sink, also where one side of it carries more. With bodies of trees (PC_MEAN) it is a share of what deviates
@@ -37,6 +39,7 @@ PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real ke
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, -impulse, change);
 }
+// New accumulated impulse of a row that takes this share of what it asks for.
 PC_FN Real pc_row_after(Real impulse, Real change, Real share) { precise Real next = impulse + change * share; return pc_snap(pc_max(next, PC_REAL(0.0))); }
 PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
   return pc_row_after(impulse, pc_row_change(PC_PASS vn, s, mass, impulse, kept), PC_REAL(1.0));
@@ -84,26 +87,22 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
-  // normal rows, all at once: each asks for what would stop its own point, and all take the share of it that leaves least (a line
-  // search along what the rows ask for), so that none comes before another: else boxes lean to the side that comes last
-  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
-  precise Real v0 = vn + b0 * w1 - a0 * w2;
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real e0 = pc_row_change(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u));
-  Rows now; now.k0 = l0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Real taken = PC_REAL(1.0);
+  // normal rows
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
+  precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_row_change(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u));
+  Rows now; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Real share_of_all = PC_REAL(1.0);
   if (more) {  // lint: allow (as said)
     Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
     Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
     Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
-    precise Real v1 = vn + b1 * w1 - a1 * w2; precise Real v2 = vn + b2 * w1 - a2 * w2; precise Real v3 = vn + b3 * w1 - a3 * w2;
-    Real e1 = pc_row_change(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u)); Real e2 = pc_row_change(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u)); Real e3 = pc_row_change(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
-    Real c0 = pc_max(e0, -l0); Real c1 = pc_max(e1, -l1); Real c2 = pc_max(e2, -l2); Real c3 = pc_max(e3, -l3);
-    precise Real own = c0 * c0 * pc_inverse_or_zero(m0) + c1 * c1 * pc_inverse_or_zero(m1) + c2 * c2 * pc_inverse_or_zero(m2) + c3 * c3 * pc_inverse_or_zero(m3);
-    precise Real cross = (c0 * c2 * PC_LD(contact_rows, m, ROW_D + 1u) + c1 * c3 * PC_LD(contact_rows, m, ROW_D + 4u)) + ((c0 * c1 * PC_LD(contact_rows, m, ROW_D) + c2 * c3 * PC_LD(contact_rows, m, ROW_D + 5u)) + (c0 * c3 * PC_LD(contact_rows, m, ROW_D + 2u) + c1 * c2 * PC_LD(contact_rows, m, ROW_D + 3u)));
-    precise Real all = own + cross * PC_REAL(2.0); precise Real best = own * pc_inverse_or_zero(all);
-    Real share = pc_select(best > PC_REAL(0.0), pc_min(best, PC_REAL(2.0)), PC_REAL(1.0)); taken = pc_select(several, share, PC_REAL(1.0));
-    now.k1 = pc_row_after(l1, e1, taken); now.k2 = pc_row_after(l2, e2, taken); now.k3 = pc_row_after(l3, e3, taken);
+    precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_row_change(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u));
+    precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_row_change(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u));
+    precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_row_change(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
+    Real common = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(e0, e1, e2, e3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
+    share_of_all = pc_select(several, common, PC_REAL(1.0));
+    now.k1 = pc_row_after(l1, e1, share_of_all); now.k2 = pc_row_after(l2, e2, share_of_all); now.k3 = pc_row_after(l3, e3, share_of_all);
   }
-  now.k0 = pc_row_after(l0, e0, taken);
+  now.k0 = pc_row_after(l0, e0, share_of_all);
 #ifndef PC_MEAN
   precise Real arriving = load - (v.vn + gap_rate) * stops; Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, mass, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
