@@ -39,6 +39,7 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   precise Real aim = half_change - acceleration * t - bounce * impact;
   Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); r.bounces = pc_select(fast, r.closes, zero); return r;
 }
+PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
 // What a row asks for, as a change of its impulse.
 PC_FN Real pc_impact_row(Real u, Closing c, Real mass) { precise Real change = mass * (c.u_aim - u) * c.closes; return change; }
 
@@ -87,10 +88,11 @@ PC_FN Mask pc_impact_mine(PC_IO Slot m) {
   return pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(-0.5), pc_or(pc_impact_always(PC_PASS m), bounces));
 }
 
-// The way to the arms at impact: when the centres have come as near as the first gap is wide. (Arms that are not those of the
+// The way to the arms at impact: when the centres have come as near as the narrowest gap is wide. (Arms that are not those of the
 // way that was really gone would answer otherwise than masses say, and make energy.)
 PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
-  precise Real nearing = -pc_dot(n, relative); precise Real gap = PC_LD(contact_rows, m, ROW_S) + pc_dot(n, come);
+  Real nearest = pc_min(pc_min(PC_LD(contact_rows, m, ROW_S), PC_LD(contact_rows, m, ROW_S + 1u)), pc_min(PC_LD(contact_rows, m, ROW_S + 2u), PC_LD(contact_rows, m, ROW_S + 3u)));
+  precise Real nearing = -pc_dot(n, relative); precise Real gap = nearest + pc_dot(n, come);
   precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing); Real until = pc_min(flight, PC_INFO(h));
   return pc_madd(come, relative, until);
 }
@@ -165,7 +167,8 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
-  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
+  Real until = pc_min(pc_min(pc_until(PC_PASS c0), pc_until(PC_PASS c1)), pc_min(pc_until(PC_PASS c2), pc_until(PC_PASS c3)));
+  Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   Mask hits = pc_and(mine, here > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)

@@ -21,8 +21,8 @@ PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loos
 #define PC_PRELOAD , Real preload
 #endif
 PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
-  Mask open = s > PC_REAL(0.0);
-  precise Real gap_rate = s * PC_INFO(inverse_h);
+  // (open by more than rounding: beyond a millionth of what gravity closes in a sub-step)
+  precise Real gap_rate = s * PC_INFO(inverse_h); precise Real told = PC_INFO(least_load) * PC_REAL(1e-4); Mask open = gap_rate > told;
 #ifdef PC_MEAN
   precise Real soft_rate = s * PC_INFO(tree_contact_rate);
   Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed))); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(tree_contact_impulse_scale));
