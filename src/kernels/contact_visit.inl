@@ -98,8 +98,8 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
     precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_row_change(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u));
     precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_row_change(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u));
     precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_row_change(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
-    Real common = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(e0, e1, e2, e3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
-    share_of_all = pc_select(several, common, PC_REAL(1.0));
+    Real together = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(e0, e1, e2, e3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
+    share_of_all = pc_select(several, together, PC_REAL(1.0));
     now.k1 = pc_row_after(l1, e1, share_of_all); now.k2 = pc_row_after(l2, e2, share_of_all); now.k3 = pc_row_after(l3, e3, share_of_all);
   }
   now.k0 = pc_row_after(l0, e0, share_of_all);
