@@ -36,7 +36,7 @@ class PairFilter {
     std::uint64_t barred = 0;                         // which of them, from the first on, where there are no more than `near`
   };
   static constexpr std::uint32_t near = 64;  // bodies on joints have ids side by side
-  std::vector<Side> sides_;  // by shape
+  std::vector<Side> sides_;                  // by shape
   const WorldState* state_ = nullptr;
 };
 
