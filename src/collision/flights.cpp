@@ -95,7 +95,7 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     if (scratch.flights.empty()) begin_strikes(s, dt);
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
-    const Sight<Scalar> view = sight(s, scratch, i, options);
+    const Sight<Scalar> view = sight(s, scratch, i);
     fly(s, dt, options, scratch, view, f);
     if (!flies && f.impact <= 0) {  // as if it had not been looked at
       scratch.flights.pop_back();
@@ -128,7 +128,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
   const double near = std::max(1e-6 * double(thickness(view.shapes[0], view.shapes[1])),
                                16 * double(std::numeric_limits<Scalar>::epsilon()) * far);
-  const double margin = this->margin(options, view.shapes[0], view.shapes[1]);
+  const double margin = this->margin(view.shapes[0], view.shapes[1]);
   f.counts = gap <= margin;
   if (gap <= near) return to_light_side(f.manifold, share);
   Manifold<Scalar> met = f.manifold;
