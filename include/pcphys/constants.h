@@ -77,7 +77,7 @@ inline constexpr std::uint32_t small_island = 48;
 inline constexpr double largest_joint_turn = 0.5;
 /// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in a tree that nothing
 /// touches.
-inline constexpr double largest_spin_change = 0.005;
+inline constexpr double largest_spin_change = 0.006;
 inline constexpr std::uint32_t large_island = 256;
 /// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half the sub-step)^2 is
 /// to stay below this.
