@@ -26,7 +26,7 @@ inline constexpr unsigned phase_count = 4;
 inline constexpr unsigned octave_count = 10;
 
 enum class Kernel : std::uint8_t;
-enum class Buffer : std::uint8_t;
+enum class Buffer : std::uint16_t;
 enum class Domain : std::uint8_t;
 
 struct PlanEntry {

@@ -8,6 +8,7 @@
 
 #include "pcphys/world.h"
 #include "world/id_pool.h"
+#include "world/own_properties.h"
 #include "world/tables.h"
 
 namespace pcphys {
@@ -82,6 +83,7 @@ struct WorldState {
   std::vector<ForceRecord> forces;  // by force index
   std::uint32_t callbacks = 0;      // how many of them are callbacks
   ContactColumns contacts;
+  OwnProperties own;
   std::unordered_map<std::uint32_t, MassProperties> frozen;  // by body index
   std::unordered_map<std::uint64_t, NoCollide> no_collide;   // by pair_key; only pairs with a reason
 
