@@ -1,6 +1,7 @@
 #include "world/own_properties.h"
 
 #include <cstring>
+#include <utility>
 
 namespace pcphys {
 namespace {
@@ -16,6 +17,16 @@ template <class T> void store(std::byte* p, double number) {
 }
 
 }  // namespace
+
+std::uint32_t OwnProperties::add(OwnProperty property) {
+  std::uint32_t k = 0;
+  while (k < list.size() && list[k].used) k++;
+  if (k == list.size()) list.emplace_back();
+  property.generation = list[k].generation + 1;
+  property.used = true;
+  list[k] = std::move(property);
+  return k;
+}
 
 std::vector<Field> fields(const Tables& tables, const OwnProperties& own, Table table, Role role) {
   std::vector<Field> found;

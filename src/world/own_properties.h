@@ -26,6 +26,8 @@ struct OwnTable {
 };
 
 struct OwnProperties {
+  /// In the first free place; which.
+  std::uint32_t add(OwnProperty property);
   std::vector<OwnProperty> list;  // property k has the handle properties().size() + k
   std::vector<OwnTable> tables;   // table k has the id own_tables_from + k
 };

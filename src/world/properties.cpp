@@ -103,16 +103,6 @@ Error taken(std::string_view name, const char* what, std::string_view by) {
           "There is a " + std::string(what) + " " + quoted(name) + " already" + std::string(by) + "; choose another name."};
 }
 
-Result<Table> table_of(const WorldState& s, TableId id) {
-  if (id == body_table) return Table::body;
-  if (id == joint_table) return Table::joint;
-  const std::uint32_t k = id.index - own_tables_from;
-  if (id.index < own_tables_from || k >= s.own.tables.size() || !s.own.tables[k].used ||
-      s.own.tables[k].generation != id.generation)
-    return stale("table");
-  return s.own.tables[k].table;
-}
-
 Status check_numbers(PropertyType type, const double* numbers, std::string_view name) {
   if (type == PropertyType::int32 || type == PropertyType::uint32) return {};
   for (std::uint32_t c = 0; c < components(type); c++)
@@ -156,6 +146,15 @@ std::uint32_t components(PropertyType type) {
   return counts[std::size_t(type)];
 }
 
+Result<Table> WorldState::table_of(TableId id) const {
+  if (id == body_table) return Table::body;
+  if (id == joint_table) return Table::joint;
+  const std::uint32_t k = id.index - own_tables_from;
+  if (id.index < own_tables_from || k >= own.tables.size() || !own.tables[k].used || own.tables[k].generation != id.generation)
+    return stale("table");
+  return own.tables[k].table;
+}
+
 Result<PropertyView> World::view(std::string_view property) const {
   const Tables& t = state_->tables;
   Found f;
@@ -177,19 +176,15 @@ Result<World::AnyProperty> World::add_property(std::string_view name, PropertyTy
   if (!ok) return ok.error();
   Found there;
   if (by_name(s, name, there)) return taken(name, "property", there.info.own ? "" : " among those of the library");
-  const Result<Table> of = table_of(s, table);
+  const Result<Table> of = s.table_of(table);
   if (!of) return of.error();
-  std::uint32_t k = 0;
-  while (k < s.own.list.size() && s.own.list[k].used) k++;
-  if (k == s.own.list.size()) s.own.list.emplace_back();
-  OwnProperty& p = s.own.list[k];
   const std::size_t real = s.tables.real_bytes();
   std::array<std::byte, 12 * 8> row{};
   for (std::uint32_t c = 0; c < components(type); c++)
     write_number(row.data() + c * number_bytes(type, real), type, real, initial[c]);
   const Buffer buffer = s.tables.add(*of, std::span(row).first(own_row_bytes(type, real)));
-  p = {std::string(name), std::string(unit), type, role, *of, buffer, p.generation + 1, true};
-  return AnyProperty{std::uint32_t(pcphys::properties().size()) + k, p.generation};
+  const std::uint32_t k = s.own.add({std::string(name), std::string(unit), type, role, *of, buffer});
+  return AnyProperty{std::uint32_t(pcphys::properties().size()) + k, s.own.list[k].generation};
 }
 
 Status World::remove_property(std::string_view name) {
@@ -273,7 +268,7 @@ Result<OwnTable*> own_table(WorldState& s, TableId id, const char* what) {
   if (id == body_table || id == joint_table)
     return Error{ErrorCode::bad_argument, std::string("Only a table of the host's own can be ") + what +
                                               "; bodies and joints come and go by create_* and destroy."};
-  if (const Result<Table> found = table_of(s, id); !found) return found.error();
+  if (const Result<Table> found = s.table_of(id); !found) return found.error();
   return &s.own.tables[id.index - own_tables_from];
 }
 }  // namespace
@@ -286,7 +281,7 @@ Status World::resize(TableId table, std::uint32_t rows) {
 }
 
 Result<std::uint32_t> World::rows(TableId table) const {
-  const Result<Table> found = table_of(*state_, table);
+  const Result<Table> found = state_->table_of(table);
   if (!found) return found.error();
   return state_->tables.rows(*found) - 1;
 }

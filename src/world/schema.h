@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "pcphys/plan.h"
 #include "pcphys/property.h"
 
 namespace pcphys {
@@ -57,7 +58,6 @@ enum class Kernel : std::uint8_t {
 /// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others. joint: all that stand in
 /// no tree; free_joint and tree_joint: the same of these.
 enum class Domain : std::uint8_t { body, contact, free_contact, tree_contact, joint, free_joint, tree_joint, tree };
-enum class Stage : std::uint8_t { integrate, joints, impulses };
 
 inline constexpr std::size_t table_count = std::size_t(Table::count);
 inline constexpr std::size_t table_buffer_count = std::size_t(Buffer::table_buffers);
@@ -121,7 +121,6 @@ std::span<const PropertySchema> properties();
 /// Whether some property of this role stands in it.
 bool holds(Buffer buffer, Role role);
 std::string_view name(Table table);
-std::string_view name(Stage stage);
 
 /// What kernels are told besides buffers (src/kernels/info.inl), in the precision of the world.
 template <class Scalar> struct InfoOf {
@@ -129,5 +128,14 @@ template <class Scalar> struct InfoOf {
 #include "kernels/info.inl"
 #undef PC_INFO_FIELD
 };
+
+/// Where a field stands in it, in reals.
+namespace info_field {
+enum : std::uint32_t {
+#define PC_INFO_FIELD(name, doc) name,
+#include "kernels/info.inl"
+#undef PC_INFO_FIELD
+};
+}  // namespace info_field
 
 }  // namespace pcphys

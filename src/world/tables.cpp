@@ -97,13 +97,13 @@ void Tables::touch_all() {
 }
 
 double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
-  assert(row < rows(schema(buffer).table));
-  const std::size_t i = std::size_t(row) * schema(buffer).reals + offset;
+  assert(row < rows(at(buffer).table));
+  const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
   return precision_ == Precision::f32 ? double(data<float>(buffer)[i]) : data<double>(buffer)[i];
 }
 void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
-  assert(row < rows(schema(buffer).table));
-  const std::size_t i = std::size_t(row) * schema(buffer).reals + offset;
+  assert(row < rows(at(buffer).table));
+  const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
   if (precision_ == Precision::f32)
     data<float>(buffer)[i] = float(value);
   else
