@@ -189,7 +189,7 @@ void add_bounces(std::vector<Case>& cases) {
                            .steps = {ladder[1], ladder[2]},
                            .coarse = true,
                            .more_steps = {ladder[0]},
-                           .lost_at = 1});
+                           .lost_at = 0.5});
 
   Case& spin = cases.emplace_back(Case{"A17", "spinning ball bounces", {}});
   spin.variants.push_back({.name = "direct", .run = resolve_bounces, .direct = true});

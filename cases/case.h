@@ -108,6 +108,7 @@ struct Variant {
   bool own = false;                            // of a setting that pcphys alone has
   std::string second_order{};                  // the metric whose slope must be 1.9 at least, in double
   bool order_is_target = false;                // should, not must
+  std::optional<double> floor{};    // what the measure of the first metric may be off by itself: errors below it are equal
   std::optional<double> lost_at{};  // the first metric is then as large as the motion itself: the run tells nothing of it
   std::vector<double> slow{};       // step lengths that only --all runs
 };

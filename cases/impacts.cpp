@@ -185,7 +185,8 @@ void add_impacts(std::vector<Case>& cases) {
     spheres.variants.push_back({.name = std::string(name) + ", touching",
                                 .run = [rows](Trial& t) { touch(t, rows); },
                                 .steps = {1e-8},
-                                .single = false});
+                                .single = false,
+                                .lost_at = 1});
   }
   Case& chains = cases.emplace_back(Case{"A18", "Newton's cradle, a mass chain, a struck rod", {}});
   chains.variants = {{.name = "cradle, gaps", .run = [](Trial& t) { cradle(t, 1e-3); }, .coarse = true, .lost_at = 1},

@@ -96,18 +96,19 @@ void flips(Trial& trial) {
 }
 
 /// Instants at which the spin about the intermediate axis changes sign, by Euler's equations and the classical
-/// fourth-order Runge-Kutta method.
+/// fourth-order Runge-Kutta method. What each step rounds joins the next: flips grow it, to 3e-9 s at the fourth without that.
 std::vector<double> flip_times(double seconds) {
   const Vec3 i = box_moments;
   const auto rate = [i](Vec3 w) {
     return Vec3{(i.y - i.z) / i.x * w.y * w.z, (i.z - i.x) / i.y * w.z * w.x, (i.x - i.y) / i.z * w.x * w.y};
   };
   const double dt = 5e-5;
-  Vec3 w = flipping_spin;
+  Vec3 w = flipping_spin, low;
   std::vector<double> times;
   for (long k = 1; double(k) * dt <= seconds; ++k) {
     const Vec3 a = rate(w), b = rate(w + 0.5 * dt * a), c = rate(w + 0.5 * dt * b), d = rate(w + dt * c);
-    const Vec3 next = w + dt / 6 * (a + 2 * b + 2 * c + d);
+    const Vec3 change = low + dt / 6 * (a + 2 * b + 2 * c + d), next = w + change;
+    low = change - (next - w);
     if (w.y * next.y < 0) times.push_back((double(k) - next.y / (next.y - w.y)) * dt);
     w = next;
   }

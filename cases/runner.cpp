@@ -101,6 +101,7 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
     row.metric = finding.metric;
     row.error = row.failure.empty() ? finding.error : std::numeric_limits<double>::quiet_NaN();
     row.lost = variant.lost_at && &finding == trial.findings().data() && !(row.error < *variant.lost_at);
+    row.floor = &finding == trial.findings().data() ? variant.floor : std::nullopt;
     row.must = finding.must;
     row.target = finding.target;
     // NaN fails too

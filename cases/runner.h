@@ -20,6 +20,7 @@ struct Row {
   std::optional<double> must, target;
   bool bounded = true;  // Setting::bounded
   bool lost = false;    // Variant::lost_at
+  std::optional<double> floor;  // Variant::floor
   bool pass = true;
   double ns_per_body_step = 0, total_ms = 0;
   std::string peer;

@@ -33,6 +33,7 @@ Json to_json(const cases::Row& row) {
           {"target", or_null(row.target)},
           {"pass", row.pass},
           {"lost", row.lost},
+          {"floor", or_null(row.floor)},
           {"ns_per_body_step", row.ns_per_body_step},
           {"total_ms", row.total_ms},
           {"peer", or_null(row.peer)},

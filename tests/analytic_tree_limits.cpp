@@ -65,7 +65,8 @@ TEST_CASE("trees: of a bridge between two posts the tree's own joints hold, and 
 
 namespace {
 
-/// Five links let go from level, the last 100 times as heavy: its place after five seconds, for masses times `scale`.
+/// Five links let go from level, the last 100 times as heavy: its place after two seconds, for masses times `scale`. Later they whip, and
+/// what is rounding in single precision grows.
 struct Scaled {
   Worst worst;
   Vec3 place;
@@ -79,7 +80,7 @@ Scaled swing(const Mode& mode, double scale) {
     join(run, above, link, {0.5 * i, 0, 0}, i == 2 ? AngleFreedom::hinge() : AngleFreedom{}, about_z);
     above = link;
   }
-  const Worst worst = watch(run);
+  const Worst worst = watch(run, 120);
   return {worst, run.position(above)};
 }
 void check_scale(const Mode& mode, int power) {

@@ -106,6 +106,24 @@ TEST_CASE("exceptions of single pairs") {
   }));
 }
 
+TEST_CASE("exceptions of a body with others near and far in order of their ids") {
+  World world(WorldDef{Precision::f32, {}});
+  std::vector<BodyId> balls;  // all at one place, so that every two touch
+  for (int i = 0; i < 130; i++) balls.push_back(must(world.create_body(ball({0.001 * i, 0, 0}))));
+  for (const BodyId id : balls) must(world.set_filter(id, {1, 2, 0}));
+  must(world.set_filter(balls[60], {2, 1, 0}));  // it alone meets the others
+  const auto met = [&] {
+    Stepper stepper;
+    run(world, stepper, 1);
+    return world.contact_count();
+  };
+  CHECK(met() == 129);
+  for (const int other : {0, 59, 61, 100}) must(world.set_collide(balls[60], balls[std::size_t(other)], false));
+  CHECK(met() == 125);
+  for (const int other : {0, 100}) must(world.set_collide(balls[std::size_t(other)], balls[60], true));
+  CHECK(met() == 127);
+}
+
 TEST_CASE("exceptions stand beside joints: neither undoes the other") {
   CHECK_FALSE(touch([](World& world, BodyId a, BodyId b) {
     (void)must(world.create_joint(joint_between(a, b)));

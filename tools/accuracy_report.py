@@ -133,19 +133,28 @@ def went_through(rows):
     return [r for r in rows if r["error"] is not None and not r.get("lost")]
 
 
+def measured(row):
+    """Its error, or what the measure itself may be off by (`floor` of the variants in cases/*.cpp): below it errors are equal."""
+    return max(row["error"], row.get("floor") or FLOOR)
+
+
 def beaten(row, own):
     """Whether one of our runs took no longer and erred no more."""
     return not went_through([row]) or any(
-        r["total_ms"] <= row["total_ms"] and r["error"] <= row["error"] for r in went_through(own))
+        r["total_ms"] <= row["total_ms"] and measured(r) <= measured(row) for r in went_through(own))
 
 
 def front(rows):
-    """Of the runs those that no other one beats, by run time, as logarithms of time and error."""
+    """Of the runs those that no other one beats, by run time, as logarithms of time and error; level from the last of them to the
+    longest run."""
     points = []
-    for r in sorted(went_through(rows), key=lambda r: (r["total_ms"], r["error"])):
-        error = math.log10(max(r["error"], FLOOR))
+    ordered = sorted(went_through(rows), key=lambda r: (r["total_ms"], r["error"]))
+    for r in ordered:
+        error = math.log10(measured(r))
         if not points or error < points[-1][1]:
             points.append((math.log10(r["total_ms"]), error))
+    if points and ordered[-1]["total_ms"] > 10 ** points[-1][0]:
+        points.append((math.log10(ordered[-1]["total_ms"]), points[-1][1]))
     return points
 
 
@@ -158,8 +167,8 @@ def height(curve, x):
 
 
 def lies_under(own, other):
-    """Whether our curve is nowhere above the other, over the run times that both cover. Where they share none, every run of the
-    other must be beaten."""
+    """Whether our curve is nowhere above the other, over the run times that both cover, from the shortest run to the longest. Where
+    they share none, every run of the other must be beaten."""
     ours, theirs = front(own), front(other)
     if not theirs or not ours:
         return not theirs
@@ -186,7 +195,7 @@ def contest(rows):
                 won = sum(beaten(r, own) for r in series)
                 tally[peer][0] += won
                 tally[peer][1] += len(series)
-                if not lies_under(own, series):
+                if not any(lies_under(curve, series) for _, curve in group(own, "precision").items()):
                     crossed.append(f"{variant}: {peer}")
                 if won < len(series):
                     lost.append((case, variant, peer, len(series) - won, len(series)))
@@ -205,7 +214,9 @@ def contest(rows):
             f"**In {under} of {cases} cases every run of every peer is beaten in this way**: pcphys's staircase lies under every peer's "
             "at every run time, the shortest of the peer's included, where a run can be beaten only by a cheaper one.", "",
             f"**In {shared} of {cases} cases pcphys's curve lies under every peer's at every run time that both cover**: lines "
-            "through the runs that no other of the same engine beats, time and error as logarithms.", "",
+            "through the runs that no other of the same engine beats, time and error as logarithms, from its shortest run to its "
+            "longest. Double and single precision are two curves, and one of them must lie under the peer's. What the measure itself "
+            "may be off by (`floor` of the variants) counts as equal.", "",
             "| case | " + " | ".join(peers) + " |", "|---" * (len(peers) + 1) + "|"]
     tail = ["", "Where a peer has a run that none of ours is under:", ""]
     for (case,), of_case in group([dict(zip(("case", "variant", "peer", "runs", "of"), l)) for l in lost], "case").items():

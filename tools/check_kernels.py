@@ -10,6 +10,7 @@ In src/kernels/**/*.inl (the common subset of C++20 and GLSL):
     division  no operator / on reals: devices round it differently
     precise   a sum, difference or product of reals is the initialiser of a `precise` local
     literal   constants of reals stand in PC_REAL(...)
+    reserved  no name that GLSL keeps for itself
 In src/cpu, src/glcompute and src/step (loops and bindings only; lanes*.h and prelude*.h define the types):
     backend   no floating-point literal, arithmetic or mathematical function
 Anywhere:
@@ -31,6 +32,7 @@ CURES = {
     "division": "use pc_div(a, b)",
     "precise": "give the result a name first: precise Real x = ...;",
     "literal": "write PC_REAL({})",
+    "reserved": "GLSL keeps this word: choose another name",
     "backend": "move it into a kernel in src/kernels (times: count nanoseconds as integers)",
     "unread": "write it as simple declarations and assignments",
     "marker": "write // lint: allow (reason)",

@@ -75,6 +75,9 @@ inline constexpr std::uint32_t small_island = 48;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them, but in islands of more bodies
 /// than that no more than twice as many (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
+/// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in a tree that nothing
+/// touches.
+inline constexpr double largest_spin_change = 0.006;
 inline constexpr std::uint32_t large_island = 256;
 /// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half the sub-step)^2 is
 /// to stay below this.

@@ -42,7 +42,7 @@ bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const flo
     const double gap = double(m.points[i].separation) - margin;
     if (gap <= 0) return true;
     const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    const Passing p = passing(a, b, n, r, apart);
+    const Passing<float> p = passing(a, b, n, r, apart);
     const double closing = std::max(0.0, double(p.closing));
     if (gap > fall + closing * dt) continue;
     const double until = closing * dt > gap ? gap / closing : dt;
@@ -73,9 +73,6 @@ double bounding_radius(const ShapeDef& d) {
   }
 }
 
-// Beyond it, turning closes no gap that is larger than the body: spins of everyday scenes keep their contacts' bits [rad].
-constexpr float wild_turn = 100.0f;
-
 /// Half a shape's thickness [m].
 float inner_radius(const ShapeDef& d) {
   if (d.kind == ShapeKind::plane) return std::numeric_limits<float>::infinity();
@@ -83,8 +80,6 @@ float inner_radius(const ShapeDef& d) {
   if (d.kind == ShapeKind::hull) return float(d.convex.inner_radius());
   return float(d.kind == ShapeKind::cylinder ? std::min(d.size.x, d.size.y) : d.size.x);
 }
-
-constexpr float largest_turn = 2.0f;  // beyond it a turning surface comes no further outward [rad]
 
 }  // namespace
 
@@ -97,6 +92,7 @@ void Detector::rebuild(const WorldState& s) {
   pairs_.set_filter(may_touch, filter_.get());
   proxies_.assign(s.shapes.size(), {});
   tight_.assign(s.shapes.size(), {});
+  margins_.assign(s.shapes.size(), 0);
   reach_.assign(s.shapes.size(), 0);
   hints_.clear();
   standing_.clear();
@@ -188,10 +184,10 @@ void Detector::bound(const WorldState& s, double dt, const Options& options, std
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;
     reach_[i] = s.stands(proxy.body) ? 0.0f : std::max(step * twist.speed, strays_ ? went_[proxy.body] : 0.0f) + turned + fall;
-    tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + (proxy.responds ? float(margin(options, i)) : 0.0f));
+    margins_[i] = options.contact_margin > 0 ? options.contact_margin : constants::margin_share * proxy.radius;
+    tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + (proxy.responds ? float(margins_[i]) : 0.0f));
   }
-  for (Twist& twist : twists_)
-    if (twist.turn * step > wild_turn) twist.limit_turn(largest_turn / step);
+  for (Twist& twist : twists_) twist.limit_turn(dt);
 }
 
 template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }
@@ -279,7 +275,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     if (!overlap(tight_[a], tight_[b])) continue;
     double impact = 0;
     Manifold<Scalar> manifold;
-    const Sight<Scalar> view = sight(s, scratch, std::uint32_t(i), options);
+    const Sight<Scalar> view = sight(s, scratch, std::uint32_t(i));
     const std::uint32_t row_a = view.rows[0], row_b = view.rows[1];
     if (flight < scratch.flights.size() && scratch.flights[flight].pair == i) {
       Flight<Scalar>& f = scratch.flights[flight++];
@@ -289,7 +285,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     } else {
       find(options, view, scratch.shapes[view.shapes[0]], view.there, std::uint32_t(i), manifold);
       const float apart[3] = {float(view.apart[0]), float(view.apart[1]), float(view.apart[2])};
-      if (!closes(manifold, twists_[row_a], twists_[row_b], apart, margin(options, a, b), dt, fall,
+      if (!closes(manifold, twists_[row_a], twists_[row_b], apart, margin(a, b), dt, fall,
                   proxies_[a].radius + proxies_[b].radius))
         continue;
       to_light_side(manifold, share_of<Scalar>(s.tables, row_a, row_b));
@@ -308,7 +304,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     out[31] = Scalar(impact);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
     if (old < before_rows && s.contacts.keys[old] == key)
-      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(options, a, b)), out,
+      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out,
                         next_.features[row].data());
     found.points += manifold.count;
     found.restitution |= out[30] > 0;

@@ -84,18 +84,12 @@ class Detector {
   void bound(const WorldState& state, double dt, const Options& options, std::vector<ShapeView<Scalar>>& shapes);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
-  template <class Scalar>
-  Sight<Scalar> sight(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, const Options& options) const;
+  template <class Scalar> Sight<Scalar> sight(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair) const;
   template <class Scalar>
   void find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
             std::uint32_t pair, Manifold<Scalar>& manifold);
   /// Contacts of the shape are kept up to this gap; of a pair, up to the smaller of the two [m].
-  double margin(const Options& options, std::uint32_t shape) const {
-    return options.contact_margin > 0 ? options.contact_margin : constants::margin_share * proxies_[shape].radius;
-  }
-  double margin(const Options& options, std::uint32_t a, std::uint32_t b) const {
-    return std::min(margin(options, a), margin(options, b));
-  }
+  double margin(std::uint32_t a, std::uint32_t b) const { return std::min(margins_[a], margins_[b]); }
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
   /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
@@ -116,9 +110,10 @@ class Detector {
   std::vector<std::uint32_t> standing_;  // shapes of fixed and kinematic bodies
   float thinnest_ = 0;                   // half the least thickness of what moves by forces [m]
   std::vector<Aabb> tight_;
-  std::vector<float> reach_;   // how far a shape may come this step [m]
-  std::vector<Twist> twists_;  // of bodies, by row
-  std::vector<float> struck_;  // of bodies: when they first meet something in flight; dt: not in this step [s]
+  std::vector<double> margins_;  // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]
+  std::vector<float> reach_;     // how far a shape may come this step [m]
+  std::vector<Twist> twists_;    // of bodies, by row
+  std::vector<float> struck_;    // of bodies: when they first meet something in flight; dt: not in this step [s]
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;  // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;      // some body has
@@ -131,15 +126,14 @@ class Detector {
 };
 
 template <class Scalar>
-inline Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair,
-                                     const Options& options) const {
+inline Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair) const {
   auto [a, b] = pairs_.pairs()[pair];
   if (!proxies_[a].responds) std::swap(a, b);  // as WorldState::ends_of
   const std::uint32_t row_a = proxies_[a].body, row_b = proxies_[b].body;
   Sight<Scalar> view = {{a, b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[b], 0};
   BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
   for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
-  view.margin = Scalar(margin(options, a, b)) + Scalar(reach_[a] + reach_[b]);
+  view.margin = Scalar(margin(a, b)) + Scalar(reach_[a] + reach_[b]);
   return view;
 }
 

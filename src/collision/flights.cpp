@@ -1,6 +1,7 @@
 #include "collision/flights.h"
 
 #include <limits>
+#include <type_traits>
 
 #include "collision/detector.h"
 #include "collision/hook.h"
@@ -28,14 +29,13 @@ bool is_round(ShapeKind kind) { return kind == ShapeKind::sphere || kind == Shap
 /// The manifold of time t as seen from the start: gaps open again with the speeds of the points, arms go back by the
 /// first body's share of the way.
 template <class Scalar>
-void back_to_start(const Twist& a, const Twist& b, const Scalar* apart, double share, double t, Manifold<Scalar>& m) {
-  float path[3], n[3];
-  for (int k = 0; k < 3; k++) path[k] = float((double(b.v[k]) - double(a.v[k])) * t), n[k] = float(m.normal[k]);
+void back_to_start(const TwistOf<Scalar>& a, const TwistOf<Scalar>& b, const Scalar* apart, double share, double t,
+                   Manifold<Scalar>& m) {
+  Scalar path[3], d[3];
+  for (int k = 0; k < 3; k++) path[k] = Scalar((double(b.v[k]) - double(a.v[k])) * t), d[k] = apart[k] + path[k];
   for (std::uint32_t i = 0; i < m.count; i++) {
     ManifoldPoint<Scalar>& point = m.points[i];
-    float r[3], d[3];
-    for (int k = 0; k < 3; k++) r[k] = float(point.p[k]), d[k] = float(apart[k]) + path[k];
-    point.separation += Scalar(double(passing(a, b, n, r, d).closing) * t);
+    point.separation += Scalar(double(passing(a, b, m.normal, point.p, d).closing) * t);
     for (int k = 0; k < 3; k++) point.p[k] -= Scalar(double(path[k]) * share);
   }
 }
@@ -95,7 +95,7 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     if (scratch.flights.empty()) begin_strikes(s, dt);
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
-    const Sight<Scalar> view = sight(s, scratch, i, options);
+    const Sight<Scalar> view = sight(s, scratch, i);
     fly(s, dt, options, scratch, view, f);
     if (!flies && f.impact <= 0) {  // as if it had not been looked at
       scratch.flights.pop_back();
@@ -112,7 +112,12 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const auto mover = [&](int side) {
     const Proxy& p = proxies_[view.shapes[side]];
     const Twist& t = twists_[view.rows[side]];
-    return Mover<Scalar>{&scratch.shapes[view.shapes[side]], &t, t.across * p.lever_across + t.turn * p.lever_any, p.centred};
+    TwistOf<Scalar> own;
+    if constexpr (std::is_same_v<Scalar, float>)
+      own = t;
+    else if (!s.stands(view.rows[side]))
+      own = twist_of<Scalar, Scalar>(s.tables, view.rows[side]), own.limit_turn(dt);
+    return Mover<Scalar>{&scratch.shapes[view.shapes[side]], own, t.across * p.lever_across + t.turn * p.lever_any, p.centred};
   };
   const Mover<Scalar> a = mover(0), b = mover(1);
   f.counts = f.stray = f.turned = false;
@@ -123,7 +128,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
   const double near = std::max(1e-6 * double(thickness(view.shapes[0], view.shapes[1])),
                                16 * double(std::numeric_limits<Scalar>::epsilon()) * far);
-  const double margin = this->margin(options, view.shapes[0], view.shapes[1]);
+  const double margin = this->margin(view.shapes[0], view.shapes[1]);
   f.counts = gap <= margin;
   if (gap <= near) return to_light_side(f.manifold, share);
   Manifold<Scalar> met = f.manifold;
@@ -132,7 +137,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
       a, b, view.apart, near, fall + 0.5 * margin, dt,
       [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& m) { find(options, view, x, y, f.pair, m); },
       met);
-  const bool whirls = double(a.spin) > 0 && double(a.twist->turn) * dt > many_corners;
+  const bool whirls = double(a.spin) > 0 && double(a.twist.turn) * dt > many_corners;
   if (t >= 0) {
     f.counts = true;
     f.impact = t;
@@ -141,7 +146,7 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
     f.manifold = met;
     if (whirls) behind_centre(f.manifold);
     to_light_side(f.manifold, share);
-    back_to_start(*a.twist, *b.twist, view.apart, share, t, f.manifold);
+    back_to_start(a.twist, b.twist, view.apart, share, t, f.manifold);
     return;
   }
   if (f.counts) return to_light_side(f.manifold, share);

@@ -14,15 +14,15 @@ namespace pcphys {
 /// A shape on its way: view as at the start of the step, p relative to its body's centre.
 template <class Scalar> struct Mover {
   const ShapeView<Scalar>* view;
-  const Twist* twist;
+  TwistOf<Scalar> twist;
   float spin;    // how fast its surface comes outward by turning, at most [m/s]
   bool centred;  // its frame is the body's
 };
 
 /// q turned by the rotation vector w t. Eight turns whose half angle's tangent is taken for the angle: within 1 % of a
 /// turn of 2 rad, and no library function in it.
-template <class Scalar> void turn_by(const float* w, double t, Scalar* q) {
-  double d[4] = {w[0] * t / 16, w[1] * t / 16, w[2] * t / 16, 1};
+template <class Scalar> void turn_by(const Scalar* w, double t, Scalar* q) {
+  double d[4] = {double(w[0]) * t / 16, double(w[1]) * t / 16, double(w[2]) * t / 16, 1};
   const double l = 1 / std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + 1);
   for (double& x : d) x *= l;
   for (int k = 0; k < 3; k++) {  // squared: v 2 w, w w - v v
@@ -39,11 +39,11 @@ template <class Scalar> void turn_by(const float* w, double t, Scalar* q) {
 
 template <class Scalar> ShapeView<Scalar> after(const Mover<Scalar>& m, double t) {
   ShapeView<Scalar> view = *m.view;
-  if (m.twist->turn == 0 || (m.centred && view.kind == ShapeKind::sphere)) return view;
-  turn_by(m.twist->w, t, view.q);
+  if (m.twist.turn == 0 || (m.centred && view.kind == ShapeKind::sphere)) return view;
+  turn_by(m.twist.w, t, view.q);
   if (m.centred) return view;
   Scalar turn[4] = {0, 0, 0, 1}, p[3] = {view.p[0], view.p[1], view.p[2]};
-  turn_by(m.twist->w, t, turn);
+  turn_by(m.twist.w, t, turn);
   rotate_by(turn, p, view.p);
   return view;
 }
@@ -69,12 +69,12 @@ double meet(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart,
     const double gap = double(least_separation(m));
     if (gap <= near || (t == dt && gap <= margin)) return t;
     double nearing = double(a.spin) + double(b.spin);
-    for (int i = 0; i < 3; i++) nearing += double(m.normal[i]) * (double(a.twist->v[i]) - double(b.twist->v[i]));
+    for (int i = 0; i < 3; i++) nearing += double(m.normal[i]) * (double(a.twist.v[i]) - double(b.twist.v[i]));
     if (t == dt || (t == 0 && nearing <= 0)) return later;
     if (nearing <= 0) return past;
     t = std::min(dt, t + (gap - near / 2) / nearing);
     ShapeView<Scalar> there = after(b, t);
-    for (int i = 0; i < 3; i++) there.p[i] += apart[i] + Scalar((double(b.twist->v[i]) - double(a.twist->v[i])) * t);
+    for (int i = 0; i < 3; i++) there.p[i] += apart[i] + Scalar((double(b.twist.v[i]) - double(a.twist.v[i])) * t);
     Manifold<Scalar> next;
     find(after(a, t), there, next);
     if (next.count == 0) return past;

@@ -22,11 +22,21 @@ void PairFilter::rebuild(const WorldState& state) {
       side.last_barred = first ? other : std::max(side.last_barred, other);
     }
   };
-  for (const auto& [key, reason] : state.no_collide) {
-    const auto a = std::uint32_t(key >> 32), b = std::uint32_t(key);
-    bar(a, b);
-    bar(b, a);
-  }
+  const auto mark = [&](std::uint32_t body, std::uint32_t other) {
+    for (const std::uint32_t shape : state.bodies[state.body_ids.row(body)].shapes) {
+      const std::uint32_t place = other - sides_[shape].first_barred;
+      if (place < near) sides_[shape].barred |= std::uint64_t{1} << place;
+    }
+  };
+  const auto each = [&](const auto& act) {
+    for (const auto& [key, reason] : state.no_collide) {
+      const auto a = std::uint32_t(key >> 32), b = std::uint32_t(key);
+      act(a, b);
+      act(b, a);
+    }
+  };
+  each(bar);
+  each(mark);
 }
 
 }  // namespace pcphys

@@ -21,8 +21,10 @@ class PairFilter {
     } else if (!(x.filter.category & y.filter.mask) || !(y.filter.category & x.filter.mask)) {
       return false;
     }
-    const bool may_be_barred = y.body >= x.first_barred && y.body <= x.last_barred;
-    return !may_be_barred || !state_->no_collide.contains(WorldState::pair_key(x.body, y.body));
+    if (y.body < x.first_barred || y.body > x.last_barred) return true;
+    const std::uint32_t place = y.body - x.first_barred;
+    if (x.last_barred - x.first_barred < near) return !(x.barred >> place & 1);
+    return !state_->no_collide.contains(WorldState::pair_key(x.body, y.body));
   }
 
  private:
@@ -31,8 +33,10 @@ class PairFilter {
     bool responds = false;
     Filter filter;
     std::uint32_t first_barred = 1, last_barred = 0;  // bodies that it never touches are in between
+    std::uint64_t barred = 0;                         // which of them, from the first on, where there are no more than `near`
   };
-  std::vector<Side> sides_;  // by shape
+  static constexpr std::uint32_t near = 64;  // bodies on joints have ids side by side
+  std::vector<Side> sides_;                  // by shape
   const WorldState* state_ = nullptr;
 };
 

@@ -14,6 +14,7 @@
 #include "contact_shift.inl"
 #include "free_responses.inl"
 #include "contact_coulomb.inl"
+#include "contact_together.inl"
 #include "contact_turned.inl"
 #include "contact_calming.inl"
 
@@ -38,9 +39,9 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   precise Real aim = half_change - acceleration * t - bounce * impact;
   Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); r.bounces = pc_select(fast, r.closes, zero); return r;
 }
-PC_FN Real pc_impact_row(Real j, Real u, Closing c, Real mass) {
-  precise Real next = j - mass * (u - c.u_aim); precise Real acts = pc_max(next, PC_REAL(0.0)) * c.closes; return acts;
-}
+PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
+// What a row asks for, as a change of its impulse.
+PC_FN Real pc_impact_row(Real u, Closing c, Real mass) { precise Real change = mass * (c.u_aim - u) * c.closes; return change; }
 
 // Acceleration between impulses, of the centre and of the turning.
 struct Acceleration { Vec3 a; Vec3 turn; };
@@ -87,10 +88,11 @@ PC_FN Mask pc_impact_mine(PC_IO Slot m) {
   return pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(-0.5), pc_or(pc_impact_always(PC_PASS m), bounces));
 }
 
-// The way to the arms at impact: when the centres have come as near as the first gap is wide. (Arms that are not those of the
+// The way to the arms at impact: when the centres have come as near as the narrowest gap is wide. (Arms that are not those of the
 // way that was really gone would answer otherwise than masses say, and make energy.)
 PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
-  precise Real nearing = -pc_dot(n, relative); precise Real gap = PC_LD(contact_rows, m, ROW_S) + pc_dot(n, come);
+  Real nearest = pc_min(pc_min(PC_LD(contact_rows, m, ROW_S), PC_LD(contact_rows, m, ROW_S + 1u)), pc_min(PC_LD(contact_rows, m, ROW_S + 2u), PC_LD(contact_rows, m, ROW_S + 3u)));
+  precise Real nearing = -pc_dot(n, relative); precise Real gap = nearest + pc_dot(n, come);
   precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing); Real until = pc_min(flight, PC_INFO(h));
   return pc_madd(come, relative, until);
 }
@@ -165,7 +167,8 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
-  Vec3 astray = pc_sub(pc_madd(come, relative, c0.t), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
+  Real until = pc_min(pc_min(pc_until(PC_PASS c0), pc_until(PC_PASS c1)), pc_min(pc_until(PC_PASS c2), pc_until(PC_PASS c3)));
+  Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   Mask hits = pc_and(mine, here > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
@@ -176,7 +179,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   precise Real light = a.inverse_mass + b.inverse_mass;
   m0 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS), light, whirls); m1 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 1u), light, whirls);
   m2 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 2u), light, whirls); m3 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 3u), light, whirls);
-  // all rows that close, together: equal shares of what stops their mean, then one after the other
+  // all rows that close, together: equal shares of what stops their mean, then rounds of what each asks for
   Real d01 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D)); Real d02 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 1u)); Real d03 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 2u));
   Real d12 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 3u)); Real d13 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 4u)); Real d23 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 5u));
   precise Real own = c0.closes * pc_inverse_or_zero(m0) + c1.closes * pc_inverse_or_zero(m1) + c2.closes * pc_inverse_or_zero(m2) + c3.closes * pc_inverse_or_zero(m3);
@@ -185,11 +188,14 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   precise Real missing = c0.closes * (c0.u_aim - u0) + c1.closes * (c1.u_aim - u1) + c2.closes * (c2.u_aim - u2) + c3.closes * (c3.u_aim - u3);
   precise Real each = pc_max(missing, zero) * pc_inverse_or_zero(whole);
   precise Real j0 = each * c0.closes; precise Real j1 = each * c1.closes; precise Real j2 = each * c2.closes; precise Real j3 = each * c3.closes;
+  FourRows masses = pc_four(m0, m1, m2, m3); Couplings d; d.d01 = d01; d.d02 = d02; d.d03 = d03; d.d12 = d12; d.d13 = d13; d.d23 = d23;
   for (uint k = 0u; k < 8u; k++) {
-    precise Real r0 = u0 + j0 * pc_inverse_or_zero(m0) + j1 * d01 + j2 * d02 + j3 * d03; j0 = pc_impact_row(j0, r0, c0, m0);
-    precise Real r1 = u1 + j0 * d01 + j1 * pc_inverse_or_zero(m1) + j2 * d12 + j3 * d13; j1 = pc_impact_row(j1, r1, c1, m1);
-    precise Real r2 = u2 + j0 * d02 + j1 * d12 + j2 * pc_inverse_or_zero(m2) + j3 * d23; j2 = pc_impact_row(j2, r2, c2, m2);
-    precise Real r3 = u3 + j0 * d03 + j1 * d13 + j2 * d23 + j3 * pc_inverse_or_zero(m3); j3 = pc_impact_row(j3, r3, c3, m3);
+    precise Real r0 = u0 + j0 * pc_inverse_or_zero(m0) + j1 * d01 + j2 * d02 + j3 * d03; precise Real r1 = u1 + j0 * d01 + j1 * pc_inverse_or_zero(m1) + j2 * d12 + j3 * d13;
+    precise Real r2 = u2 + j0 * d02 + j1 * d12 + j2 * pc_inverse_or_zero(m2) + j3 * d23; precise Real r3 = u3 + j0 * d03 + j1 * d13 + j2 * d23 + j3 * pc_inverse_or_zero(m3);
+    FourRows asked = pc_four(pc_impact_row(r0, c0, m0), pc_impact_row(r1, c1, m1), pc_impact_row(r2, c2, m2), pc_impact_row(r3, c3, m3));
+    Real share = pc_common_share(pc_four(j0, j1, j2, j3), asked, masses, d);
+    precise Real n0 = j0 + asked.r0 * share; precise Real n1 = j1 + asked.r1 * share; precise Real n2 = j2 + asked.r2 * share; precise Real n3 = j3 + asked.r3 * share;
+    j0 = pc_max(n0, zero); j1 = pc_max(n1, zero); j2 = pc_max(n2, zero); j3 = pc_max(n3, zero);
   }
   j0 = pc_select(hits, j0, zero); j1 = pc_select(hits, j1, zero); j2 = pc_select(hits, j2, zero); j3 = pc_select(hits, j3, zero);
 

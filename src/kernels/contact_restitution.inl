@@ -6,13 +6,15 @@
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_friction.inl"
+#include "contact_together.inl"
 
-PC_FN Real pc_restitution_row(PC_IO Real vn, Real approach, Real largest, Real e, Real mass, Real impulse) {
+// What a row asks for, as a change of its impulse.
+PC_FN Real pc_restitution_row(PC_IO Real vn, Real approach, Real largest, Real e, Real mass) {
   precise Real threshold = -PC_INFO(restitution_threshold);
   Mask bounces = pc_and(pc_and(largest > PC_REAL(0.0), approach < threshold), e > PC_REAL(0.0));
-  precise Real next = impulse - mass * (vn + e * approach);
-  return pc_select(bounces, pc_snap(pc_max(next, PC_REAL(0.0))), impulse);
+  precise Real change = -(mass * (vn + e * approach)); return pc_select(bounces, change, PC_REAL(0.0));
 }
+PC_FN Real pc_bounced_row(Real impulse, Real change, Real share) { precise Real next = impulse + change * share; return pc_snap(pc_max(next, PC_REAL(0.0))); }
 
 PC_FN Mask pc_bounces(PC_IO Slot m, uint i) {
   precise Real threshold = -PC_INFO(restitution_threshold);
@@ -30,26 +32,17 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Twist v = pc_twist(a, b, arms, n, t1, t2);
   Real e = PC_LD(contact_rows, m, ROW_E);
   Real vn = v.vn; Real w1 = v.w1; Real w2 = v.w2;
-  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
-  precise Real v0 = vn + b0 * w1 - a0 * w2;
-  Real l0 = PC_LD(contact_impulses, m, 0u);
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
-  Real k0 = pc_restitution_row(PC_PASS v0, PC_LD(contact_rows, m, ROW_APPROACH), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 0u), e, m0, l0); precise Real e0 = k0 - l0;
-  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
-  precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
-  Real l1 = PC_LD(contact_impulses, m, 1u);
-  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
-  Real k1 = pc_restitution_row(PC_PASS v1, PC_LD(contact_rows, m, ROW_APPROACH + 1u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), e, m1, l1); precise Real e1 = k1 - l1;
-  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
-  precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
-  Real l2 = PC_LD(contact_impulses, m, 2u);
-  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
-  Real k2 = pc_restitution_row(PC_PASS v2, PC_LD(contact_rows, m, ROW_APPROACH + 2u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), e, m2, l2); precise Real e2 = k2 - l2;
-  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
-  precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
-  Real l3 = PC_LD(contact_impulses, m, 3u);
-  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
-  Real k3 = pc_restitution_row(PC_PASS v3, PC_LD(contact_rows, m, ROW_APPROACH + 3u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), e, m3, l3); precise Real e3 = k3 - l3;
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real v0 = vn + b0 * w1 - a0 * w2; precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
+  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real v1 = vn + b1 * w1 - a1 * w2; precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
+  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real v2 = vn + b2 * w1 - a2 * w2; precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
+  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real v3 = vn + b3 * w1 - a3 * w2; precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
+  Real l0 = PC_LD(contact_impulses, m, 0u); Real r0 = pc_restitution_row(PC_PASS v0, PC_LD(contact_rows, m, ROW_APPROACH), PC_LD(contact_impulses, m, IMPULSE_LARGEST), e, m0);
+  Real l1 = PC_LD(contact_impulses, m, 1u); Real r1 = pc_restitution_row(PC_PASS v1, PC_LD(contact_rows, m, ROW_APPROACH + 1u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), e, m1);
+  Real l2 = PC_LD(contact_impulses, m, 2u); Real r2 = pc_restitution_row(PC_PASS v2, PC_LD(contact_rows, m, ROW_APPROACH + 2u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), e, m2);
+  Real l3 = PC_LD(contact_impulses, m, 3u); Real r3 = pc_restitution_row(PC_PASS v3, PC_LD(contact_rows, m, ROW_APPROACH + 3u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), e, m3);
+  Real share = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(r0, r1, r2, r3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
+  Real k0 = pc_bounced_row(l0, r0, share); Real k1 = pc_bounced_row(l1, r1, share); Real k2 = pc_bounced_row(l2, r2, share); Real k3 = pc_bounced_row(l3, r3, share);
+  precise Real e0 = k0 - l0; precise Real e1 = k1 - l1; precise Real e2 = k2 - l2; precise Real e3 = k3 - l3;
 
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
   Mask bounced = push.n > PC_REAL(0.0);

@@ -1,9 +1,10 @@
-// One visit of a manifold's rows: friction at the centre, then the normal rows one after the other (Gauss-Seidel with
-// accumulated impulses), from the relative twist at its centre to the change of its impulses.
+// One visit of a manifold's rows: friction at the centre, then the normal rows together (with accumulated impulses), from the relative
+// twist at its centre to the change of its impulses.
 #include "contact_friction.inl"
+#include "contact_together.inl"
 #include "contact_shift.inl"
 
-// New accumulated impulse of one normal row. Open rows (s > 0) are speculative: they stop what would close
+// What one normal row asks for, as a change of its impulse. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of their impulse.
 // Where one body stands that is a share of what the manifold's load goes beyond a few weights of the body (`loose`), so that what
 // lies alone does not sink, also where one side of it carries more. With bodies of trees (PC_MEAN) it is a share of what deviates
@@ -19,24 +20,29 @@ PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loos
 #define pc_kept(i) loose
 #define PC_PRELOAD , Real preload
 #endif
-PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
-  Mask open = s > PC_REAL(0.0);
-  precise Real gap_rate = s * PC_INFO(inverse_h);
+PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
+  // (open by more than rounding: beyond a millionth of what gravity closes in a sub-step)
+  precise Real gap_rate = s * PC_INFO(inverse_h); precise Real told = PC_INFO(least_load) * PC_REAL(1e-4); Mask open = gap_rate > told;
 #ifdef PC_MEAN
   precise Real soft_rate = s * PC_INFO(tree_contact_rate);
   Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed))); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(tree_contact_impulse_scale));
-  precise Real rigid = impulse - mass * (vn + bias); precise Real next = rigid - pc_let_go(rigid, kept) * leak;
+  precise Real rigid = impulse - mass * (vn + bias); precise Real change = (rigid - pc_let_go(rigid, kept) * leak) - impulse;
 #else
   precise Real soft_rate = s * PC_INFO(contact_rate);
   Real bias = pc_select(open, gap_rate, soft_rate); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
   precise Real rigid = impulse - mass * (vn + bias); Real beyond = pc_let_go(rigid, kept);
   // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
   precise Real give = mass * bias + pc_max(beyond, PC_REAL(0.0)) * leak; precise Real most = mass * PC_INFO(push_speed);
-  precise Real next = impulse - mass * vn - pc_max(give, -most);
+  precise Real change = -(mass * vn) - pc_max(give, -most);
 #endif
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
-  return pc_select(waits, PC_REAL(0.0), pc_snap(pc_max(next, PC_REAL(0.0))));
+  return pc_select(waits, -impulse, change);
+}
+// New accumulated impulse of a row that takes this share of what it asks for.
+PC_FN Real pc_row_after(Real impulse, Real change, Real share) { precise Real next = impulse + change * share; return pc_snap(pc_max(next, PC_REAL(0.0))); }
+PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
+  return pc_row_after(impulse, pc_row_change(PC_PASS vn, s, mass, impulse, kept), PC_REAL(1.0));
 }
 
 // Accumulated impulses of the four points and of friction.
@@ -49,7 +55,8 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
 #include "contact_settle.inl"
 #endif
 
-// Impulse and couple on b at the centre, and the load before or after, whichever is larger.
+// Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
+// holds the two. (What has just come is a blow. After it a body may be slow, but it moves.)
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
 PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2 PC_PRELOAD) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
@@ -81,21 +88,21 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
   // normal rows
-  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B);
-  precise Real v0 = vn + b0 * w1 - a0 * w2;
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale; Real k0 = pc_normal_row(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u)); precise Real e0 = k0 - l0;
-  Rows now; now.k0 = k0; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f;
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
+  precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_row_change(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u));
+  Rows now; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Real share_of_all = PC_REAL(1.0);
   if (more) {  // lint: allow (as said)
-    Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
-    precise Real v1 = vn + b1 * w1 - a1 * w2 + PC_LD(contact_rows, m, ROW_D + 0u) * e0;
-    precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale; now.k1 = pc_normal_row(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u)); precise Real e1 = now.k1 - l1;
-    Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
-    precise Real v2 = vn + b2 * w1 - a2 * w2 + PC_LD(contact_rows, m, ROW_D + 1u) * e0 + PC_LD(contact_rows, m, ROW_D + 3u) * e1;
-    precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale; now.k2 = pc_normal_row(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u)); precise Real e2 = now.k2 - l2;
-    Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
-    precise Real v3 = vn + b3 * w1 - a3 * w2 + PC_LD(contact_rows, m, ROW_D + 2u) * e0 + PC_LD(contact_rows, m, ROW_D + 4u) * e1 + PC_LD(contact_rows, m, ROW_D + 5u) * e2;
-    precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale; now.k3 = pc_normal_row(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
+    Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
+    Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
+    Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
+    precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_row_change(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u));
+    precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_row_change(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u));
+    precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_row_change(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
+    Real together = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(e0, e1, e2, e3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
+    share_of_all = pc_select(several, together, PC_REAL(1.0));
+    now.k1 = pc_row_after(l1, e1, share_of_all); now.k2 = pc_row_after(l2, e2, share_of_all); now.k3 = pc_row_after(l3, e3, share_of_all);
   }
+  now.k0 = pc_row_after(l0, e0, share_of_all);
 #ifndef PC_MEAN
   precise Real arriving = load - (v.vn + gap_rate) * stops; Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, mass, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
@@ -113,5 +120,6 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3;
   Push push = pc_push(PC_PASS m, c0, c1, c2, c3);
   Visit r; r.impulse = pc_combine(t1, now.f.change1, t2, now.f.change2, n, push.n); r.couple = pc_combine(t1, push.m1, t2, push.m2, n, now.f.change_twist);
-  r.touch = pc_max(load, pressed); return r;
+  precise Real held = pc_min(PC_LD(contact_impulses, m, IMPULSE_BEFORE), pressed); Mask touches = pc_max(load, pressed) > PC_REAL(0.0);
+  r.touch = pc_select(touches, pc_max(held, PC_TINY), PC_REAL(0.0)); return r;
 }

@@ -61,7 +61,7 @@ PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) P
 PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_keep, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_WRITE(joint_impulse))
 PC_KERNEL(pivot_turn, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_READ(joint_pivot) PC_READ(force) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(tree_rows) PC_WRITE(motion))
-PC_KERNEL(pivot_settle, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_READ(tree_rows) PC_WRITE(motion) PC_WRITE(delta))
+PC_KERNEL(pivot_settle, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(tree_rows) PC_WRITE(motion) PC_WRITE(delta) PC_WRITE(joint_impulse))
 PC_KERNEL(tree_collect, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(node_pending) PC_WRITE(tree_rows))
 PC_KERNEL(tree_respond, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_WRITE(tree_rows) PC_WRITE(node_operator) PC_WRITE(node_pending))
 PC_KERNEL(tree_answer, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_order) PC_READ(tree_rows) PC_WRITE(node_response))

@@ -1,7 +1,6 @@
-// After `advance`, which a body on a pivot was kept out of: its velocities, and its motion since the start of the step.
-#define PC_NO_PARENTS
+// After `advance`, which a body on a pivot was kept out of: its velocities, its motion since the start of the step, and what its joint held.
 #include "tree_rows.inl"
-#undef PC_NO_PARENTS
+#include "tree_joint_kept.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
@@ -13,4 +12,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real square = moved.s + PC_LD(tree_rows, n, TREE_C); Mask exists = linear.s > PC_REAL(0.0);
   PC_SCATTER_IF(exists, motion, body, 0u, pc_quad(velocity.l, linear.s)); PC_SCATTER_IF(exists, motion, body, 1u, pc_quad(velocity.a, angular.s));
   PC_SCATTER_IF(exists, delta, body, 0u, pc_quad(pc_add(moved.v, way.l), square)); PC_SCATTER_IF(exists, delta, body, 1u, pc_quad(pc_add(rotated.v, way.a), PC_REAL(0.0)));
+  pc_remember_joint(PC_PASS t, n, 1u);
 }

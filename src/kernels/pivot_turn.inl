@@ -23,6 +23,10 @@ PC_FN Swing pc_swing_of(Pivot p, Quaternion q, Vec3 r, Vec3 momentum) {
 PC_FN Vec3 pc_about_pin(Pivot p, Vec3 r, Vec3 u, Vec3 l) { Vec3 orbit = pc_cross(r, u); return pc_madd(l, orbit, p.mass); }
 PC_FN Vec3 pc_from_pin(Pivot p, Quaternion q) { return pc_negate(pc_rotate(q, p.arm)); }
 PC_FN Vec3 pc_torque(Pivot p, Vec3 r) { return pc_add(p.torque, pc_cross(r, p.weight)); }
+// A hinge turns about one axis alone, x of the pivot's.
+PC_FN Mask pc_swings(Pivot p) { return pc_max(p.inverse.y, p.inverse.z) > PC_REAL(0.0); }
+PC_FN Vec3 pc_hinge_axis(Pivot p, Quaternion q) { return pc_rotate(pc_quaternion_mul(q, p.axes), Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0))); }
+PC_FN Vec3 pc_along(Vec3 axis, Vec3 v) { return pc_scale(axis, pc_dot(axis, v)); }
 PC_FN Vec3 pc_inverse3(Vec3 v) { return Vec3(pc_inverse_or_zero(v.x), pc_inverse_or_zero(v.y), pc_inverse_or_zero(v.z)); }
 
 // Shares of the sub-step: kicks a0 to a6, turns b0 to b5 between them.
@@ -42,16 +46,37 @@ PC_FN Motion pc_kick(Motion m, Vec3 torque, Real time) {
   TwoSum sum = pc_two_sum(m.l, pc_madd(m.low, torque, time)); Motion o = m; o.l = sum.sum; o.low = sum.low; return o;
 }
 PC_FN Quaternion pc_facing(Motion m) { return pc_quaternion(m.at.q.v, m.at.q.s); }
+// The frame is that of the principal axes about the pin; what the turns change of it is summed, and brought to its length once.
 PC_FN Motion pc_swing_on(Pivot p, Motion start, Real h) {
-  Motion m = start; Quad about = pc_quad(p.inverse, p.middle);
-  for (uint i = 0u; i < 6u; i++) {
-    Shares s = pc_shares(i); precise Real kick = s.kick * h; precise Real time = s.turn * h; Quaternion q = pc_facing(m);
-    m = pc_kick(m, pc_torque(p, pc_from_pin(p, q)), kick);
-    Quaternion change = pc_free_rotation(pc_quaternion_mul(q, p.axes), m.l, about, time);
-    m.at = pc_turned(q, m.at.low, pc_quaternion_mul(change, pc_conjugate(p.axes)));
+  Motion m = start; Quad about = pc_quad(p.inverse, p.middle); Quaternion back = pc_conjugate(p.axes); Vec3 arm = pc_rotate(back, p.arm);
+  Quaternion q = pc_facing(start); Quaternion first = pc_quaternion_mul(q, p.axes); Quaternion frame = first; Quaternion change = pc_quaternion(pc_zero3(), PC_REAL(0.0));
+  for (uint i = 0u; i < 7u; i++) {
+    Shares s = pc_shares(i); precise Real kick = s.kick * h; precise Real time = s.turn * h;
+    m = pc_kick(m, pc_torque(p, pc_negate(pc_rotate(frame, arm))), kick);
+    if (i == 6u) break;
+    Quaternion turn = pc_free_rotation(frame, m.l, about, time);
+    precise Vec3 v = change.v + turn.v; precise Real w = change.w + turn.w; change = pc_quaternion(v, w);
+    precise Vec3 now_v = first.v + v; precise Real now_w = first.w + w; frame = pc_quaternion(now_v, now_w);
   }
-  Shares s = pc_shares(6u); precise Real kick = s.kick * h;
-  return pc_kick(m, pc_torque(p, pc_from_pin(p, pc_facing(m))), kick);
+  m.at = pc_righted(pc_turned(q, start.at.low, pc_quaternion_mul(change, back))); return m;
+}
+// The same of a hinge, whose axis stays where it is: one angle, and the torque of a weight that goes round. What it gains of the momentum
+// about the axis is summed by itself, and so is the angle: of either no digit is lost between the kicks.
+PC_FN Motion pc_hinge_on(Pivot p, Motion start, Real h) {
+  Quaternion q = pc_facing(start); Vec3 axis = pc_hinge_axis(p, q); Vec3 side = pc_cross(axis, pc_from_pin(p, q));
+  Real steady = pc_dot(axis, p.torque); Real beside = pc_dot(p.weight, side); Real under = pc_dot(pc_cross(axis, p.weight), side);
+  precise Real before = pc_dot(axis, start.l) + pc_dot(axis, start.low); Real gained = PC_REAL(0.0); Real angle = PC_REAL(0.0);
+  for (uint i = 0u; i < 7u; i++) {
+    Shares s = pc_shares(i); precise Real kick = s.kick * h; precise Real time = s.turn * h; SinCos at = pc_sincos(angle);
+    precise Real torque = steady + beside * at.cosine - under * at.sine; precise Real sum = gained + torque * kick; gained = sum;
+    precise Real further = angle + (before + gained) * p.inverse.x * time; if (i < 6u) angle = further;
+  }
+  Turn turn = pc_axis_turn(axis, angle); Motion m = pc_kick(start, axis, gained);
+  m.at = pc_turned(q, start.at.low, pc_quaternion_mul(pc_quaternion(turn.q.v, turn.fall), q)); return m;
+}
+PC_FN Motion pc_select_motion(Mask m, Motion a, Motion b) {
+  Motion o; o.at.q = pc_quad(pc_select3(m, a.at.q.v, b.at.q.v), pc_select(m, a.at.q.s, b.at.q.s)); o.at.low = pc_quad(pc_select3(m, a.at.low.v, b.at.low.v), pc_select(m, a.at.low.s, b.at.low.s));
+  o.l = pc_select3(m, a.l, b.l); o.low = pc_select3(m, a.low, b.low); return o;
 }
 
 // Share of a gap that is closed in a sub-step, at joint_push_speed at most.
@@ -78,6 +103,18 @@ PC_FN Vec3 pc_straightening(PC_IO Slot n) {
   return pc_negate(pc_scale(tilt, pc_share_closed(PC_PASS tilt)));
 }
 
+// What the joint gave to the velocities meanwhile, on top of what tree_solve found, where that ran: a push at the pin, and couples about
+// locked axes. r: from the pin to the centre.
+PC_FN void pc_add_impulse(PC_IO Slot n, Vec3 push, Vec3 turn, Vec3 r) {
+  Real share = pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)); pc_st3_tree(PC_PASS n, TREE_PIN, pc_madd(pc_ld3_tree(PC_PASS n, TREE_PIN), push, share));
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
+  Vec3 couple = pc_add(turn, pc_cross(r, push));
+  for (uint i = 0u; i < 3u; i++) {
+    Real given = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), share, PC_REAL(0.0));
+    precise Real impulse = PC_LD(tree_rows, n, TREE_LIMIT + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), couple) * given; PC_ST(tree_rows, n, TREE_LIMIT + i, impulse);
+  }
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot n = PC_NODE(m, t.first + 1u);
   if (!PC_ANY(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5))) return;  // lint: allow (the same for all lanes of a block)
@@ -88,12 +125,18 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
   Pivot p = pc_pivot(PC_PASS n, body, joint, linear.s);
 
-  Quaternion q = pc_quaternion(turned.v, turned.s); Vec3 r = pc_from_pin(p, q); Vec3 torque = pc_torque(p, r);
-  Motion start; start.l = pc_about_pin(p, r, linear.v, angular.v); start.low = pc_about_pin(p, r, u_low.v, l_low.v);
+  Quaternion q = pc_quaternion(turned.v, turned.s); Vec3 r = pc_from_pin(p, q); Mask swings = pc_swings(p); Mask hinged = pc_select(swings, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); Vec3 axis = pc_hinge_axis(p, q);
+  Vec3 all = pc_torque(p, r); Vec3 torque = pc_select3(swings, all, pc_along(axis, all));
+  // the momentum of before to the bit, and beside it what was given since: their sum as one real would round anew each time
+  Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v));
+  Motion start; start.l = pc_about_pin(p, r, u_before.v, l_before.v); start.low = pc_add(given, pc_about_pin(p, r, u_low.v, l_low.v));
   Turn straight = pc_turn(pc_straightening(PC_PASS n)); start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
   precise Real back = -half_h; start = pc_kick(start, torque, back);  // in phase with the pose: it has had a whole kick and was half a one behind
-  Motion next = pc_swing_on(p, start, h);
-  Quaternion q_next = pc_facing(next); Vec3 r_next = pc_from_pin(p, q_next); Vec3 torque_next = pc_torque(p, r_next);
+  Motion next = start;
+  if (PC_ANY(swings)) next = pc_swing_on(p, start, h);  // lint: allow (selected below)
+  if (PC_ANY(hinged)) next = pc_select_motion(swings, next, pc_hinge_on(p, start, h));  // lint: allow (other lanes keep what they have)
+  Quaternion q_next = pc_facing(next); Vec3 r_next = pc_from_pin(p, q_next);
+  Vec3 all_next = pc_torque(p, r_next); Vec3 torque_next = pc_select3(swings, all_next, pc_along(axis, all_next));
   next = pc_kick(next, torque_next, back);
 
   // the way about the pin, and of a gap what may be closed
@@ -104,9 +147,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real two = pc_select(rotation.w < PC_REAL(0.0), PC_REAL(-2.0), PC_REAL(2.0)); precise Real square = pc_dot(rotation.v, rotation.v) * PC_REAL(4.0);
 
   Swing now = pc_swing_of(p, q_next, r_next, next.l);
-  Vec3 kept = pc_about_pin(p, r_next, now.u, now.l); precise Vec3 low = (next.l - kept) + next.low;
+  Vec3 kept = pc_about_pin(p, r_next, now.u, now.l); precise Vec3 lost = (next.l - kept) + next.low; Vec3 low = pc_select3(swings, lost, pc_along(axis, lost));
+  pc_add_impulse(PC_PASS n, pc_scale(pc_sub(now.u, linear.v), p.mass), pc_sub(now.l, angular.v), pc_scale(pc_add(r, r_next), PC_REAL(0.5)));
   // the velocities that are read are half a kick ahead: of what acts from a distance that of now, of the rest half of the last
-  Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v)); Vec3 change = pc_sub(torque_next, torque); Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
+  Vec3 change = pc_sub(torque_next, torque); Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
 
   Mask exists = linear.s > PC_REAL(0.0); Vec3 zero = pc_zero3(); Real none = PC_REAL(0.0);
   pc_st6_tree(PC_PASS n, TREE_X, pc_six(now.u, now.l)); pc_st6_tree(PC_PASS n, TREE_F, pc_six(step, pc_scale(rotation.v, two))); PC_ST(tree_rows, n, TREE_C, square);

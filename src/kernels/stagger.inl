@@ -6,7 +6,9 @@
 // Numerical Integration I.1).
 // * A velocity that was just set is in phase.
 // * When the sub-step changes from h0 to h: back into phase by h0, out of it by h; and what impulses changed in
-//   the last sub-step shifts by (h0 - h) / (2 h0).
+//   the last sub-step shifts by (h0 - h) / (2 h0). Where a step is divided into more sub-steps (by_forces), what joints did
+//   does not shift unless a contact holds the body: the next solve gives what is due at this pose, and the change of the last sub-step is half a
+//   sub-step old.
 // * The original's scheme (PC_SEED) knows no phase: p - p_last goes on as it is, also where the sub-step changes.
 // By how much the stored velocity changes; `half_change` is half of what the last sub-step changed in it.
 #ifdef PC_SEED
@@ -17,7 +19,7 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change) {
   return pc_select3(in_phase, half_change, shift);
 }
 #elif defined(PC_DRAG)
-PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a, Real drag) {
+PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Mask free, Vec3 velocity, Vec3 half_change, Vec3 a, Real drag) {
   Real h = PC_INFO(h); Real share = PC_INFO(h_change);
   Mask changes = pc_nonzero(share);
   if (!PC_ANY(pc_or(in_phase, changes))) return pc_zero3();  // lint: allow (other lanes keep what they have)
@@ -29,16 +31,17 @@ PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 velocity, Vec3 half_change, Vec3 a
   precise Vec3 phased = velocity + back;
   precise Real gap = now.phi2 - now.phi; precise Real time = pc_div(gap, now.e) * h;
   Vec3 v = pc_select3(in_phase, velocity, phased);
-  precise Vec3 kick = (a - v * drag) * time;
-  precise Vec3 shifted = back + kick + (half_change - back) * share; precise Vec3 plain = half_change * share;
-  Vec3 shift = pc_select3(drag > PC_REAL(0.0), shifted, plain);  // without drag as in a world that has none
-  return pc_select3(in_phase, kick, pc_select3(changes, shift, pc_zero3()));
+  precise Vec3 kick = (a - v * drag) * time; precise Vec3 forced = back + kick;
+  precise Vec3 shifted = forced + (half_change - back) * share; precise Vec3 plain = half_change * share;
+  Mask drags = drag > PC_REAL(0.0); precise Real half_time = before * share * PC_REAL(0.5);
+  Vec3 by_forces = pc_select3(drags, forced, pc_scale(a, half_time)); Vec3 shift = pc_select3(drags, shifted, plain);  // without drag as in a world that has none
+  return pc_select3(in_phase, kick, pc_select3(changes, pc_select3(free, by_forces, shift), pc_zero3()));
 }
 #else
-PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Vec3 half_change, Vec3 a) {
+PC_FN Vec3 pc_shift(PC_IO Mask in_phase, Mask free, Vec3 half_change, Vec3 a) {
   Real h = PC_INFO(h); Real share = PC_INFO(h_change);
-  precise Vec3 kick = a * (h * PC_REAL(-0.5));
-  precise Vec3 shift = half_change * share;
+  precise Vec3 kick = a * (h * PC_REAL(-0.5)); precise Real half_time = PC_INFO(h_before) * share * PC_REAL(0.5);
+  Vec3 shift = pc_select3(free, pc_scale(a, half_time), pc_scale(half_change, share));
   return pc_select3(in_phase, kick, shift);
 }
 #endif
@@ -55,13 +58,14 @@ PC_FN VelocityShift pc_velocity_shift(PC_IO Quad linear, Quad angular, Quad line
   Mask dynamic_body = linear.s > PC_REAL(0.0); Mask in_phase = pc_and(angular.s < PC_REAL(0.0), dynamic_body);
   Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
   Vec3 acceleration = pc_madd(gravity, push.v, linear.s);
+  Mask free = pc_and(PC_INFO(by_forces) > PC_REAL(0.5), angular.s < PC_TINY);
   VelocityShift s;
 #ifdef PC_DRAG
-  s.u = pc_shift(PC_PASS in_phase, linear.v, linear_change.v, acceleration, push.s);
-  s.l = pc_shift(PC_PASS in_phase, angular.v, angular_change.v, turn.v, turn.s);
+  s.u = pc_shift(PC_PASS in_phase, free, linear.v, linear_change.v, acceleration, push.s);
+  s.l = pc_shift(PC_PASS in_phase, free, angular.v, angular_change.v, turn.v, turn.s);
 #else
-  s.u = pc_shift(PC_PASS in_phase, linear_change.v, acceleration);
-  s.l = pc_shift(PC_PASS in_phase, angular_change.v, turn.v);
+  s.u = pc_shift(PC_PASS in_phase, free, linear_change.v, acceleration);
+  s.l = pc_shift(PC_PASS in_phase, free, angular_change.v, turn.v);
 #endif
   return s;
 }

@@ -6,6 +6,7 @@
 #include "tree_store.inl"
 #include "angle_rows.inl"
 #include "tree_sweep.inl"
+#include "tree_joint_kept.inl"
 
 // Limits keep what they carry; locked rows are corrected like pins.
 PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
@@ -22,16 +23,6 @@ PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
   precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
 }
-// Remembers what acted on the joint: pin and angle impulses of the sub-step.
-PC_FN void pc_remember_joint(PC_IO Tree t, Slot n, uint k) {
-  Real flip = pc_select(PC_IS(pc_is_flipped(PC_PASS t, k)), PC_REAL(-1.0), PC_REAL(1.0)); Index joint = PC_ENDS(tree_ends, n, 1u);
-  Real total = PC_LD(tree_rows, n, TREE_TOTAL); precise Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN) * flip * total;
-  Vec3 s = pc_scale(pc_ld3_tree(PC_PASS n, TREE_LIMIT), total);
-  precise Real r0 = s.x * PC_LD(tree_rows, n, TREE_SIGN); precise Real r1 = s.y * PC_LD(tree_rows, n, TREE_SIGN + 1u); precise Real r2 = s.z * PC_LD(tree_rows, n, TREE_SIGN + 2u);
-  PC_SCATTER(joint_impulse, joint, 0u, pc_quad(pc_snap3(pin), PC_REAL(0.0)));
-  PC_SCATTER(joint_impulse, joint, 1u, pc_quad(pc_snap3(Vec3(r0, r1, r2)), PC_REAL(0.0)));
-}
-
 // 1 where a gap of a node's pin is more than a share, given as its square, of the body's arm. (That of its parent may be long: an anchor's.)
 PC_FN Real pc_gap_over(PC_IO Slot n, Vec3 gap, Real share_squared) {
   Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); precise Real most = pc_dot(rc, rc) * share_squared;

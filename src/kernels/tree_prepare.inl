@@ -5,6 +5,21 @@
 #include "tree_store.inl"
 #include "tree_stiffness.inl"
 
+// What is read of a body, once for its own joint and those of its children. In places that the factor fills later: position and its low part,
+// principal moments.
+const uint TREE_POSITION = TREE_H;
+const uint TREE_PRINCIPAL = TREE_H + 6u;
+PC_FN Quaternion pc_facing(PC_IO Slot n) { return pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u)); }
+PC_FN Real pc_tree_body(PC_IO Slot n) {
+  Index body = PC_ENDS(tree_ends, n, 0u);
+  Quad place = PC_GATHER(pose, body, 0u); Quad turned = PC_GATHER(pose, body, 1u); Quad low = PC_GATHER(pose, body, 2u);
+  Quad moments = PC_GATHER(mass, body, 0u); Quad inverse = PC_GATHER(mass, body, 1u);
+  pc_st3_tree(PC_PASS n, TREE_POSITION, place.v); pc_st3_tree(PC_PASS n, TREE_POSITION + 3u, low.v);
+  pc_st3_tree(PC_PASS n, TREE_FACING, turned.v); PC_ST(tree_rows, n, TREE_FACING + 3u, turned.s);
+  pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
+  pc_st3_tree(PC_PASS n, TREE_PRINCIPAL, moments.v); PC_ST(tree_rows, n, TREE_MASS, moments.s); return moments.s;
+}
+
 // One angle row at its nearer limit. It acts from the start where it did in the last sub-step; tree_solve adds others.
 PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angle, Real lower, Real upper, Mask exists, Real remembered) {
   NearerLimit limit = pc_nearer_limit(angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
@@ -37,17 +52,15 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, Quaternion qc, Quaternion qp, Qu
 }
 
 PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
-  Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Index child = PC_ENDS(tree_ends, n, 0u); Index parent = PC_ENDS(tree_ends, up, 0u); Index joint = PC_ENDS(tree_ends, n, 1u);
-  Quad place_c = PC_GATHER(pose, child, 0u); Quad turn_c = PC_GATHER(pose, child, 1u); Quad low_c = PC_GATHER(pose, child, 2u);
-  Quad place_p = PC_GATHER(pose, parent, 0u); Quad turn_p = PC_GATHER(pose, parent, 1u); Quad low_p = PC_GATHER(pose, parent, 2u);
+  Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Index joint = PC_ENDS(tree_ends, n, 1u);
   uint b = pc_is_flipped(PC_PASS t, k); uint c_at = (1u - b) * 2u; uint p_at = b * 2u;  // quads of joint_solved: 0 of body a, 2 of body b
   Quad anchor_c = PC_GATHER(joint_solved, joint, c_at); Quad axes_c = PC_GATHER(joint_solved, joint, c_at + 1u);
   Quad anchor_p = PC_GATHER(joint_solved, joint, p_at); Quad axes_p = PC_GATHER(joint_solved, joint, p_at + 1u);
   Quad head = PC_GATHER(joint_solved, joint, 0u); Quad lower = PC_GATHER(joint_solved, joint, 4u); Quad upper = PC_GATHER(joint_solved, joint, 5u);
   Quad pin = PC_GATHER(joint_impulse, joint, 0u); Quad angle = PC_GATHER(joint_impulse, joint, 1u);
-  Quaternion qc = pc_quaternion(turn_c.v, turn_c.s); Quaternion qp = pc_quaternion(turn_p.v, turn_p.s);
+  Quaternion qc = pc_facing(PC_PASS n); Quaternion qp = pc_facing(PC_PASS up);
   Vec3 rc = pc_rotate(qc, anchor_c.v); Vec3 rp = pc_rotate(qp, anchor_p.v);
-  Vec3 apart = pc_add(pc_sub(place_c.v, place_p.v), pc_sub(low_c.v, low_p.v));
+  Vec3 apart = pc_add(pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION), pc_ld3_tree(PC_PASS up, TREE_POSITION)), pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION + 3u), pc_ld3_tree(PC_PASS up, TREE_POSITION + 3u)));
   pc_st3_tree(PC_PASS n, TREE_RC, rc); pc_st3_tree(PC_PASS n, TREE_RP, rp); pc_st3_tree(PC_PASS n, TREE_GAP, pc_add(apart, pc_sub(rc, rp)));
   pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_ld3_tree(PC_PASS up, TREE_PLACE), apart));
   pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
@@ -55,6 +68,7 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
 
   precise Vec3 f = pin.v * flip * PC_INFO(impulse_ratio) * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL));
   pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(PC_IS(pc_is_pivot(PC_PASS t)), pc_zero3(), f));  // what turns about the pin needs no stiffness of it
+  pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_zero3());  // of a pivot that no tree is solved for
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -62,17 +76,13 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3()); pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_RC, pc_zero3());
   // masses in units of the tree's: determinants stay in the range of reals whatever bodies weigh
   Real total = PC_REAL(0.0);
-  for (uint k = 0u; k < t.count; k++) { Quad moments = PC_GATHER(mass, PC_ENDS(tree_ends, PC_NODE(m, t.first + k), 0u), 0u); precise Real sum = total + moments.s; total = sum; }
+  for (uint k = 0u; k < t.count; k++) { precise Real sum = total + pc_tree_body(PC_PASS PC_NODE(m, t.first + k)); total = sum; }
   for (uint k = 0u; k < t.count; k++) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_TOTAL, total);
   Real share = pc_inverse_or_zero(total);
   for (uint k = 1u; k < t.count; k++) pc_tree_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
   for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
-    Quad turned = PC_GATHER(pose, body, 1u); Quad moments = PC_GATHER(mass, body, 0u); Quad inverse = PC_GATHER(mass, body, 1u);
-    pc_st3_tree(PC_PASS n, TREE_FACING, turned.v); PC_ST(tree_rows, n, TREE_FACING + 3u, turned.s);
-    pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
-    precise Real own = moments.s * share;
-    pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_quaternion(turned.v, turned.s), pc_scale(moments.v, share)));
+    Slot n = PC_NODE(m, t.first + k); precise Real own = PC_LD(tree_rows, n, TREE_MASS) * share;
+    pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_facing(PC_PASS n), pc_scale(pc_ld3_tree(PC_PASS n, TREE_PRINCIPAL), share)));
     PC_ST(tree_rows, n, TREE_MASS, own); PC_ST(tree_rows, n, TREE_TOUCH, PC_REAL(0.0)); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   }
   pc_tree_stiffness(PC_PASS m, t);

@@ -41,19 +41,24 @@ PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
   return changed;
 }
 
-// What the sub-step cannot resolve is damped, as an impulse against the turning of a body with stiff pins: pins far beyond
-// the limit of stability, and joints whose arm swings by more than a seventh of a radian in the sub-step. Where both are small
-// nothing is taken out. Run after pc_tree_residual.
-PC_FN void pc_tree_damping(PC_IO Slot m, Tree t) {
+// Share of what a sub-step cannot resolve that is damped, 0 to 1; `fast` = x / (1 + x) of a body's pins. Alone a tree needs it near the
+// limit of stability, x = 1: 4 fast^2 is a damping of fourth order in x, and what the sub-step resolves keeps its energy. Loops and contacts
+// act on a tree from outside of its solve and feed its modes: there it begins at x = 0.02, and where an arm swings by more than a
+// seventh of a radian in the sub-step.
+PC_FN Real pc_damped_share(Real fast, Real swing, Mask held) {
+  Real zero = PC_REAL(0.0); precise Real beyond = fast - PC_REAL(0.02); precise Real whip = (swing - PC_REAL(0.02)) * PC_REAL(10.0);
+  precise Real early = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real late = fast * fast * PC_REAL(4.0);
+  Real alone = pc_select(fast > PC_REAL(1e-4), late, zero);  // less is rounding, and its squares would be subnormal
+  return pc_min(pc_select(held, early, alone), PC_REAL(1.0));
+}
+// An impulse against the turning of bodies with stiff pins. `held`: something acts on the tree from outside. Run after pc_tree_residual.
+PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    // (how far the arm swings against the parent: a top may spin about it as it likes)
+    // (how far the arm swings against the parent, as an angle squared: a top may spin about it as it likes)
     Vec3 arm = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-    Vec3 swing = pc_scale(pc_cross(turn, arm), PC_INFO(h)); Real reach = pc_dot(arm, arm);
-    Real per_reach = pc_inverse_or_zero(reach);
-    Real fast = PC_LD(tree_rows, n, TREE_FAST); Real zero = PC_REAL(0.0);
-    precise Real beyond = fast - PC_REAL(0.02); precise Real whip = (pc_dot(swing, swing) - reach * PC_REAL(0.02)) * per_reach * PC_REAL(10.0);
-    precise Real share = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real scale = pc_min(share, PC_REAL(1.0)) * PC_INFO(tree_damping) * PC_REAL(-2.0);
+    Vec3 way = pc_scale(pc_cross(turn, arm), PC_INFO(h)); precise Real swing = pc_dot(way, way) * pc_inverse_or_zero(pc_dot(arm, arm));
+    Real share = pc_damped_share(PC_LD(tree_rows, n, TREE_FAST), swing, held); precise Real scale = share * PC_INFO(tree_damping) * PC_REAL(-2.0);
     Sym3 stiffness = pc_sym_sub(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_lds_tree(PC_PASS n, TREE_BODY));
     pc_st3_tree(PC_PASS n, TREE_OUTSIDE + 3u, pc_madd(pc_ld3_tree(PC_PASS n, TREE_OUTSIDE + 3u), pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), scale));
   }
@@ -62,16 +67,17 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
   pc_tree_residual(PC_PASS m, t, one);
-  Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();  // what contacts give to the tree as a whole
+  Vec3 push = pc_zero3(); Vec3 turn = pc_zero3(); Real load = PC_REAL(0.0);  // what contacts and loops give to the tree as a whole, and whether they do
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); push = pc_add(push, f.l);
+    load = pc_max(load, pc_max(pc_largest(f.l), pc_largest(f.a)));
     precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l); turn = moment;
   }
   for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #ifdef PC_DRIVES
   for (uint k = 1u; k < t.count; k++) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #endif
-  pc_tree_damping(PC_PASS m, t);
+  pc_tree_damping(PC_PASS m, t, load > PC_REAL(0.0));
   for (uint round = 0u; round < 4u; round++) {
     pc_factor(PC_PASS m, t);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);

@@ -35,6 +35,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.gravity_y = Scalar(from.gravity.y);
   biased.gravity_z = Scalar(from.gravity.z);
   biased.h_before = Scalar(h);
+  biased.by_forces = octave > 0;
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "pcphys/constants.h"
@@ -42,6 +43,9 @@ bool is_hinge(const AngleFreedom& f) {
   return f.kind == AngleFreedom::Kind::pitch_yaw_roll && !is_locked(f.lower.x, f.upper.x) && is_locked(f.lower.y, f.upper.y) &&
          is_locked(f.lower.z, f.upper.z) && f.lower.y == 0 && f.lower.z == 0;
 }
+bool turns_freely(const AngleFreedom& f) {
+  return f.kind == AngleFreedom::Kind::free || (is_hinge(f) && std::isinf(f.lower.x) && std::isinf(f.upper.x));
+}
 /// Whether other angles are locked than a hinge's: turning about the pin would not keep them.
 bool is_locked_otherwise(const AngleFreedom& f) {
   if (f.kind == AngleFreedom::Kind::free || is_hinge(f)) return false;
@@ -62,8 +66,9 @@ std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state, co
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.size() != 2 || !state.stands(tree[0].body) || closes[tree[1].body]) continue;
     const std::uint32_t joint = tree[1].joint;
-    if (state.joints[joint].driven() || is_locked_otherwise(joints.def(state, joint).freedom)) continue;
-    pivots.push_back({i, tree[1].body, tree[1].joint, tree[1].flipped});
+    const AngleFreedom& freedom = joints.def(state, joint).freedom;
+    if (state.joints[joint].driven() || is_locked_otherwise(freedom)) continue;
+    pivots.push_back({i, tree[1].body, tree[1].joint, tree[1].flipped, !turns_freely(freedom)});
   }
   return pivots;
 }

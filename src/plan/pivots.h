@@ -14,6 +14,7 @@ struct Pivot {
   std::size_t tree;
   std::uint32_t body, joint;  // rows
   bool flipped;               // the joint's body a is the one that turns
+  bool limited;               // its angles have limits
 };
 
 std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state, const SolvedJoints& joints);

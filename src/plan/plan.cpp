@@ -131,6 +131,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
+  if (s.trees && !s.solves_trees()) out("tree solve", "every joint is a pin that one body turns about");
   if (s.pivots_alone) out("free motion", "every body that moves turns about a pin");
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
@@ -168,7 +169,7 @@ void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 }
 // of the poses that a sub-step begins with; forces do not change them
 void look_at_inertia(Builder& b, const PlanSignature& s, std::uint32_t substep) {
-  if (s.joints() || s.trees || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
+  if (s.joints() || s.solves_trees() || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
 }
 void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.free_joints) b.kernel(s.joint_drives ? Kernel::joint_solve_driven : Kernel::joint_solve, phase, substep);
@@ -180,8 +181,9 @@ void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 
 /// A sub-step; `count`: of how many.
 void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32_t k, std::uint32_t count) {
-  if (k + 1 == count && s.integrator != Integrator::seed) b.kernel(Kernel::remember, Phase::biased, k);
   if (k > 0) b.own(Stage::integrate, false, k, count);
+  // pivots go on from the momentum of before; the last change of velocities is that of the last sub-step
+  if (s.pivots || (k + 1 == count && s.integrator != Integrator::seed)) b.kernel(Kernel::remember, Phase::biased, k);
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
   if (k > 0) look_at_inertia(b, s, k);
@@ -205,18 +207,18 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
   solve_free_joints(b, s, Phase::biased, k);
-  if (s.trees) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
+  if (s.solves_trees()) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
   if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
   b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
-  if (s.trees) b.kernel(Kernel::tree_again, Phase::biased, k);
+  if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
-  if (s.trees) b.kernel(Kernel::tree_relax, Phase::relax, k);
+  if (s.solves_trees()) b.kernel(Kernel::tree_relax, Phase::relax, k);
   solve_free_joints(b, s, Phase::relax, k);
   if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);

@@ -21,6 +21,7 @@ struct PlanSignature {
   bool trees = false;                       // joints that stand in a tree
   bool pivots = false;                      // trees of one body that turns about its pin
   bool pivots_alone = false;                // and no other body moves
+  bool pivots_bare = false;                 // every tree is one, and no limit, motor or spring acts on it
   bool free_joints = false;                 // joints that close a loop, of bodies whose trees do not answer
   bool tree_joints = false;                 // and of bodies whose trees do
   bool tree_drives = false;                 // motors or springs of joints that stand in a tree
@@ -33,6 +34,8 @@ struct PlanSignature {
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
   bool joints() const { return free_joints || tree_joints; }
   bool contacts() const { return free_contacts || tree_contacts; }
+  /// Pins of pivots that nothing else acts on have nothing to solve.
+  bool solves_trees() const { return trees && (!pivots_bare || tree_contacts || tree_joints); }
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 

@@ -9,22 +9,26 @@ namespace pcphys {
 
 namespace {
 
-/// No faster than the momentum about the axis of the least moment: spares most bodies the turn into their frame [1/s].
-template <class Scalar> class SpinBound {
+/// From above, of a body's spin and of how much the last sub-step changed it, as if it turned about the axis of its least moment: spares
+/// most bodies the turn into their frame. Squared [1/s^2].
+template <class Scalar> class SpinBounds {
  public:
-  explicit SpinBound(const Tables& t)
+  explicit SpinBounds(const Tables& t)
       : momenta_(t.data<Scalar>(Buffer::motion) + 4),
         changes_(t.data<Scalar>(Buffer::velocity_parts) + 4),
         inverse_moments_(t.data<Scalar>(Buffer::mass) + 4) {}
 
-  double squared(std::uint32_t row) const {
-    const Vec3 momentum = at(momenta_, Buffer::motion, row) + at(changes_, Buffer::velocity_parts, row);
+  double spin(std::uint32_t row) const { return of(row, momentum(row) + half_change(row)); }
+  double change(std::uint32_t row) const { return 4 * of(row, half_change(row)); }
+
+ private:
+  double of(std::uint32_t row, Vec3 momentum) const {
     const Vec3 inverse = at(inverse_moments_, Buffer::mass, row);
     const double largest = std::max({inverse.x, inverse.y, inverse.z});
     return largest * largest * dot(momentum, momentum);
   }
-
- private:
+  Vec3 momentum(std::uint32_t row) const { return at(momenta_, Buffer::motion, row); }
+  Vec3 half_change(std::uint32_t row) const { return at(changes_, Buffer::velocity_parts, row); }
   static Vec3 at(const Scalar* column, Buffer buffer, std::uint32_t row) {
     const Scalar* v = column + row * reals_of(buffer);
     return {double(v[0]), double(v[1]), double(v[2])};
@@ -32,19 +36,40 @@ template <class Scalar> class SpinBound {
   const Scalar *momenta_, *changes_, *inverse_moments_;  // of row 0
 };
 
+/// Whether contacts held a body of the tree in the last step, or could in this one.
+bool meets_others(const WorldState& state, std::span<const TreeNode> tree) {
+  std::uint32_t first = std::uint32_t(state.bodies.size()), last = 0;
+  for (const TreeNode& node : tree) {
+    if (!state.responds(node.body)) continue;
+    if (state.tables.get(Buffer::motion, node.body, 7) > 0) return true;
+    first = std::min(first, node.body);
+    last = std::max(last, node.body);
+  }
+  const auto within = [&](std::uint32_t row) {
+    return row >= first && row <= last && std::ranges::find(tree, row, &TreeNode::body) != tree.end();
+  };
+  return std::ranges::any_of(state.contacts.ends, [&](const auto& ends) { return within(ends[0]) || within(ends[1]); });
+}
+
 template <class Scalar>
-void want(const WorldState& state, const Forest& forest, double most, std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
-  const SpinBound<Scalar> bound(state.tables);
+void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
+  const SpinBounds<Scalar> bounds(state.tables);
+  const double spin_most = constants::largest_joint_turn / h, change_most = constants::largest_spin_change / h;
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.front().flipped) continue;  // turns on a pivot
+    double whip = 0;
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;
-      if (bound.squared(row) <= most * most || !state.responds(row)) continue;
+      const bool spins = bounds.spin(row) > spin_most * spin_most, whips = bounds.change(row) > change_most * change_most;
+      if (!(spins || whips) || !state.responds(row)) continue;
+      if (whips) whip = std::max(whip, 2 * length(state.spin_of(row, state.tables.get3(Buffer::velocity_parts, row, 4))));
       const Vec3 spin = state.angular_velocity(row);
-      if (const std::uint8_t octave = octave_for(dot(spin, spin), most * most, highest_octave); octave > 0)
+      if (const std::uint8_t octave = octave_for(dot(spin, spin), spin_most * spin_most, highest_octave); octave > 0)
         wanted.push_back({row, octave, false});
     }
+    if (const std::uint8_t octave = octave_for(whip, change_most, highest_octave); octave > 0 && !meets_others(state, tree))
+      wanted.push_back({tree.back().body, octave, false});
   }
 }
 
@@ -53,9 +78,8 @@ void want(const WorldState& state, const Forest& forest, double most, std::uint8
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted) {
   if (forest.trees() == 0) return;
-  const double most = constants::largest_joint_turn / h;
-  state.tables.precision() == Precision::f32 ? want<float>(state, forest, most, highest_octave, wanted)
-                                             : want<double>(state, forest, most, highest_octave, wanted);
+  state.tables.precision() == Precision::f32 ? want<float>(state, forest, h, highest_octave, wanted)
+                                             : want<double>(state, forest, h, highest_octave, wanted);
 }
 
 }  // namespace pcphys

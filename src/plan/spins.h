@@ -1,5 +1,6 @@
-// Sub-steps for joints that turn far. Directions of joints are those at the start of a sub-step (docs/joint-trees.md): of second
-// order, and of no use where a body turns by a radian.
+// Sub-steps for joints that turn far, and for chains that whip. Directions of joints are those at the start of a sub-step
+// (docs/joint-trees.md): of second order, and of no use where a body turns by a radian. How much a sub-step changed a spin, times its
+// length, is how wrong they came to be in it (docs/substeps.md).
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -12,7 +13,8 @@ namespace pcphys {
 class Forest;
 
 /// Adds what bodies in trees need that would turn by more than constants::largest_joint_turn in a sub-step of `h` [s], up to
-/// `highest_octave`. Bodies on pivots turn exactly.
+/// `highest_octave`; and trees that nothing touches of which a body's spin changed by more than constants::largest_spin_change / h in the
+/// last sub-step. Bodies on pivots turn exactly.
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted);
 

@@ -147,6 +147,7 @@ void TreeSlots::build(const WorldState& state) {
   std::ranges::sort(closing_);
   pivots_ = find_pivots(forest_, state, solved_);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
+  bare_pivots_ = pivots_.size() == forest_.trees() && std::ranges::none_of(pivots_, &Pivot::limited);
   shapes_.build(forest_);
   alike_ = shapes_.most_alike();
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));

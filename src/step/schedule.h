@@ -98,6 +98,8 @@ class TreeSlots {
   const TreeNodes& nodes() const { return nodes_; }
   const TreeNodes& loop_nodes() const { return loop_nodes_; }
   std::span<const Pivot> pivots() const { return pivots_; }
+  /// Whether every tree is one, and what turns there has no limits: the pins have nothing to solve.
+  bool bare_pivots() const { return bare_pivots_; }
   /// By joint row: whether it joins two bodies that a tree's joint joins already. What the tree leaves it to answer is
   /// singular: such joints stay rows.
   std::span<const char> parallel() const { return parallel_; }
@@ -126,7 +128,7 @@ class TreeSlots {
   TreeNodes nodes_, loop_nodes_;
   std::vector<char> parallel_;
   std::vector<std::uint32_t> closing_, answered_;
-  bool drives_ = false, closing_drives_ = false;
+  bool drives_ = false, closing_drives_ = false, bare_pivots_ = false;
   std::uint32_t free_springs_ = 0, alike_ = 0;
   std::vector<Pivot> pivots_;
   TreeShapes shapes_;

@@ -127,6 +127,7 @@ struct Stepper::Inside {
     s.trees = from.trees.forest().trees() > 0;
     s.pivots = !from.trees.pivots().empty();
     s.pivots_alone = s.pivots && from.trees.pivots().size() == from.moving;
+    s.pivots_bare = from.trees.bare_pivots();
     s.free_joints = from.joints.any_without_trees();
     s.tree_joints = from.joints.any_with_trees();
     s.tree_drives = from.trees.drives();

@@ -64,9 +64,11 @@ Vec3 WorldState::momentum_of_rotation(std::uint32_t row) const {
   return tables.get3(Buffer::motion, row, 4) + tables.get3(Buffer::velocity_parts, row, 4);
 }
 
-Vec3 WorldState::angular_velocity(std::uint32_t row) const {
+Vec3 WorldState::angular_velocity(std::uint32_t row) const { return spin_of(row, momentum_of_rotation(row)); }
+
+Vec3 WorldState::spin_of(std::uint32_t row, Vec3 angular_momentum) const {
   const Quat q = orientation(row);
-  const Vec3 pi = rotate(conjugate(q), momentum_of_rotation(row)), i = tables.get3(Buffer::mass, row, 4);
+  const Vec3 pi = rotate(conjugate(q), angular_momentum), i = tables.get3(Buffer::mass, row, 4);
   return rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
 }
 

@@ -135,6 +135,8 @@ struct WorldState {
   Vec3 velocity(std::uint32_t row) const;
   Vec3 momentum_of_rotation(std::uint32_t row) const;
   Vec3 angular_velocity(std::uint32_t row) const;
+  /// What a body with this angular momentum spins with [rad/s].
+  Vec3 spin_of(std::uint32_t row, Vec3 angular_momentum) const;
   /// Makes the stored velocities those in phase with the position, so that one of them may be set.
   void bring_in_phase(std::uint32_t row);
   void set_angular_velocity(std::uint32_t row, Vec3 w);

@@ -1,4 +1,4 @@
-"""Rules of kernel text: call, division, precise, literal, unread."""
+"""Rules of kernel text: call, division, precise, literal, reserved, unread."""
 import re
 
 INTEGER_TYPES = {"uint", "int", "Index", "Row", "Slot", "bool", "uint32_t", "size_t"}
@@ -7,6 +7,11 @@ BANNED = set("""abs sign floor ceil trunc round roundEven fract mod modf min max
     frexp sqrt inversesqrt pow exp exp2 log log2 sin cos tan asin acos atan atan2 sinh cosh tanh radians degrees length distance
     dot cross normalize reflect refract faceforward inverse transpose determinant outerProduct float double vec2 vec3 vec4
     dvec2 dvec3 dvec4 mat3 mat4""".split())
+
+# words of GLSL 4.30 that C++ takes for names
+RESERVED = set("""common partition active filter input output sample subroutine shared resource superp noinline external interface
+    half fixed cast attribute varying coherent patch centroid flat smooth noperspective invariant uniform layout buffer discard
+    lowp mediump highp in out inout""".split())
 
 
 class Unreadable(Exception):
@@ -41,6 +46,9 @@ class Kernel:
 
     def __init__(self, source, names):
         self.source, self.names, self.scope = source, names, {}
+        for before, token in zip(source.tokens, source.tokens[1:]):
+            if before.kind == token.kind == "name" and token.text in RESERVED:
+                source.report(token.line, "reserved", token.text)
         self.block(source.tokens)
         for _, parameters, body in source.macros:
             if body:
