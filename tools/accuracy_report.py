@@ -184,10 +184,10 @@ def contest(rows):
     peers = list(dict.fromkeys(r["peer"] for r in rows if r["peer"]))
     if not peers:
         return []
-    lines, under, shared, cases, lost, above = [], 0, 0, 0, [], []
+    lines, under, shared, as_one, cases, lost, above = [], 0, 0, 0, 0, [], []
     for (case,), of_case in group(rows, "case").items():
         tally = {peer: [0, 0] for peer in peers}
-        crossed = []
+        crossed, mixed = [], 0
         for (variant,), of_variant in group(of_case, "variant").items():
             shown = drawn(of_variant)
             own = [r for r in shown if not r["peer"]]
@@ -195,6 +195,7 @@ def contest(rows):
                 won = sum(beaten(r, own) for r in series)
                 tally[peer][0] += won
                 tally[peer][1] += len(series)
+                mixed += not lies_under(own, series)
                 if not any(lies_under(curve, series) for _, curve in group(own, "precision").items()):
                     crossed.append(f"{variant}: {peer}")
                 if won < len(series):
@@ -204,6 +205,7 @@ def contest(rows):
         cases += 1
         under += all(won == total for won, total in tally.values())
         shared += not crossed
+        as_one += mixed == 0
         above += [f"* {case}: {cell('; '.join(crossed))}"] if crossed else []
         lines.append(f"| {case} | " + " | ".join(f"{won} of {total}" if total else "-" for won, total in tally.values()) + " |")
     head = ["", "## Beside other engines", "",
@@ -216,7 +218,7 @@ def contest(rows):
             f"**In {shared} of {cases} cases pcphys's curve lies under every peer's at every run time that both cover**: lines "
             "through the runs that no other of the same engine beats, time and error as logarithms, from its shortest run to its "
             "longest. Double and single precision are two curves, and one of them must lie under the peer's. What the measure itself "
-            "may be off by (`floor` of the variants) counts as equal.", "",
+            f"may be off by (`floor` of the variants) counts as equal. (With both precisions as one curve: {as_one}.)", "",
             "| case | " + " | ".join(peers) + " |", "|---" * (len(peers) + 1) + "|"]
     tail = ["", "Where a peer has a run that none of ours is under:", ""]
     for (case,), of_case in group([dict(zip(("case", "variant", "peer", "runs", "of"), l)) for l in lost], "case").items():

@@ -51,7 +51,16 @@ PC_FN Real pc_damped_share(Real fast, Real swing, Mask held) {
   Real alone = pc_select(fast > PC_REAL(1e-4), late, zero);  // less is rounding, and its squares would be subnormal
   return pc_min(pc_select(held, early, alone), PC_REAL(1.0));
 }
-// An impulse against the turning of bodies with stiff pins. `held`: something acts on the tree from outside. Run after pc_tree_residual.
+// 1 where a limit of the joint acts.
+PC_FN Real pc_at_limit(PC_IO Slot n) {
+  Real most = PC_REAL(0.0);
+  for (uint i = 0u; i < 3u; i++) {
+    precise Real off = PC_LD(tree_rows, n, TREE_KIND + i) - PC_REAL(1.0);
+    most = pc_max(most, pc_select(pc_abs(off) < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_ON + i), PC_REAL(0.0)));
+  }
+  return most;
+}
+// An impulse against the turning of bodies with stiff pins. `held`: something acts on the tree from outside, or a limit does. Run after pc_tree_residual.
 PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
@@ -73,6 +82,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     load = pc_max(load, pc_max(pc_largest(f.l), pc_largest(f.a)));
     precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l); turn = moment;
   }
+  for (uint k = 1u; k < t.count; k++) load = pc_max(load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
   for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #ifdef PC_DRIVES
   for (uint k = 1u; k < t.count; k++) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));

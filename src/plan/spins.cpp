@@ -51,6 +51,19 @@ bool meets_others(const WorldState& state, std::span<const TreeNode> tree) {
   return std::ranges::any_of(state.contacts.ends, [&](const auto& ends) { return within(ends[0]) || within(ends[1]); });
 }
 
+/// Whether a joint of the tree stood at a limit in the last step: a stop changes spins at once, which is no whip.
+bool at_limit(const WorldState& state, std::span<const TreeNode> tree) {
+  return std::ranges::any_of(tree, [&](const TreeNode& node) {
+    if (node.joint == 0) return false;
+    const AngleFreedom& freedom = state.joints[node.joint].def.freedom;
+    if (freedom.kind == AngleFreedom::Kind::free) return false;
+    const Vec3 impulse = state.tables.get3(Buffer::joint_impulse, node.joint, 4);
+    if (freedom.kind == AngleFreedom::Kind::cone_twist) return impulse != Vec3{};
+    const Vec3 low = freedom.lower, high = freedom.upper;
+    return (low.x < high.x && impulse.x != 0) || (low.y < high.y && impulse.y != 0) || (low.z < high.z && impulse.z != 0);
+  });
+}
+
 template <class Scalar>
 void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
   const SpinBounds<Scalar> bounds(state.tables);
@@ -68,7 +81,7 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
       if (const std::uint8_t octave = octave_for(dot(spin, spin), spin_most * spin_most, highest_octave); octave > 0)
         wanted.push_back({row, octave, false});
     }
-    if (const std::uint8_t octave = octave_for(whip, change_most, highest_octave); octave > 0 && !meets_others(state, tree))
+    if (const std::uint8_t octave = octave_for(whip, change_most, highest_octave); octave > 0 && !meets_others(state, tree) && !at_limit(state, tree))
       wanted.push_back({tree.back().body, octave, false});
   }
 }
