@@ -36,12 +36,17 @@ template <class Scalar> class SpinBounds {
   const Scalar *momenta_, *changes_, *inverse_moments_;  // of row 0
 };
 
-/// Whether contacts held a body of the tree in the last step, or could in this one.
+/// Whether contacts held a body of the tree in the last step.
+template <class Scalar> bool was_touched(const Tables& t, std::span<const TreeNode> tree) {
+  const Scalar* phases = t.data<Scalar>(Buffer::motion) + 7;
+  return std::ranges::any_of(tree, [&](const TreeNode& node) { return phases[node.body * reals_of(Buffer::motion)] > 0; });
+}
+
+/// Whether contacts could hold one in this step.
 bool meets_others(const WorldState& state, std::span<const TreeNode> tree) {
   std::uint32_t first = std::uint32_t(state.bodies.size()), last = 0;
   for (const TreeNode& node : tree) {
     if (!state.responds(node.body)) continue;
-    if (state.tables.get(Buffer::motion, node.body, 7) > 0) return true;
     first = std::min(first, node.body);
     last = std::max(last, node.body);
   }
@@ -72,16 +77,19 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.front().flipped) continue;  // turns on a pivot
     double whip = 0;
+    const bool touched = was_touched<Scalar>(state.tables, tree);
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;
-      const bool spins = bounds.spin(row) > spin_most * spin_most, whips = bounds.change(row) > change_most * change_most;
+      const bool spins = bounds.spin(row) > spin_most * spin_most;
+      const bool whips = !touched && bounds.change(row) > change_most * change_most;
       if (!(spins || whips) || !state.responds(row)) continue;
       if (whips) whip = std::max(whip, 2 * length(state.spin_of(row, state.tables.get3(Buffer::velocity_parts, row, 4))));
       const Vec3 spin = state.angular_velocity(row);
       if (const std::uint8_t octave = octave_for(dot(spin, spin), spin_most * spin_most, highest_octave); octave > 0)
         wanted.push_back({row, octave, false});
     }
-    if (const std::uint8_t octave = octave_for(whip, change_most, highest_octave); octave > 0 && !meets_others(state, tree) && !at_limit(state, tree))
+    if (const std::uint8_t octave = octave_for(whip, change_most, highest_octave);
+        octave > 0 && !meets_others(state, tree) && !at_limit(state, tree))
       wanted.push_back({tree.back().body, octave, false});
   }
 }
