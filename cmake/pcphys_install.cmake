@@ -11,7 +11,7 @@ install(TARGETS pcphys EXPORT pcphys-targets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS pcphys_fcl EXPORT pcphys-fcl-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT pcphys-fcl-targets NAMESPACE pcphys:: DESTINATION ${package_dir})
-install(DIRECTORY include/pcphys DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY include/pcphys ${PCPHYS_GENERATED}/include/pcphys DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT pcphys-targets NAMESPACE pcphys:: DESTINATION ${package_dir})
 
 configure_package_config_file(cmake/pcphys-config.cmake.in ${PROJECT_BINARY_DIR}/pcphys-config.cmake

@@ -53,7 +53,8 @@ struct BadBody {
 TEST_CASE("names of error codes") {
   const char* names[] = {"none",          "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion",
                          "bad_time_step", "stale_id",    "bad_joint",    "bad_argument",     "unknown_name",
-                         "unavailable",   "buffer_full", "device_error", "bad_file",         "bad_snapshot"};
+                         "name_taken",    "wrong_type",  "unavailable",  "buffer_full",      "device_error",
+                         "bad_file",      "bad_snapshot"};
   for (int i = 0; i < int(std::size(names)); i++) CHECK(std::string(name(ErrorCode(i))) == names[i]);
   CHECK(int(ErrorCode::bad_snapshot) + 1 == int(std::size(names)));
 }
@@ -234,7 +235,7 @@ TEST_CASE("set functions refuse") {
   CHECK_REFUSED(w, w.add_force(p.a, Wrench{{}, {0, infinity, 0}}), ErrorCode::not_finite, "The torque on a body is (0, inf, 0)");
   CHECK_REFUSED(w, w.add_force(p.a, ForceCallback{}), ErrorCode::bad_argument, "The force callback is empty; pass a function.");
   CHECK_REFUSED(w, w.view("speed of light"), ErrorCode::unknown_name,
-                "There is no property \"speed of light\"; docs/properties.md lists them.");
+                "There is no property \"speed of light\"; docs/properties.md lists those of the library, World::properties all.");
 }
 
 TEST_CASE("last positions need a step") {

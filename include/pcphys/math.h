@@ -49,6 +49,24 @@ struct Quat {
   friend constexpr bool operator==(const Quat&, const Quat&) = default;
 };
 
+/// Four numbers without a meaning of their own.
+struct Vec4 {
+  double x = 0, y = 0, z = 0, w = 0;
+  friend constexpr bool operator==(const Vec4&, const Vec4&) = default;
+};
+
+/// A 3 x 3 matrix, row by row.
+struct Mat3 {
+  double xx = 0, xy = 0, xz = 0, yx = 0, yy = 0, yz = 0, zx = 0, zy = 0, zz = 0;
+  friend constexpr bool operator==(const Mat3&, const Mat3&) = default;
+};
+
+/// A symmetric one.
+struct SymMat3 {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+  friend constexpr bool operator==(const SymMat3&, const SymMat3&) = default;
+};
+
 /// A rigid pose: where a frame stands in its parent.
 struct Pose {
   Vec3 position;

@@ -12,6 +12,10 @@ namespace pcphys {
 enum class Place : std::uint8_t { cpu, gl };
 const char* name(Place place);
 
+/// The parts of a sub-step that are put on a place each.
+enum class Stage : std::uint8_t { integrate, joints, impulses };
+std::string_view name(Stage stage);
+
 /// How bodies move between impulses (docs/integrate.md). `verlet`: exact drag, and free rotation of second order. `seed`:
 /// the scheme of the document that pcphys began with, to compare with it: drag by a factor 1 - F h, constant angular
 /// velocity, velocities half a sub-step late.
@@ -26,8 +30,9 @@ inline constexpr unsigned phase_count = 4;
 inline constexpr unsigned octave_count = 10;
 
 enum class Kernel : std::uint8_t;
-enum class Buffer : std::uint8_t;
+enum class Buffer : std::uint16_t;
 enum class Domain : std::uint8_t;
+struct OwnKernel;
 
 struct PlanEntry {
   enum class Kind : std::uint8_t { kernel, upload, download };
@@ -36,10 +41,11 @@ struct PlanEntry {
   Kernel kernel{};  // of a kernel
   Buffer buffer{};  // of a transfer
   Phase phase = Phase::biased;
-  bool barrier = false;       // uses what a kernel before it wrote, or writes what one read, on the same device
-  std::uint32_t substep = 0;  // of the octave's
-  std::uint8_t octave = 0;    // of the islands that a kernel is for
-  std::uint32_t again = 0;    // runs only while the kernel's run before struck something, and at most so often; 0: once, always
+  bool barrier = false;            // uses what a kernel before it wrote, or writes what one read, on the same device
+  std::uint32_t substep = 0;       // of the octave's
+  std::uint8_t octave = 0;         // of the islands that a kernel is for
+  const OwnKernel* own = nullptr;  // a kernel of the host's own, in place of `kernel`; of a transfer, one that uses the buffer
+  std::uint32_t again = 0;  // runs only while the kernel's run before struck something, and at most so often; 0: once, always
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
 };
 

@@ -20,6 +20,8 @@ enum class ErrorCode {
   bad_joint,            // the two bodies are the same, or neither can move
   bad_argument,         // any other value outside its range
   unknown_name,         // a scene, property or option of that name does not exist
+  name_taken,           // there is a property, table or kernel of that name already
+  wrong_type,           // a property holds values of another type
   unavailable,          // what was asked for is not on this machine (no GL, no such lane width, no FCL)
   buffer_full,          // a fixed capacity is too small; the message says how much is needed
   device_error,         // the GL driver refused a program, a buffer or a dispatch

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pcphys/kernel.h"
 #include "pcphys/plan.h"
 #include "pcphys/result.h"
 #include "pcphys/types.h"
@@ -72,6 +73,14 @@ class Stepper {
 
   /// Moves the world on by dt [s]. The report stands until the next call.
   const StepReport& step(World& world, double dt);
+
+  /// A kernel of the host's own runs in every step of this world from now on; a stepper has kernels of one world at a time. Errors:
+  /// bad_argument (signature, more than eight buffers, order), unknown_name, wrong_type, name_taken, unavailable; device_error where
+  /// a stage is on gl and its compiler refuses the text. Nothing is added then.
+  Status add_kernel(World& world, const KernelDef& def);
+  Status remove_kernel(World& world, std::string_view name);
+  /// From the next step on; of the type that it was given as.
+  Status set_parameter(std::string_view kernel, const KernelParameter& parameter);
 
   /// What the last step ran, or (`plan_for`) what a step of this world would.
   const StepPlan& plan() const;

@@ -144,11 +144,50 @@ class World {
 
   // ---- tables ----------------------------------------------------------------------------------------
   Precision precision() const;
-  /// A view of a property by name: "position", "angular_momentum", ... (docs/properties.md lists all).
-  /// Valid until an object is created or destroyed. Row 0 is the padding row; `row_of` finds a body's.
+  /// A view of a property by name: "position", "angular_momentum", ... (docs/properties.md lists all), or one of the host's own.
+  /// Valid until an object of its table is created or destroyed. Row 0 is the padding row; `row_of` finds a body's.
   Result<PropertyView> view(std::string_view property) const;
   Result<std::uint32_t> row_of(BodyId body) const;
+  Result<std::uint32_t> row_of(JointId joint) const;
   std::size_t memory_bytes() const;
+
+  /// A property of the host's own, of bodies, of joints (and springs), or of a table of its own: T is Real, float, double,
+  /// std::int32_t, std::uint32_t, Vec3, Vec4, Quat, Mat3 or SymMat3. Every row, present and to come, starts with `initial`.
+  /// Snapshots and the hash hold it unless its role is another than `state`. The name must be one that a kernel's text can use:
+  /// letters, digits and underscores, not that of another property (ErrorCode::name_taken).
+  template <PropertyValue T>
+  Result<Property<T>> add_property(std::string_view name, const T& initial = {}, std::string_view unit = "1",
+                                   TableId table = body_table, Role role = Role::state) {
+    const PropertyNumbers numbers(initial);
+    return handle<T>(add_property(name, property_type<T>, numbers.x, unit, table, role));
+  }
+  /// Its values are gone, and what names it is stale.
+  Status remove_property(std::string_view name);
+  /// One that is there, of the library's or the host's own; ErrorCode::wrong_type where it holds no T.
+  template <PropertyValue T> Result<Property<T>> property(std::string_view name) const {
+    return handle<T>(find_property(name, property_type<T>));
+  }
+  /// The value of one object, or of one row of a table of the host's own. What the library derives from others or keeps in step
+  /// with them (any of its own that is no `input`) can be read, not set: that is ErrorCode::bad_argument.
+  template <PropertyValue T> Result<T> get(Property<T> property, RowOf object) const {
+    PropertyNumbers numbers;
+    if (Status ok = read(property.index, property.generation, object, numbers.x); !ok) return ok.error();
+    return numbers.as<T>();
+  }
+  template <PropertyValue T> Status set(Property<T> property, RowOf object, const T& value) {
+    const PropertyNumbers numbers(value);
+    return write(property.index, property.generation, object, numbers.x);
+  }
+  /// All of them, the library's first, then the host's own in the order of their handles. Names stand as long as the properties.
+  std::vector<PropertyInfo> properties() const;
+
+  /// A table of the host's own with rows 1 to `rows`; row 0 pads, as in every table.
+  Result<TableId> add_table(std::string_view name, std::uint32_t rows = 0);
+  /// New rows hold each property's initial value; rows beyond are gone.
+  Status resize(TableId table, std::uint32_t rows);
+  Result<std::uint32_t> rows(TableId table) const;
+  /// Takes its properties with it.
+  Status remove(TableId table);
 
   /// FNV-1a, 64 bit, over state and solver memory in ascending id order; -0 counts as +0.
   std::uint64_t hash() const;
@@ -161,6 +200,17 @@ class World {
   const WorldState& state() const { return *state_; }
 
  private:
+  using AnyProperty = Id<struct AnyPropertyTag>;
+  template <class T> static Result<Property<T>> handle(const Result<AnyProperty>& found) {
+    if (!found) return found.error();
+    return Property<T>{found->index, found->generation};
+  }
+  Result<AnyProperty> add_property(std::string_view name, PropertyType type, const double* initial, std::string_view unit,
+                                   TableId table, Role role);
+  Result<AnyProperty> find_property(std::string_view name, PropertyType type) const;
+  Status read(std::uint32_t property, std::uint32_t generation, RowOf object, double* numbers) const;
+  Status write(std::uint32_t property, std::uint32_t generation, RowOf object, const double* numbers);
+
   std::unique_ptr<WorldState> state_;
 };
 

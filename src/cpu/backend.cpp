@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cpu/kernels.h"
 #include "cpu/workers.h"
@@ -45,6 +46,7 @@ class CpuBackend final : public Backend {
   }
 
   Status attach(Buffer buffer, void* host, std::size_t) override {
+    if (buffers_.size() <= std::size_t(buffer)) buffers_.resize(std::size_t(buffer) + 1);
     buffers_[std::size_t(buffer)] = host;
     return {};
   }
@@ -64,6 +66,10 @@ class CpuBackend final : public Backend {
     const bool shared = workers_ && workers_->threads() > 1;
     const std::size_t info_bytes = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
     for (const KernelRun& r : runs) {
+      if (r.own) {
+        run_own(r, infos_ + r.info * info_bytes, shared);
+        continue;
+      }
       const auto part = of_lanes_[r.lanes]->run[std::size_t(r.kernel)];
       const std::byte* with = infos_ + r.info * info_bytes;
       if (shared)
@@ -78,6 +84,11 @@ class CpuBackend final : public Backend {
     return kernels_.f64 ? take(static_cast<double*>(row) + quad * 4 + 3) : take(static_cast<float*>(row) + quad * 4 + 3);
   }
   Status finish() override { return {}; }
+  Status prepare(const OwnKernel& kernel) override {
+    if (kernel.loop) return {};
+    return Error{ErrorCode::unavailable,
+                 "The kernel \"" + kernel.name + "\" has no C++ side; put its stage on gl, or write it with PCPHYS_KERNEL."};
+  }
 
  private:
   template <class Scalar> static bool take(Scalar* flag) { return std::exchange(*flag, Scalar(0)) != 0; }
@@ -92,10 +103,42 @@ class CpuBackend final : public Backend {
       });
   }
 
+  /// A kernel of the host's own: where each of its arguments stands.
+  void run_own(const KernelRun& run, const std::byte* info, bool shared) {
+    const OwnKernel& k = *run.own;
+    std::array<std::byte*, OwnKernel::most_arguments> columns;
+    std::array<std::size_t, OwnKernel::most_arguments> strides{};
+    for (std::size_t i = 0; i < k.arguments.size(); i++) {
+      const OwnArgument& a = k.arguments[i];
+      if (a.given) {
+        columns[i] =
+            const_cast<std::byte*>(info) + (a.name == "h" ? info_field::h : info_field::gravity_x) * (kernels_.f64 ? 8 : 4);
+      } else if (a.kind == OwnArgument::Kind::parameter) {
+        columns[i] = const_cast<std::byte*>(k.parameters.data()) + a.place;
+      } else {
+        columns[i] = static_cast<std::byte*>(buffers_[std::size_t(a.buffer)]) + a.offset;
+        strides[i] = a.row_bytes;
+      }
+    }
+    const auto* rows =
+        k.table == Table::body ? static_cast<const std::uint32_t*>(buffers_[std::size_t(Buffer::bodies)]) : nullptr;
+    const auto piece = [&](std::uint32_t begin, std::uint32_t end) {
+      k.loop({columns.data(), strides.data(), rows, begin, end});
+    };
+    for (const Range& range : run.ranges) {
+      if (!shared) {
+        piece(range.begin, range.end);
+        continue;
+      }
+      workers_->run(range.end - range.begin, grain,
+                    [&](std::uint32_t begin, std::uint32_t end) { piece(range.begin + begin, range.begin + end); });
+    }
+  }
+
   const CpuKernels& kernels_;
   std::array<const CpuKernels*, most_lanes + 1> of_lanes_{};  // null: none, or not asked for
   const Workers* workers_;
-  std::array<void*, buffer_count> buffers_{};
+  std::vector<void*> buffers_ = std::vector<void*>(buffer_count);  // by Buffer
   std::array<AlignedBytes, buffer_count> scratch_;
   const std::byte* infos_ = nullptr;
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <unordered_map>
+#include <utility>
 
 #include "glcompute/context.h"
 #include "glcompute/device_probe.h"
@@ -15,6 +17,8 @@ namespace pcphys {
 namespace {
 
 constexpr std::uint32_t local_size = 64;
+
+std::string_view label_of(Buffer buffer) { return is_own(buffer) ? "a property of the host's own" : schema(buffer).name; }
 
 class GlBackend final : public Backend {
  public:
@@ -33,26 +37,34 @@ class GlBackend final : public Backend {
   Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
   Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
   Status set_infos(const void* infos, std::size_t count) override;
+  Status prepare(const OwnKernel& kernel) override;
   Status run(std::span<const KernelRun> runs) override;
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override;
   Status finish() override;
 
  private:
-  GlBuffer& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
+  GlBuffer& at(Buffer buffer) {
+    if (buffers_.size() <= std::size_t(buffer)) buffers_.resize(std::size_t(buffer) + 1);
+    return buffers_[std::size_t(buffer)];
+  }
   std::size_t real_bytes() const { return options_.precision == Precision::f64 ? sizeof(std::uint64_t) : sizeof(std::uint32_t); }
   Status resize(Buffer buffer, std::size_t bytes);
   Status transfer(Buffer buffer, void (GlBuffer::*copy)() const);
   void settle();
   Status hold();
   void release();
-  Status bind(Kernel kernel, std::size_t info);
+  Status bind(const KernelRun& run);
+  Status bind_buffers(std::span<const Access> accesses, std::string_view kernel, std::size_t info);
+  Status bind_own(const OwnKernel& kernel, std::size_t info);
+  std::int32_t range_of(const KernelRun& run) const;
   void dispatch_all(const KernelRun& run);
   void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end);
 
   std::unique_ptr<GlContext> context_;
   ProgramCache cache_;
   SourceOptions options_;
-  std::array<GlBuffer, buffer_count> buffers_{};
+  std::vector<GlBuffer> buffers_ = std::vector<GlBuffer>(buffer_count);  // by Buffer
+  std::unordered_map<std::uint64_t, OwnProgram> own_programs_;           // by serial
   std::array<KernelProgram, kernel_count> programs_{};
   std::uint32_t info_buffer_ = 0;
   std::size_t info_bytes_ = 0, info_stride_ = 0, info_count_ = 0, info_capacity_ = 0;
@@ -86,6 +98,7 @@ GlBackend::~GlBackend() {
       for (GlBuffer& buffer : buffers_) buffer.release();
       for (const KernelProgram& program : programs_)
         if (program.id != 0) glDeleteProgram(program.id);
+      for (const auto& [serial, program] : own_programs_) glDeleteProgram(program.id);
       glDeleteBuffers(1, &info_buffer_);
     }
   }
@@ -96,7 +109,7 @@ GlBackend::~GlBackend() {
 Status GlBackend::resize(Buffer buffer, std::size_t bytes) {
   GlScope scope(*context_);
   if (!scope.status()) return scope.status();
-  return at(buffer).resize(schema(buffer).name, bytes, context_->report().limits.storage_block_bytes);
+  return at(buffer).resize(label_of(buffer), bytes, context_->report().limits.storage_block_bytes);
 }
 
 Status GlBackend::attach(Buffer buffer, void* host, std::size_t bytes) {
@@ -121,7 +134,7 @@ Status GlBackend::transfer(Buffer buffer, void (GlBuffer::*copy)() const) {
   if (!scope.status()) return scope.status();
   if (!at(buffer).attached() || !at(buffer).transferable())
     return Error{ErrorCode::bad_argument,
-                 "The buffer `" + std::string(schema(buffer).name) + "` has no memory on the host; attach it before a transfer."};
+                 "The buffer `" + std::string(label_of(buffer)) + "` has no memory on the host; attach it before a transfer."};
   settle();
   (at(buffer).*copy)();
   return {};
@@ -158,27 +171,75 @@ void GlBackend::release() {
   held_ = false;
 }
 
-Status GlBackend::bind(Kernel kernel, std::size_t info) {
+Status GlBackend::bind_buffers(std::span<const Access> accesses, std::string_view kernel, std::size_t info) {
   if (info >= info_count_)
     return Error{ErrorCode::bad_argument,
                  "There is no info block " + std::to_string(info) + "; set_infos gave " + std::to_string(info_count_) + "."};
-  KernelProgram& program = programs_[std::size_t(kernel)];
-  if (program.id == 0) {
-    const Result<KernelProgram> loaded = load_kernel(kernel, options_, cache_);
-    if (!loaded) return loaded.error();
-    program = *loaded;
-  }
   std::uint32_t binding = 0;
-  for (const Access& access : schema(kernel).accesses) {
+  for (const Access& access : accesses) {
     if (!at(access.buffer).attached())
-      return Error{ErrorCode::bad_argument, "The kernel `" + std::string(schema(kernel).name) + "` uses the buffer `" +
-                                                std::string(schema(access.buffer).name) +
+      return Error{ErrorCode::bad_argument, "The kernel `" + std::string(kernel) + "` uses the buffer `" +
+                                                std::string(label_of(access.buffer)) +
                                                 "`, which was neither attached nor reserved."};
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding++, at(access.buffer).id());
   }
   glBindBufferRange(GL_UNIFORM_BUFFER, 0, info_buffer_, GLintptr(info * info_stride_), GLsizeiptr(info_bytes_));
+  return {};
+}
+
+Status GlBackend::bind(const KernelRun& run) {
+  if (run.own) return bind_own(*run.own, run.info);
+  KernelProgram& program = programs_[std::size_t(run.kernel)];
+  if (program.id == 0) {
+    const Result<KernelProgram> loaded = load_kernel(run.kernel, options_, cache_);
+    if (!loaded) return loaded.error();
+    program = *loaded;
+  }
+  const KernelSchema& k = schema(run.kernel);
+  if (Status status = bind_buffers(k.accesses, k.name, run.info); !status) return status;
   glUseProgram(program.id);
   return {};
+}
+
+Status GlBackend::prepare(const OwnKernel& kernel) {
+  if (kernel.body.empty())
+    return Error{ErrorCode::unavailable,
+                 "The kernel \"" + kernel.name + "\" has no GLSL side; put its stage on cpu, or write it with PCPHYS_KERNEL."};
+  if (own_programs_.contains(kernel.serial)) return {};
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  Result<OwnProgram> loaded = load_kernel(kernel, options_, cache_);
+  if (!loaded) return loaded.error();
+  own_programs_.emplace(kernel.serial, std::move(*loaded));
+  return {};
+}
+
+/// Values of parameters go with each run: they are few, and may have changed.
+Status GlBackend::bind_own(const OwnKernel& kernel, std::size_t info) {
+  if (Status status = bind_buffers(kernel.accesses, kernel.name, info); !status) return status;
+  const OwnProgram& program = own_programs_.at(kernel.serial);
+  glUseProgram(program.id);
+  std::size_t i = 0;
+  for (const OwnArgument& a : kernel.arguments)
+    for (std::uint32_t c = 0; c < components(a.type); c++) {
+      const std::int32_t location = program.parameters[i++];
+      if (location < 0) continue;
+      const double value = read_number(kernel.parameters.data() + a.place + c * number_bytes(a.type, kernel.real_bytes), a.type,
+                                       kernel.real_bytes);
+      if (a.type == PropertyType::int32)
+        glUniform1i(location, GLint(value));
+      else if (a.type == PropertyType::uint32)
+        glUniform1ui(location, GLuint(value));
+      else if (number_bytes(a.type, kernel.real_bytes) == 4)
+        glUniform1f(location, GLfloat(value));
+      else
+        glUniform1d(location, value);
+    }
+  return {};
+}
+
+std::int32_t GlBackend::range_of(const KernelRun& run) const {
+  return run.own ? own_programs_.at(run.own->serial).range : programs_[std::size_t(run.kernel)].range;
 }
 
 /// Long ranges go in pieces of as many work groups as the device takes; pieces need no barrier.
@@ -192,11 +253,11 @@ void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::
 }
 
 void GlBackend::dispatch_all(const KernelRun& run) {
-  const std::uint32_t lanes = schema(run.kernel).domain == Domain::body ? 1 : gl_width;
+  const std::uint32_t lanes = run.own || schema(run.kernel).domain == Domain::body ? 1 : gl_width;
   for (const Range& range : run.ranges) {
     if (range.begin >= range.end) continue;
     if (barrier_due_) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    dispatch(programs_[std::size_t(run.kernel)].range, range.begin * lanes, range.end * lanes);
+    dispatch(range_of(run), range.begin * lanes, range.end * lanes);
     barrier_due_ = true;  // each range may read what the one before wrote
     writes_pending_ = true;
   }
@@ -208,7 +269,7 @@ Status GlBackend::run(std::span<const KernelRun> runs) {
     barrier_due_ |= run.barrier;
     if (std::ranges::all_of(run.ranges, [](const Range& r) { return r.begin >= r.end; })) continue;
     if (Status status = hold(); !status) return status;
-    if (Status status = bind(run.kernel, run.info); !status) {
+    if (Status status = bind(run); !status) {
       release();
       return status;
     }

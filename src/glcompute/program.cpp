@@ -165,4 +165,18 @@ Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, c
   return KernelProgram{*program, glGetUniformLocation(*program, "pc_range")};
 }
 
+Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache) {
+  const Result<ProgramSource> source = own_kernel_source(kernel, options);
+  if (!source) return source.error();
+  const Result<std::uint32_t> program = link_program(*source, kernel.name, cache);
+  if (!program) return program.error();
+  OwnProgram own{*program, glGetUniformLocation(*program, "pc_range"), {}};
+  for (const OwnArgument& a : kernel.arguments)
+    for (std::uint32_t c = 0; c < components(a.type); c++) {
+      const bool here = a.kind == OwnArgument::Kind::parameter && !a.given;
+      own.parameters.push_back(here ? glGetUniformLocation(*program, ("pc_" + a.name + "_" + std::to_string(c)).c_str()) : -1);
+    }
+  return own;
+}
+
 }  // namespace pcphys

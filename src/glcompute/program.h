@@ -19,6 +19,12 @@ struct KernelProgram {
   std::uint32_t id = 0;
   std::int32_t range = -1;  // location of the uniform pc_range
 };
+struct OwnProgram {
+  std::uint32_t id = 0;
+  std::int32_t range = -1;
+  std::vector<std::int32_t> parameters;  // location of each component of each argument in turn; -1: not used, or no parameter
+};
+Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache);
 Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, const ProgramCache& cache);
 
 }  // namespace pcphys

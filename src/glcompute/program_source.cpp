@@ -1,5 +1,6 @@
 #include "glcompute/program_source.h"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -20,6 +21,8 @@ class Text {
 
   void add(std::string_view text) { text_ += text; }
   Status include(std::string_view file);
+  /// A text that is not embedded, whose first line is number `first` of `file`.
+  Status add_text(std::string_view text, std::string_view file, std::uint32_t first);
   ProgramSource take() { return {std::move(text_), std::move(files_)}; }
 
  private:
@@ -37,11 +40,15 @@ Status Text::include(std::string_view file) {
   const char* text = embedded_source(file);
   if (text == nullptr)
     return Error{ErrorCode::unknown_name, "There is no embedded kernel text called " + std::string(file) + "."};
+  return add_text(text, file, 1);
+}
+
+Status Text::add_text(std::string_view text, std::string_view file, std::uint32_t first) {
   const std::size_t index = files_.size();
   files_.emplace_back(file);
-  locate(index, 1);
+  locate(index, first);
   std::string_view rest = text;
-  for (std::uint32_t at = 1; !rest.empty(); at++) {
+  for (std::uint32_t at = first; !rest.empty(); at++) {
     const std::size_t end = rest.find('\n');
     if (Status status = line(rest.substr(0, end), index, at); !status) return status;
     rest = end == rest.npos ? std::string_view() : rest.substr(end + 1);
@@ -144,6 +151,104 @@ std::string info_declaration() {
   return text + "} pc_info;\n";
 }
 
+// ---- kernels of the host's own ------------------------------------------------------------------------
+constexpr const char* glsl_types[] = {"Real", "Vec3", "Quaternion", "Sym3", "Quad", "Mat3", "float", "double", "int", "uint"};
+const char* glsl_type(PropertyType type) { return glsl_types[std::size_t(type)]; }
+/// Of one element of a buffer that holds nothing but such numbers.
+bool single(PropertyType type) { return components(type) == 1; }
+
+/// The name in a program of a buffer of which it uses a property.
+std::string own_label(const OwnKernel& k, Buffer buffer) {
+  if (!is_own(buffer)) return std::string(schema(buffer).name);
+  const auto* user = &*std::ranges::find_if(
+      k.arguments, [&](const OwnArgument& a) { return a.kind != OwnArgument::Kind::parameter && a.buffer == buffer; });
+  return "own_" + user->name;
+}
+PropertyType own_type(const OwnKernel& k, Buffer buffer) {
+  return std::ranges::find_if(k.arguments,
+                              [&](const OwnArgument& a) { return a.kind != OwnArgument::Kind::parameter && a.buffer == buffer; })
+      ->type;
+}
+
+std::string own_declarations(const OwnKernel& k) {
+  std::string text;
+  std::uint32_t binding = 0;
+  for (const Access& access : k.accesses) {
+    std::string element = "Real4";
+    if (is_own(access.buffer) && single(own_type(k, access.buffer))) element = glsl_type(own_type(k, access.buffer));
+    if (!of_table(access.buffer)) element = "uint";
+    const std::string label = own_label(k, access.buffer);
+    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (access.write ? "" : "readonly ") +
+            "buffer Block_" + label + " { " + element + " io_" + label + "[]; };\n";
+  }
+  for (const OwnArgument& a : k.arguments) {
+    if (a.kind == OwnArgument::Kind::parameter && !a.given)
+      for (std::uint32_t c = 0; c < components(a.type); c++)
+        text +=
+            std::string("uniform ") + (single(a.type) ? glsl_type(a.type) : "Real") + " pc_" + a.name + "_" + number(c) + ";\n";
+    if (a.writes())
+      text += std::string(a.type == PropertyType::int32 || a.type == PropertyType::uint32 ? "" : "precise ") + glsl_type(a.type) +
+              " " + a.name + ";\n";
+  }
+  return text;
+}
+
+/// Component c of an argument in memory.
+std::string own_place(const OwnKernel& k, const OwnArgument& a, std::uint32_t c) {
+  if (a.kind == OwnArgument::Kind::parameter) {
+    if (!a.given) return "pc_" + a.name + "_" + number(c);
+    constexpr const char* gravity[] = {"gravity_x", "gravity_y", "gravity_z"};
+    return std::string("pc_info.") + (a.name == "h" ? "h" : gravity[c]);
+  }
+  const std::string array = "io_" + own_label(k, a.buffer);
+  if (is_own(a.buffer) && single(a.type)) return array + "[row]";
+  const std::uint32_t at = a.offset / std::uint32_t(k.real_bytes) + c, row_quads = a.row_bytes / std::uint32_t(4 * k.real_bytes);
+  return array + "[row * " + number(row_quads) + "u + " + number(at / 4) + "u]." + "xyzw"[at % 4];
+}
+/// Component c of a value of that type in the kernel's text.
+std::string own_part(PropertyType type, std::uint32_t c) {
+  constexpr const char* vec3[] = {".x", ".y", ".z"};
+  constexpr const char* quaternion[] = {".v.x", ".v.y", ".v.z", ".w"};
+  constexpr const char* quad[] = {".v.x", ".v.y", ".v.z", ".s"};
+  constexpr const char* sym3[] = {".xx", ".xy", ".xz", ".yy", ".yz", ".zz"};
+  constexpr const char* mat3[] = {".x.x", ".x.y", ".x.z", ".y.x", ".y.y", ".y.z", ".z.x", ".z.y", ".z.z"};
+  switch (type) {
+    case PropertyType::vec3: return vec3[c];
+    case PropertyType::quat: return quaternion[c];
+    case PropertyType::vec4: return quad[c];
+    case PropertyType::sym3: return sym3[c];
+    case PropertyType::mat3: return mat3[c];
+    default: return "";
+  }
+}
+
+/// The function with the host's text: what it reads is const, what it writes stands outside and is precise.
+std::string own_function(const OwnKernel& k) {
+  std::string text;
+  for (const OwnArgument& a : k.arguments)
+    if (!a.writes()) text += (text.empty() ? "" : ", ") + std::string("const in ") + glsl_type(a.type) + " " + a.name;
+  return "void pc_own(" + text + ")\n";
+}
+
+std::string own_main(const OwnKernel& k, std::uint32_t local_size) {
+  std::string text = "layout(local_size_x = " + number(local_size) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
+  text += k.table == Table::body ? "  uint row = io_bodies[k];\n" : "  uint row = k;\n";
+  std::string call;
+  for (const OwnArgument& a : k.arguments) {
+    const std::string value = a.writes() ? a.name : "in_" + a.name;
+    if (!a.writes()) text += std::string("  ") + glsl_type(a.type) + " " + value + ";\n";
+    for (std::uint32_t c = 0; c < components(a.type); c++)
+      text += "  " + value + own_part(a.type, c) + " = " + own_place(k, a, c) + ";\n";
+    if (!a.writes()) call += (call.empty() ? "" : ", ") + value;
+  }
+  text += "  pc_own(" + call + ");\n";
+  for (const OwnArgument& a : k.arguments)
+    for (std::uint32_t c = 0; a.writes() && c < components(a.type); c++)
+      text += "  " + own_place(k, a, c) + " = " + a.name + own_part(a.type, c) + ";\n";
+  return text + "}\n";
+}
+
 std::string main_text(Domain domain, std::uint32_t local_size) {
   std::string text = "layout(local_size_x = " + number(local_size) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
@@ -167,6 +272,17 @@ Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options)
   text.add("#line 1 0\n" + buffer_declarations(what, options.precision) + info_declaration());
   if (Status status = text.include(std::string(what.name) + ".inl"); !status) return status.error();
   text.add("#line 1 0\n" + main_text(what.domain, options.local_size));
+  return text.take();
+}
+
+Result<ProgramSource> own_kernel_source(const OwnKernel& kernel, const SourceOptions& options) {
+  Text text(options.precision);
+  text.add(head(options));
+  if (Status status = text.include("prelude.glsl"); !status) return status.error();
+  text.add("#line 1 0\nstruct Mat3 { Vec3 x; Vec3 y; Vec3 z; };\n" + own_declarations(kernel) + info_declaration() +
+           own_function(kernel));
+  if (Status status = text.add_text(kernel.body, kernel.file, std::uint32_t(kernel.line)); !status) return status.error();
+  text.add("\n#line 1 0\n" + own_main(kernel, options.local_size));
   return text.take();
 }
 

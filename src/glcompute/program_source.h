@@ -8,6 +8,7 @@
 #include "pcphys/device.h"
 #include "pcphys/result.h"
 #include "pcphys/types.h"
+#include "plan/own_kernels.h"
 #include "world/schema.h"
 
 namespace pcphys {
@@ -28,6 +29,8 @@ struct ProgramSource {
 };
 
 Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options);
+/// Of a kernel of the host's own; errors of its text name its own file and lines.
+Result<ProgramSource> own_kernel_source(const OwnKernel& kernel, const SourceOptions& options);
 Result<ProgramSource> probe_source(Precision precision);
 
 /// Whether GLSL sees a buffer as single reals: the solver's rows in double, see PC_AT in prelude.glsl.

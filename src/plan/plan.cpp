@@ -1,8 +1,11 @@
 #include "plan/plan.h"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "pcphys/constants.h"
+#include "plan/own_kernels.h"
 
 namespace pcphys {
 namespace {
@@ -10,8 +13,13 @@ namespace {
 /// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
 class Builder {
  public:
-  Builder(const PlanSignature& signature, StepPlan& plan) : signature_(signature), plan_(plan) {
-    for (std::size_t b = 0; b < buffer_count; b++) current_[b][std::size_t(Place::cpu)] = true;
+  Builder(const PlanSignature& signature, std::span<OwnKernel* const> own, StepPlan& plan)
+      : signature_(signature), own_(own), plan_(plan) {
+    std::size_t count = buffer_count;
+    for (const OwnKernel* k : own)
+      for (const Access& a : k->accesses) count = std::max(count, std::size_t(a.buffer) + 1);
+    buffers_.resize(count);
+    for (Known& b : buffers_) b.current[std::size_t(Place::cpu)] = true;
   }
 
   /// The kernels that follow are for islands of this octave.
@@ -21,61 +29,95 @@ class Builder {
   void kernel(Kernel kernel, Phase phase, std::uint32_t substep, std::uint32_t again = 0) {
     const KernelSchema& k = schema(kernel);
     const Place place = signature_.places[std::size_t(k.stage)];
-    bool barrier = false;
-    for (const Access& a : k.accesses) {
-      if (!is_rows(a.buffer)) bring(a.buffer, place, substep);
-      barrier |= place == Place::gl && (written_[std::size_t(a.buffer)] || (a.write && read_[std::size_t(a.buffer)]));
-    }
-    if (barrier) settle();
-    plan_.entries.push_back({PlanEntry::Kind::kernel, place, kernel, {}, phase, barrier, substep, octave_, again});
-    for (const Access& a : k.accesses) {
-      if (!std::exchange(bound_[std::size_t(a.buffer)][std::size_t(place)], true))
-        plan_.bindings.push_back({place, a.buffer, k.domain});
-      if (place == Place::gl) (a.write ? written_ : read_)[std::size_t(a.buffer)] = true;
-      if (!a.write) continue;
-      if (place == Place::cpu) overwrite(a.buffer);
-      current_[std::size_t(a.buffer)][0] = place == Place::cpu;
-      current_[std::size_t(a.buffer)][1] = place == Place::gl;
-      host_wrote_[std::size_t(a.buffer)] |= place == Place::cpu;
-    }
+    add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses, k.domain);
   }
 
-  /// What the host reads after a step: every buffer that holds state; and of what both sides wrote the last version, since
-  /// the next step begins with the host's.
+  /// The host's own kernels of a moment of the step, in a sub-step of `count`.
+  void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count, bool once_a_step) {
+    for (const OwnKernel* k : own_) {
+      if (k->stage != stage || k->after != after || k->once_a_step != once_a_step) continue;
+      if (once_a_step && substep != (after ? count - 1 : 0)) continue;
+      // rows that are no bodies are of no octave
+      if (k->table != Table::body && octave_ != std::countr_zero(signature_.octaves)) continue;
+      Place place = signature_.places[std::size_t(stage)];
+      if (k->body.empty()) place = Place::cpu;
+      if (!k->loop) place = Place::gl;
+      add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, k, 0}, k->accesses, Domain::body);
+    }
+  }
+  void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count) {
+    own(stage, after, substep, count, true);
+    own(stage, after, substep, count, false);
+  }
+
+  /// What the host reads after a step: every buffer that holds state, or that the host's own kernels wrote; and of what both
+  /// sides wrote the last version, since the next step begins with the host's.
   void results(std::uint32_t substep) {
-    for (std::size_t b = 0; b < table_buffer_count; b++)
-      if (holds(Buffer(b), Role::state) || host_wrote_[b]) bring(Buffer(b), Place::cpu, substep);
+    for (std::size_t b = 0; b < buffers_.size(); b++)
+      if (of_table(Buffer(b)) &&
+          (is_own(Buffer(b)) || holds(Buffer(b), Role::state) || buffers_[b].host_wrote || buffers_[b].own_wrote))
+        bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
-  static bool is_rows(Buffer b) { return b >= Buffer::table_buffers && schema(b).reals > 0; }
+  struct Known {
+    std::array<bool, 2> current{}, bound{};  // by Place
+    bool written = false, read = false;      // on GL since the last barrier
+    bool host_wrote = false, own_wrote = false, overwritten = false;
+  };
+  Known& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
+  static bool is_rows(Buffer b) { return !of_table(b) && schema(b).reals > 0; }
+
+  void add(PlanEntry entry, std::span<const Access> accesses, Domain domain) {
+    const Place place = entry.place;
+    for (const Access& a : accesses) {
+      if (!is_rows(a.buffer)) bring(a.buffer, place, entry.substep);
+      entry.barrier |= place == Place::gl && (at(a.buffer).written || (a.write && at(a.buffer).read));
+    }
+    if (entry.barrier) settle();
+    plan_.entries.push_back(entry);
+    for (const Access& a : accesses) {
+      Known& known = at(a.buffer);
+      if (!std::exchange(known.bound[std::size_t(place)], true)) plan_.bindings.push_back({place, a.buffer, domain});
+      if (place == Place::gl) (a.write ? known.written : known.read) = true;
+      if (!a.write) continue;
+      if (place == Place::cpu) overwrite(a.buffer);
+      known.current[0] = place == Place::cpu;
+      known.current[1] = place == Place::gl;
+      known.host_wrote |= place == Place::cpu;
+      known.own_wrote |= entry.own != nullptr;
+    }
+  }
 
   void bring(Buffer buffer, Place place, std::uint32_t substep) {
-    bool& here = current_[std::size_t(buffer)][std::size_t(place)];
+    bool& here = at(buffer).current[std::size_t(place)];
     if (here) return;
     here = true;
     const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
-    plan_.entries.push_back({kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep, octave_});
+    plan_.entries.push_back(
+        {kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep, octave_, user_of(buffer), 0});
     if (kind == PlanEntry::Kind::upload) return;
     overwrite(buffer);
     settle();
   }
+  const OwnKernel* user_of(Buffer buffer) const {
+    for (const OwnKernel* k : own_)
+      for (const Access& a : k->accesses)
+        if (a.buffer == buffer && is_own(buffer)) return k;
+    return nullptr;
+  }
   void overwrite(Buffer buffer) {
-    if (buffer < Buffer::table_buffers && !std::exchange(overwritten_[std::size_t(buffer)], true))
-      plan_.overwritten.push_back(buffer);
+    if (of_table(buffer) && !std::exchange(at(buffer).overwritten, true)) plan_.overwritten.push_back(buffer);
   }
   void settle() {
-    written_.fill(false);
-    read_.fill(false);
+    for (Known& b : buffers_) b.written = b.read = false;
   }
 
   const PlanSignature& signature_;
+  std::span<OwnKernel* const> own_;
   StepPlan& plan_;
   std::uint8_t octave_ = 0;
-  std::array<std::array<bool, 2>, buffer_count> current_{};  // by Place
-  std::array<bool, buffer_count> written_{}, read_{};        // on GL since the last barrier
-  std::array<bool, buffer_count> host_wrote_{}, overwritten_{};
-  std::array<std::array<bool, 2>, buffer_count> bound_{};  // by Place
+  std::vector<Known> buffers_;  // by Buffer
 };
 
 void leave_out(const PlanSignature& s, StepPlan& plan) {
@@ -139,16 +181,20 @@ void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 
 /// A sub-step; `count`: of how many.
 void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32_t k, std::uint32_t count) {
+  if (k > 0) b.own(Stage::integrate, false, k, count);
   // pivots go on from the momentum of before; the last change of velocities is that of the last sub-step
   if (s.pivots || (k + 1 == count && s.integrator != Integrator::seed)) b.kernel(Kernel::remember, Phase::biased, k);
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
   if (k > 0) look_at_inertia(b, s, k);
+  b.own(Stage::integrate, true, k, count);
+  b.own(Stage::joints, false, k, count);
   if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
   if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
   // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
   if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
   if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
+  b.own(Stage::impulses, false, k, count);
   if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
   // before what lasts of the contacts acts again: an impact is between velocities that bodies have
   if (s.free_contacts && s.impacts) {
@@ -166,6 +212,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
   if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
+  b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
@@ -176,6 +223,14 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
   solve_contacts(b, s, Phase::relax, k);
+  b.own(Stage::impulses, true, k, count, false);
+}
+
+/// Where nothing moves the host's own kernels have their sub-steps all the same.
+void own_alone(Builder& b, const PlanSignature& s) {
+  for (std::uint32_t k = 0; k < s.substeps; k++)
+    for (const Stage stage : {Stage::integrate, Stage::joints, Stage::impulses})
+      for (const bool after : {false, true}) b.own(stage, after, k, s.substeps);
 }
 
 /// All sub-steps of the islands of an octave.
@@ -183,6 +238,7 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   const Motion with = motion(s);
   const std::uint32_t count = s.substeps << octave, last = count - 1;
   b.enter(octave);
+  b.own(Stage::integrate, false, 0, count);  // what it makes of forces is of the step's start
   look_at_drives(b, s, Phase::first, 0);
   b.kernel(with.begin, Phase::first, 0);
   look_at_inertia(b, s, 0);
@@ -191,24 +247,32 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
   if (s.contacts()) b.kernel(Kernel::contact_store, Phase::last, last);
   b.kernel(with.synchronise, Phase::relax, last);
-  if (octave == 0) return;
-  // what is remembered is of the world's sub-step, whatever the octave of the next step
-  b.kernel(with.restagger, Phase::last, last);
-  if (s.joints()) b.kernel(Kernel::joint_keep, Phase::last, last);
-  if (s.trees) b.kernel(Kernel::tree_keep, Phase::last, last);
+  if (octave > 0) {
+    // what is remembered is of the world's sub-step, whatever the octave of the next step
+    b.kernel(with.restagger, Phase::last, last);
+    if (s.joints()) b.kernel(Kernel::joint_keep, Phase::last, last);
+    if (s.trees) b.kernel(Kernel::tree_keep, Phase::last, last);
+  }
+  b.own(Stage::impulses, true, last, count, true);
 }
 
 }  // namespace
 
-StepPlan make_plan(const PlanSignature& s) {
+std::span<const Access> accesses(const PlanEntry& entry) {
+  return entry.own ? std::span<const Access>(entry.own->accesses) : schema(entry.kernel).accesses;
+}
+Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }
+
+StepPlan make_plan(const PlanSignature& s, std::span<OwnKernel* const> own) {
   StepPlan plan;
   plan.substeps = s.substeps;
   leave_out(s, plan);
-  if (!s.bodies) return plan;
-  Builder b(s, plan);
-  for (std::uint8_t octave = 0; octave < octave_count; octave++)
+  if (!s.bodies && own.empty()) return plan;
+  Builder b(s, own, plan);
+  if (!s.bodies) own_alone(b, s);
+  for (std::uint8_t octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> octave & 1) substeps(b, s, octave);
-  b.results(plan.entries.back().substep);
+  if (!plan.entries.empty()) b.results(plan.entries.back().substep);
   return plan;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "pcphys/plan.h"
 #include "world/schema.h"
@@ -38,6 +39,11 @@ struct PlanSignature {
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 
-StepPlan make_plan(const PlanSignature& signature);
+/// `own`: kernels of the host's own, in the order in which those of one moment run.
+StepPlan make_plan(const PlanSignature& signature, std::span<OwnKernel* const> own = {});
+
+/// Of a kernel, the library's or the host's own.
+std::span<const Access> accesses(const PlanEntry& entry);
+Stage stage(const PlanEntry& entry);
 
 }  // namespace pcphys

@@ -1,6 +1,7 @@
 // The plan as text, and the names in it.
 #include <string>
 
+#include "plan/own_kernels.h"
 #include "plan/plan.h"
 
 namespace pcphys {
@@ -8,13 +9,23 @@ namespace pcphys {
 const char* name(Integrator integrator) { return integrator == Integrator::seed ? "seed" : "verlet"; }
 const char* name(Place place) { return place == Place::cpu ? "cpu" : "gl"; }
 std::string_view kernel_name(const PlanEntry& entry) {
-  return entry.kind == PlanEntry::Kind::kernel ? schema(entry.kernel).name : std::string_view();
+  if (entry.kind != PlanEntry::Kind::kernel) return {};
+  return entry.own ? std::string_view(entry.own->name) : schema(entry.kernel).name;
 }
+namespace {
+/// A buffer's name; of the host's own that of the property, as the kernel calls it.
+std::string_view buffer_name(Buffer buffer, const OwnKernel* user) {
+  if (!is_own(buffer)) return schema(buffer).name;
+  for (const OwnArgument& a : user->arguments)
+    if (a.kind != OwnArgument::Kind::parameter && a.buffer == buffer) return a.name;
+  return {};
+}
+}  // namespace
 std::string_view buffer_name(const PlanEntry& entry) {
-  return entry.kind == PlanEntry::Kind::kernel ? std::string_view() : schema(entry.buffer).name;
+  return entry.kind == PlanEntry::Kind::kernel ? std::string_view() : buffer_name(entry.buffer, entry.own);
 }
 std::string_view stage_name(const PlanEntry& entry) {
-  return entry.kind == PlanEntry::Kind::kernel ? name(schema(entry.kernel).stage) : std::string_view("transfer");
+  return entry.kind == PlanEntry::Kind::kernel ? name(stage(entry)) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
   constexpr std::string_view names[phase_count] = {"first", "biased", "relax", "last"};
@@ -25,8 +36,8 @@ namespace {
 std::vector<std::string_view> accessed(const PlanEntry& entry, bool write) {
   std::vector<std::string_view> names;
   if (entry.kind != PlanEntry::Kind::kernel) return names;
-  for (const Access& a : schema(entry.kernel).accesses)
-    if (a.write == write) names.push_back(schema(a.buffer).name);
+  for (const Access& a : accesses(entry))
+    if (a.write == write) names.push_back(buffer_name(a.buffer, entry.own));
   return names;
 }
 void pad(std::string& line, std::size_t column) { line.resize(line.size() < column ? column : line.size() + 1, ' '); }

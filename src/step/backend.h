@@ -5,9 +5,11 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "pcphys/result.h"
 #include "pcphys/types.h"
+#include "plan/own_kernels.h"
 #include "world/schema.h"
 
 namespace pcphys {
@@ -28,6 +30,8 @@ struct KernelRun {
   std::uint32_t info;   // which of the blocks of `set_infos`
   std::uint32_t lanes;  // one of `width_for`
   std::span<const Range> ranges;
+  const OwnKernel* own =
+      nullptr;  // a kernel of the host's own in its place; over rows themselves where its table is not of bodies
 };
 
 class Backend {
@@ -53,6 +57,9 @@ class Backend {
 
   /// All info blocks of a step, `count` times InfoOf<Scalar>, in the precision of the world.
   virtual Status set_infos(const void* infos, std::size_t count) = 0;
+  /// Makes what a kernel of the host's own needs to run here, unless it is there. Errors: unavailable where it has no text for
+  /// this place; device_error with what the GL compiler said, in the lines of the host's own text.
+  virtual Status prepare(const OwnKernel& kernel) { return (void)kernel, Status{}; }
   /// Runs kernels, one after the other.
   virtual Status run(std::span<const KernelRun> runs) = 0;
   /// Takes down a flag that kernels raise (PC_RAISE: the last real of quad `quad` of a buffer's first row) and says whether it

@@ -1,7 +1,7 @@
 // What a step has overwritten in the tables, as it was: a device may fail after that.
 #pragma once
-#include <array>
 #include <cstring>
+#include <vector>
 
 #include "world/tables.h"
 
@@ -11,6 +11,7 @@ class Rollback {
  public:
   /// Before the first change of a buffer in a step; later calls do nothing.
   void keep(const Tables& tables, Buffer buffer) {
+    if (copies_.size() <= std::size_t(buffer)) copies_.resize(std::size_t(buffer) + 1);
     Copy& copy = copies_[std::size_t(buffer)];
     if (copy.kept) return;
     copy.kept = true;
@@ -21,8 +22,8 @@ class Rollback {
 
   /// What was kept in this step, or null.
   const AlignedBytes* before(Buffer buffer) const {
-    const Copy& copy = copies_[std::size_t(buffer)];
-    return copy.kept ? &copy.bytes : nullptr;
+    return copies_.size() > std::size_t(buffer) && copies_[std::size_t(buffer)].kept ? &copies_[std::size_t(buffer)].bytes
+                                                                                     : nullptr;
   }
 
   /// The step was made.
@@ -32,7 +33,7 @@ class Rollback {
 
   /// The step failed. To devices that hold a copy this is one more change.
   void put_back(Tables& tables) {
-    for (std::size_t b = 0; b < table_buffer_count; b++) {
+    for (std::size_t b = 0; b < copies_.size(); b++) {
       if (!copies_[b].kept) continue;
       AlignedBytes& now = tables.bytes(Buffer(b));
       std::memcpy(now.data(), copies_[b].bytes.data(), now.size());
@@ -46,7 +47,7 @@ class Rollback {
     AlignedBytes bytes;  // kept from step to step
     bool kept = false;
   };
-  std::array<Copy, table_buffer_count> copies_;
+  std::vector<Copy> copies_;  // by Buffer
 };
 
 }  // namespace pcphys

@@ -17,10 +17,13 @@ Timer timer_of(Stage stage) {
 Timer timer_of(const PlanEntry& entry) {
   if (entry.kind == PlanEntry::Kind::upload) return Timer::upload;
   if (entry.kind == PlanEntry::Kind::download) return Timer::download;
-  return timer_of(schema(entry.kernel).stage);
+  return timer_of(stage(entry));
 }
 
-bool takes_part(Place place, const StepSettings& s) { return s.integrate == place || s.joints == place || s.impulses == place; }
+bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
+  if (s.integrate == place || s.joints == place || s.impulses == place) return true;
+  return std::ranges::any_of(own.ordered(), [&](const OwnKernel* k) { return place == Place::gl ? !k->loop : k->body.empty(); });
+}
 
 std::size_t info_index(const PlanEntry& entry) { return std::size_t{entry.octave} * phase_count + std::size_t(entry.phase); }
 /// Where contact_impact raises its flag.
@@ -89,7 +92,7 @@ std::size_t slots_of(Buffer buffer, Domain domain, const Schedule& schedule) {
   return (of_joints(domain) ? schedule.joints : schedule.contacts).slots();
 }
 std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule& schedule) {
-  if (buffer < Buffer::table_buffers) return state.tables.version(buffer) + 1;
+  if (of_table(buffer)) return state.tables.version(buffer) + 1;
   if (buffer == Buffer::bodies) return schedule.bodies_version + 1;
   if (buffer == Buffer::joint_ends || buffer == Buffer::joint_order || buffer == Buffer::joint_paths)
     return schedule.joints.version() + 1;
@@ -110,8 +113,8 @@ std::string Runner::device(Place place) const {
   return d.backend ? d.backend->device() : std::string();
 }
 
-Status Runner::prepare(const StepSettings& s, Precision precision) {
-  gl_ = takes_part(Place::gl, s);
+Status Runner::prepare(const StepSettings& s, Precision precision, const OwnKernels& own) {
+  gl_ = takes_part(Place::gl, s, own);
   if (!workers_ || threads_ != s.threads) {
     bound_ = {};
     at(Place::cpu) = {};
@@ -120,7 +123,7 @@ Status Runner::prepare(const StepSettings& s, Precision precision) {
   }
   for (Place place : {Place::cpu, Place::gl}) {
     Device& d = at(place);
-    d.takes_part = takes_part(place, s);
+    d.takes_part = takes_part(place, s, own);
     if (!d.takes_part) continue;
     const bool fits = d.backend && d.precision == precision &&
                       (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
@@ -142,10 +145,11 @@ Status Runner::prepare(const StepSettings& s, Precision precision) {
 
 void Runner::forget() {
   bound_ = {};
-  for (Device& d : devices_) d.copies = {};
+  for (Device& d : devices_) d.copies.clear();
 }
 
 bool Runner::keeps(Buffer buffer) const {
+  if (is_own(buffer)) return true;
   const bool lasts = holds(buffer, Role::state) || holds(buffer, Role::input);
   const Table table = schema(buffer).table;
   return (lasts || gl_) && table != Table::contact && table != Table::node;
@@ -163,7 +167,7 @@ void Runner::undo(WorldState& state) {
 
 Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes) {
   Device& d = at(place);
-  Copy& copy = d.copies[std::size_t(buffer)];
+  Copy& copy = d.copy(buffer);
   if (copy.host == host && copy.bytes == bytes) return {};
   if (place == Place::gl && copy.bytes != bytes) copy.version = 0;
   copy.host = host;
@@ -188,7 +192,7 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
   for (const PlanBinding& b : plan.bindings) {
     Status ok;
     if (b.buffer == Buffer::contact) exchanged_.push_back(b.place);
-    if (b.buffer < Buffer::table_buffers) {
+    if (of_table(b.buffer)) {
       ok = attach_table(b.place, b.buffer, state);
     } else {
       pack(b.domain, lanes(b.place, b.domain, schedule), schedule);
@@ -199,14 +203,17 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
     }
     if (!ok) return ok;
   }
-  prepare_calls(plan, settings.timings, schedule);
+  for (const PlanEntry& entry : plan.entries)
+    if (entry.own && entry.kind == PlanEntry::Kind::kernel)
+      if (Status ok = at(entry.place).backend->prepare(*entry.own); !ok) return ok;
+  prepare_calls(plan, settings.timings, state, schedule);
   bound_ = now;
   return {};
 }
 
 Status Runner::upload(Buffer buffer, std::uint64_t version, StepReport& report) {
   Device& d = at(Place::gl);
-  Copy& copy = d.copies[std::size_t(buffer)];
+  Copy& copy = d.copy(buffer);
   if (copy.version == version) return {};
   copy.version = version;
   report.transfer_bytes += copy.bytes;
@@ -215,7 +222,7 @@ Status Runner::upload(Buffer buffer, std::uint64_t version, StepReport& report) 
 
 Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& report) {
   Device& d = at(Place::gl);
-  Copy& copy = d.copies[std::size_t(entry.buffer)];
+  Copy& copy = d.copy(entry.buffer);
   report.transfer_bytes += copy.bytes;
   if (Status ok = d.backend->download(entry.buffer); !ok) return ok;
   state.tables.touch(entry.buffer);
@@ -228,7 +235,8 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
 }
 
 /// Empty ranges are left out, and those that need not follow one another are joined.
-void Runner::add_run(const PlanEntry& entry, const Schedule& schedule) {
+void Runner::add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule) {
+  if (entry.own) return add_own(entry, state, schedule);
   const KernelSchema& k = schema(entry.kernel);
   const bool coloured = needs_colours(entry.kernel);
   const std::size_t first = ranges_.size();
@@ -247,7 +255,21 @@ void Runner::add_run(const PlanEntry& entry, const Schedule& schedule) {
                    {static_cast<const Range*>(nullptr), ranges_.size() - first}});
 }
 
-void Runner::prepare_calls(const StepPlan& plan, bool timings, const Schedule& schedule) {
+void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule) {
+  const std::size_t first = ranges_.size();
+  if (entry.own->table == Table::body)
+    for (const Range& range : schedule.ranges(entry.octave)) ranges_.push_back(range);
+  else
+    ranges_.push_back({1, state.tables.rows(entry.own->table)});
+  runs_.push_back({Kernel::begin,
+                   entry.barrier,
+                   std::uint32_t(info_index(entry)),
+                   1,
+                   {static_cast<const Range*>(nullptr), ranges_.size() - first},
+                   entry.own});
+}
+
+void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState& state, const Schedule& schedule) {
   calls_.clear();
   runs_.clear();
   ranges_.clear();
@@ -260,7 +282,7 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, const Schedule& s
                        before->again == 0 && entry.again == 0 && !clocked && !(gl_ && entry.place == Place::cpu);
     if (!joins) calls_.push_back({&entry, std::uint32_t(runs_.size()), 0, false});
     if (kernel) {
-      add_run(entry, schedule);
+      add_run(entry, state, schedule);
       calls_.back().count++;
     }
     before = &entry;
@@ -282,8 +304,8 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   const std::span<const KernelRun> runs(runs_.data() + call.first, call.count);
   Backend& backend = *at(entry.place).backend;
   if (gl_ && entry.place == Place::cpu && !runs[0].ranges.empty())
-    for (const Access& a : schema(entry.kernel).accesses)
-      if (a.write && a.buffer < Buffer::table_buffers) state.tables.touch(a.buffer);
+    for (const Access& a : accesses(entry))
+      if (a.write && of_table(a.buffer)) state.tables.touch(a.buffer);
   if (entry.again == 0) return backend.run(runs);
   if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
   for (std::uint32_t i = 0; i < entry.again; i++) {

@@ -17,7 +17,8 @@ namespace pcphys {
 class Runner {
  public:
   /// Makes the backends that the settings ask for, keeping those that still fit.
-  Status prepare(const StepSettings& settings, Precision precision);
+  /// `own`: kernels of the host's own, which may want a place that no stage is put on.
+  Status prepare(const StepSettings& settings, Precision precision, const OwnKernels& own = {});
   /// Everything a plan binds: lists and colours packed for their backends, buffers attached. Where nothing of it has changed since
   /// the last step, that step's bindings stand. The plan stays where it is until another one is bound.
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
@@ -33,6 +34,10 @@ class Runner {
   void drop() { rollback_.drop(); }
   /// The step failed: the tables as they were before it, and a device that is asked for nothing more of it.
   void undo(WorldState& state);
+  /// What a kernel of the host's own would say there. After `prepare`.
+  Status check(Place place, const OwnKernel& kernel) { return at(place).backend->prepare(kernel); }
+  /// The plans that were bound are gone.
+  void unbind() { bound_ = {}; }
   /// What the devices hold is not the data of the world that comes.
   void forget();
   std::string device(Place place) const;
@@ -51,8 +56,12 @@ class Runner {
     std::uint32_t lanes = 0;  // that were asked for
     int index = -1;
     bool host_context = false;
-    bool takes_part = false;  // in the steps that come
-    std::array<Copy, buffer_count> copies{};
+    bool takes_part = false;   // in the steps that come
+    std::vector<Copy> copies;  // by Buffer
+    Copy& copy(Buffer buffer) {
+      if (copies.size() <= std::size_t(buffer)) copies.resize(std::size_t(buffer) + 1);
+      return copies[std::size_t(buffer)];
+    }
   };
 
   /// What a step's bindings follow from. (The table of contacts, which changes places with its next one in each step, is
@@ -76,8 +85,9 @@ class Runner {
   std::uint32_t lanes(Place place, Domain domain, const Schedule& schedule);
   Status attach_table(Place place, Buffer buffer, WorldState& state);
   /// Finds calls_, and what undo must find.
-  void prepare_calls(const StepPlan& plan, bool timings, const Schedule& schedule);
-  void add_run(const PlanEntry& entry, const Schedule& schedule);
+  void prepare_calls(const StepPlan& plan, bool timings, const WorldState& state, const Schedule& schedule);
+  void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
+  void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
   Status kernels(const Call& call, WorldState& state);
   bool keeps(Buffer buffer) const;

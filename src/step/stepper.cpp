@@ -15,6 +15,7 @@
 #include "plan/infos.h"
 #include "plan/octaves.h"
 #include "plan/plan.h"
+#include "step/own_forces.h"
 #include "step/processor_state.h"
 #include "step/runner.h"
 #include "step/schedule.h"
@@ -84,6 +85,8 @@ struct Stepper::Inside {
   Runner runner;
   StepReport report;
   std::deque<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few; they stay where they are
+  OwnKernels own;                                        // of the host
+  std::uint64_t own_serial = 0;                          // of the world that they are of
   const StepPlan* plan = nullptr;
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
@@ -135,7 +138,29 @@ struct Stepper::Inside {
   const StepPlan& find_plan(const PlanSignature& wanted) {
     for (const auto& [signature, plan] : plans)
       if (signature == wanted) return plan;
-    return plans.emplace_back(wanted, make_plan(wanted)).second;
+    return plans.emplace_back(wanted, make_plan(wanted, own.ordered())).second;
+  }
+
+  /// Kernels of the host's own came or went.
+  void own_changed() {
+    plans.clear();
+    plan = nullptr;
+    runner.unbind();
+    prepared.reset();
+  }
+  /// Compiles it where it is to run, while it can still be refused.
+  Status check_kernel(const WorldState& s, const OwnKernel& kernel) {
+    const Place stage_place = std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
+    const Place place = kernel.body.empty() ? Place::cpu : !kernel.loop ? Place::gl : stage_place;
+    if (stage_place == Place::gl && kernel.body.empty()) return {};  // runs on the CPU; the plan shows what goes to and fro
+    if (place == Place::cpu) return {};
+    if (Status ok = prepare(s.tables.precision()); !ok) return ok;
+    return runner.check(place, kernel);
+  }
+  Status check_own(const WorldState& s) {
+    if (own.empty() || own_serial == s.serial) return {};
+    return Error{ErrorCode::bad_argument,
+                 "This stepper has kernels of another world (Stepper::add_kernel); step that one, or use another stepper."};
   }
 
   template <class Scalar> void fill_octaves(InfoOf<Scalar> (&infos)[octave_count][phase_count]) {
@@ -174,7 +199,8 @@ struct Stepper::Inside {
   /// Forces of callbacks on top of the constant ones.
   void add_called(WorldState& s) {
     if (called.empty()) return;
-    runner.keep(s, Buffer::force);
+    runner.keep(s, s.gathered ? s.gathered->force : Buffer::force);
+    if (s.gathered) runner.keep(s, s.gathered->torque);
     for (const ForceRecord& f : s.forces)
       if (f.callback) s.sum_forces(s.body_ids.row(f.body));
     std::size_t i = 0;
@@ -182,14 +208,13 @@ struct Stepper::Inside {
       if (!f.callback) continue;
       const std::uint32_t row = s.body_ids.row(f.body);
       const Wrench& w = called[i++];
-      s.tables.set3(Buffer::force, row, 0, s.tables.get3(Buffer::force, row, 0) + w.force);
-      s.tables.set3(Buffer::force, row, 4, s.tables.get3(Buffer::force, row, 4) + w.torque);
+      s.give_forces(row, s.given_force(row) + w.force, s.given_torque(row) + w.torque);
     }
   }
 
   Status prepare(Precision precision) {
     prepared.reset();
-    Status ok = runner.prepare(settings, precision);
+    Status ok = runner.prepare(settings, precision, own);
     if (ok) prepared = precision;
     return ok;
   }
@@ -197,6 +222,7 @@ struct Stepper::Inside {
   Status step(World& world, double dt) {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
+    if (ok) ok = check_own(s);
     if (ok && !checked) ok = check_settings(settings);
     checked = bool(ok);
     if (ok && !(s.gravity == sound_gravity)) {
@@ -368,7 +394,54 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.tree_contacts = wanted.shapes && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
-  return make_plan(wanted);
+  return make_plan(wanted, in.own.ordered());
+}
+
+Status Stepper::add_kernel(World& world, const KernelDef& def) {
+  Inside& in = *inside_;
+  WorldState& s = world.state();
+  if (!in.own.empty() && in.own_serial != s.serial) {
+    in.own.clear();
+    in.own_changed();
+  }
+  auto kernel = resolve(s, def);
+  if (!kernel) return kernel.error();
+  const OwnKernel& added = **kernel;
+  const std::string name = added.name;
+  const bool forces = added.writes(Buffer::force) && !s.gathered;
+  if (Status ok = in.own.add(std::move(*kernel)); !ok) return ok;
+  in.own_serial = s.serial;
+  in.own_changed();
+  Status ok = in.check_kernel(s, added);
+  if (ok && forces) {
+    gather_forces(s);
+    auto begin = resolve(s, gathering(def.once_a_step));
+    ok = begin ? in.own.add(std::move(*begin)) : Status(begin.error());
+    if (!ok) stop_gathering(s);
+  }
+  if (!ok) (void)in.own.remove(name);
+  return ok;
+}
+
+Status Stepper::remove_kernel(World& world, std::string_view name) {
+  Inside& in = *inside_;
+  WorldState& s = world.state();
+  if (Status ok = in.check_own(s); !ok) return ok;
+  if (Status ok = in.own.remove(name); !ok) return ok;
+  in.own_changed();
+  const auto makes_forces = [](const OwnKernel* k) { return k->writes(Buffer::force) && !k->name.starts_with("pc_"); };
+  if (s.gathered && std::ranges::none_of(in.own.ordered(), makes_forces)) {
+    (void)in.own.remove("pc_gather_forces");
+    stop_gathering(s);
+  }
+  return {};
+}
+
+Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& parameter) {
+  OwnKernel* k = inside_->own.find(kernel);
+  if (!k)
+    return Error{ErrorCode::unknown_name, "There is no kernel \"" + std::string(kernel) + "\"; Stepper::add_kernel adds one."};
+  return set(*k, parameter);
 }
 
 std::string Stepper::device(Place place) const { return inside_->runner.device(place); }

@@ -134,8 +134,7 @@ Status World::destroy(BodyId body) {
   if (!s.body_ids.valid(body)) return stale("body");
   if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
   for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
-    if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index)
-      s.remove_joint(row);
+    if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index) s.remove_joint(row);
   const std::uint32_t row = s.body_ids.row(body.index), last = std::uint32_t(s.bodies.size()) - 1;
   for (std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
   for (std::uint32_t shape : s.bodies[row].shapes) {
@@ -161,6 +160,10 @@ std::vector<BodyId> World::bodies() const {
 Result<std::uint32_t> World::row_of(BodyId body) const {
   if (!valid(body)) return stale("body");
   return state_->body_ids.row(body.index);
+}
+Result<std::uint32_t> World::row_of(JointId joint) const {
+  if (!valid(joint)) return stale("joint");
+  return state_->joint_ids.row(joint.index);
 }
 Result<bool> World::frozen(BodyId body) const {
   if (!valid(body)) return stale("body");

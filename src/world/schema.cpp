@@ -84,17 +84,5 @@ std::string_view name(Stage stage) {
   constexpr std::string_view names[] = {"integrate", "joints", "impulses"};
   return names[std::size_t(stage)];
 }
-std::string_view name(Role role) {
-  constexpr std::string_view names[] = {"input", "state", "derived", "scratch"};
-  return names[std::size_t(role)];
-}
-std::string_view name(PropertyType type) {
-  constexpr std::string_view names[] = {"real", "vec3", "quat", "sym3"};
-  return names[std::size_t(type)];
-}
-std::uint32_t components(PropertyType type) {
-  constexpr std::uint32_t counts[] = {1, 3, 4, 6};
-  return counts[std::size_t(type)];
-}
 
 }  // namespace pcphys

@@ -5,6 +5,9 @@
 #include <span>
 #include <string_view>
 
+#include "pcphys/plan.h"
+#include "pcphys/property.h"
+
 namespace pcphys {
 
 enum class Table : std::uint8_t {
@@ -19,7 +22,7 @@ enum class Table : std::uint8_t {
 };
 
 /// Everything a kernel can bind. First the tables' buffers (role of a world), then what a step makes.
-enum class Buffer : std::uint8_t {
+enum class Buffer : std::uint16_t {
 #define PC_TABLE(table, doc)
 #define PC_BUFFER(table, buffer, quads, doc) buffer,
 #define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
@@ -55,15 +58,18 @@ enum class Kernel : std::uint8_t {
 /// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others. joint: all that stand in
 /// no tree; free_joint and tree_joint: the same of these.
 enum class Domain : std::uint8_t { body, contact, free_contact, tree_contact, joint, free_joint, tree_joint, tree };
-enum class Stage : std::uint8_t { integrate, joints, impulses };
-enum class PropertyType : std::uint8_t { real, vec3, quat, sym3 };
-enum class Role : std::uint8_t { input, state, derived, scratch };
 
 inline constexpr std::size_t table_count = std::size_t(Table::count);
 inline constexpr std::size_t table_buffer_count = std::size_t(Buffer::table_buffers);
 inline constexpr std::size_t buffer_count = std::size_t(Buffer::count);
 inline constexpr std::size_t kernel_count = std::size_t(Kernel::count);
 inline constexpr std::size_t stage_count = 3;
+
+/// Where a host's own property number k stands (World::add_property): behind all that kernels.inl and properties.inl name.
+constexpr Buffer own_buffer(std::size_t k) { return Buffer(buffer_count + k); }
+constexpr bool is_own(Buffer buffer) { return std::size_t(buffer) >= buffer_count; }
+/// Whether rows of some table stand in it, the host's own included.
+constexpr bool of_table(Buffer buffer) { return std::size_t(buffer) < table_buffer_count || is_own(buffer); }
 
 struct BufferSchema {
   std::string_view name;
@@ -115,10 +121,6 @@ std::span<const PropertySchema> properties();
 /// Whether some property of this role stands in it.
 bool holds(Buffer buffer, Role role);
 std::string_view name(Table table);
-std::string_view name(Stage stage);
-std::string_view name(Role role);
-std::string_view name(PropertyType type);
-std::uint32_t components(PropertyType type);
 
 /// What kernels are told besides buffers (src/kernels/info.inl), in the precision of the world.
 template <class Scalar> struct InfoOf {
@@ -126,5 +128,14 @@ template <class Scalar> struct InfoOf {
 #include "kernels/info.inl"
 #undef PC_INFO_FIELD
 };
+
+/// Where a field stands in it, in reals.
+namespace info_field {
+enum : std::uint32_t {
+#define PC_INFO_FIELD(name, doc) name,
+#include "kernels/info.inl"
+#undef PC_INFO_FIELD
+};
+}  // namespace info_field
 
 }  // namespace pcphys

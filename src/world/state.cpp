@@ -160,15 +160,18 @@ void WorldState::sum_forces(std::uint32_t row) {
     force = force + forces[f].wrench.force;
     torque = torque + forces[f].wrench.torque;
   }
-  tables.set3(Buffer::force, row, 0, force);
-  tables.set3(Buffer::force, row, 4, torque);
+  give_forces(row, force, torque);
+}
+
+void WorldState::give_forces(std::uint32_t row, Vec3 force, Vec3 torque) {
+  tables.set3(gathered ? gathered->force : Buffer::force, row, 0, force);
+  tables.set3(gathered ? gathered->torque : Buffer::force, row, gathered ? 0 : 4, torque);
 }
 
 void WorldState::change_forces(std::uint32_t row) {
-  const Vec3 force = tables.get3(Buffer::force, row, 0), torque = tables.get3(Buffer::force, row, 4);
+  const Vec3 force = given_force(row), torque = given_torque(row);
   sum_forces(row);
-  kick(row, tables.get(Buffer::motion, row, 3) * (tables.get3(Buffer::force, row, 0) - force),
-       tables.get3(Buffer::force, row, 4) - torque);
+  kick(row, tables.get(Buffer::motion, row, 3) * (given_force(row) - force), given_torque(row) - torque);
 }
 
 void WorldState::kick(std::uint32_t row, Vec3 acceleration, Vec3 torque) {

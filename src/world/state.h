@@ -8,6 +8,7 @@
 
 #include "pcphys/world.h"
 #include "world/id_pool.h"
+#include "world/own_properties.h"
 #include "world/tables.h"
 
 namespace pcphys {
@@ -82,6 +83,7 @@ struct WorldState {
   std::vector<ForceRecord> forces;  // by force index
   std::uint32_t callbacks = 0;      // how many of them are callbacks
   ContactColumns contacts;
+  OwnProperties own;
   std::unordered_map<std::uint32_t, MassProperties> frozen;  // by body index
   std::unordered_map<std::uint64_t, NoCollide> no_collide;   // by pair_key; only pairs with a reason
 
@@ -112,6 +114,9 @@ struct WorldState {
   std::uint32_t contact_rows() const { return tables.rows(Table::contact); }
   static std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a); }
 
+  /// stale_id where there is none.
+  Result<Table> table_of(TableId id) const;
+
   /// Whether forces and impulses act on it.
   bool responds(std::uint32_t row) const { return bodies[row].kind == BodyKind::dynamic && !bodies[row].frozen; }
   bool stands(std::uint32_t row) const { return bodies[row].kind == BodyKind::fixed || bodies[row].frozen; }
@@ -138,6 +143,18 @@ struct WorldState {
   void set_mass(std::uint32_t row, const MassProperties& mass);
   /// Takes a force out of the world's list, not out of its body's.
   void drop_force(std::uint32_t force);
+  /// Of constants and callbacks. Where kernels of the host's own make forces (`gathered`), they begin with these.
+  struct Gathered {
+    Buffer force, torque;
+  };
+  std::optional<Gathered> gathered;
+  Vec3 given_force(std::uint32_t row) const {
+    return gathered ? tables.get3(gathered->force, row, 0) : tables.get3(Buffer::force, row, 0);
+  }
+  Vec3 given_torque(std::uint32_t row) const {
+    return gathered ? tables.get3(gathered->torque, row, 0) : tables.get3(Buffer::force, row, 4);
+  }
+  void give_forces(std::uint32_t row, Vec3 force, Vec3 torque);
   /// Writes the sum of a body's constant forces into the table.
   void sum_forces(std::uint32_t row);
   /// The same when the host has changed them: they act from now on.

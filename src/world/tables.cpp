@@ -1,51 +1,109 @@
 #include "world/tables.h"
 
 #include <cassert>
+#include <utility>
 
 namespace pcphys {
 
-Tables::Tables(Precision precision) : precision_(precision) {
+Tables::Tables(Precision precision) : precision_(precision), columns_(table_buffer_count), rows_(table_count, 0) {
+  for (std::size_t b = 0; b < table_buffer_count; b++) add_listed(Buffer(b));
   // row 0 of every table is the padding row
   for (std::size_t t = 0; t < table_count; t++) resize(Table(t), 1);
 }
 
-void Tables::resize(Table table, std::uint32_t rows) {
-  const std::uint32_t before = rows_[std::size_t(table)];
-  layout_++;
-  for (std::size_t b = 0; b < table_buffer_count; b++)
-    if (schema(Buffer(b)).table == table) {
-      bytes_[b].resize(rows * row_bytes(Buffer(b)));
-      versions_[b]++;
-    }
-  rows_[std::size_t(table)] = rows;
+void Tables::add_listed(Buffer buffer) {
+  Column& column = at(buffer);
+  column.used = true;
+  column.table = schema(buffer).table;
+  column.row_bytes = schema(buffer).reals * real_bytes();
+  column.initial.resize(column.row_bytes);
+  const auto put = [&](std::uint32_t offset, double value) {
+    if (precision_ == Precision::f32)
+      reinterpret_cast<float*>(column.initial.data())[offset] = float(value);
+    else
+      reinterpret_cast<double*>(column.initial.data())[offset] = value;
+  };
   for (const PropertySchema& p : properties()) {
-    if (p.table != table || p.initial == 0) continue;
-    for (std::uint32_t row = before; row < rows; row++) {
-      if (p.type == PropertyType::quat)
-        set(p.buffer, row, p.offset + 3, p.initial);
-      else
-        for (std::uint32_t c = 0; c < components(p.type); c++) set(p.buffer, row, p.offset + c, p.initial);
-    }
+    if (p.buffer != buffer || p.initial == 0) continue;
+    const bool turn = p.type == PropertyType::quat;
+    for (std::uint32_t c = turn ? 3 : 0; c < components(p.type); c++) put(p.offset + c, p.initial);
   }
+}
+
+void Tables::fill(Column& column, std::uint32_t before, std::uint32_t rows) {
+  const std::size_t n = column.row_bytes;
+  column.bytes.resize(rows * n);
+  for (std::uint32_t row = before; row < rows; row++) std::memcpy(column.bytes.data() + row * n, column.initial.data(), n);
+  column.version++;
+}
+
+void Tables::resize(Table table, std::uint32_t rows) {
+  const std::uint32_t before = std::exchange(rows_[std::size_t(table)], rows);
+  layout_++;
+  for (Column& column : columns_)
+    if (column.used && column.table == table) fill(column, before, rows);
 }
 
 void Tables::copy_row(Table table, std::uint32_t from, std::uint32_t to) {
-  for (std::size_t b = 0; b < table_buffer_count; b++) {
-    if (schema(Buffer(b)).table != table) continue;
-    const std::size_t n = row_bytes(Buffer(b));
-    versions_[b]++;
-    std::memcpy(bytes_[b].data() + to * n, bytes_[b].data() + from * n, n);
+  for (Column& column : columns_) {
+    if (!column.used || column.table != table) continue;
+    const std::size_t n = column.row_bytes;
+    column.version++;
+    std::memcpy(column.bytes.data() + to * n, column.bytes.data() + from * n, n);
   }
 }
 
+Buffer Tables::add(Table table, std::span<const std::byte> initial) {
+  std::size_t k = table_buffer_count;
+  while (k < columns_.size() && columns_[k].used) k++;
+  if (k == columns_.size()) columns_.emplace_back();
+  Column& column = columns_[k];
+  const std::uint64_t version = column.version;  // goes on: a device may still hold what stood here before
+  column = {};
+  column.used = true;
+  column.table = table;
+  column.row_bytes = initial.size();
+  column.initial.resize(initial.size());
+  std::memcpy(column.initial.data(), initial.data(), initial.size());
+  column.version = version;
+  fill(column, 0, rows(table));
+  layout_++;
+  return own_buffer(k - table_buffer_count);
+}
+
+void Tables::remove(Buffer own) {
+  const std::uint64_t version = at(own).version;
+  at(own) = {};
+  at(own).version = version + 1;
+  layout_++;
+}
+
+Table Tables::add_table() {
+  std::size_t t = table_count;
+  while (t < rows_.size() && rows_[t] > 0) t++;
+  if (t == rows_.size()) rows_.push_back(0);
+  rows_[t] = 1;
+  return Table(t);
+}
+
+void Tables::remove_table(Table own) {
+  for (std::size_t k = table_buffer_count; k < columns_.size(); k++)
+    if (columns_[k].used && columns_[k].table == own) remove(own_buffer(k - table_buffer_count));
+  rows_[std::size_t(own)] = 0;
+}
+
+void Tables::touch_all() {
+  for (Column& column : columns_) column.version++;
+}
+
 double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
-  assert(row < rows(schema(buffer).table));
-  const std::size_t i = std::size_t(row) * schema(buffer).reals + offset;
+  assert(row < rows(at(buffer).table));
+  const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
   return precision_ == Precision::f32 ? double(data<float>(buffer)[i]) : data<double>(buffer)[i];
 }
 void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
-  assert(row < rows(schema(buffer).table));
-  const std::size_t i = std::size_t(row) * schema(buffer).reals + offset;
+  assert(row < rows(at(buffer).table));
+  const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
   if (precision_ == Precision::f32)
     data<float>(buffer)[i] = float(value);
   else
@@ -70,7 +128,7 @@ void Tables::set4(Buffer buffer, std::uint32_t row, std::uint32_t offset, Quat q
 
 std::size_t Tables::memory_bytes() const {
   std::size_t sum = 0;
-  for (const AlignedBytes& b : bytes_) sum += b.capacity();
+  for (const Column& column : columns_) sum += column.bytes.capacity() + column.initial.capacity();
   return sum;
 }
 

@@ -1,8 +1,8 @@
 // The storage of all tables: one aligned block of bytes a buffer, in the precision of the world.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "pcphys/math.h"
 #include "pcphys/types.h"
@@ -18,33 +18,41 @@ class Tables {
   Precision precision() const { return precision_; }
   std::size_t real_bytes() const { return precision_ == Precision::f32 ? 4 : 8; }
   std::uint32_t rows(Table table) const { return rows_[std::size_t(table)]; }
-  std::size_t row_bytes(Buffer buffer) const { return schema(buffer).reals * real_bytes(); }
+  std::size_t row_bytes(Buffer buffer) const { return at(buffer).row_bytes; }
 
   /// New rows hold every property's initial value.
   void resize(Table table, std::uint32_t rows);
   void copy_row(Table table, std::uint32_t from, std::uint32_t to);
 
+  /// A buffer of the host's own beside those of the table; all rows hold `initial`, which is as long as a row.
+  Buffer add(Table table, std::span<const std::byte> initial);
+  void remove(Buffer own);
+  /// A table of the host's own, with a row that pads and no buffer.
+  Table add_table();
+  void remove_table(Table own);
+
   /// Takes over the rows of a table of one buffer, handing back those it had.
   void exchange(Table table, Buffer buffer, AlignedBytes& bytes, std::uint32_t rows) {
-    std::swap(bytes_[std::size_t(buffer)], bytes);
+    std::swap(at(buffer).bytes, bytes);
     rows_[std::size_t(table)] = rows;
     touch(buffer);
   }
 
-  AlignedBytes& bytes(Buffer buffer) { return bytes_[std::size_t(buffer)]; }
-  const AlignedBytes& bytes(Buffer buffer) const { return bytes_[std::size_t(buffer)]; }
+  AlignedBytes& bytes(Buffer buffer) { return at(buffer).bytes; }
+  const AlignedBytes& bytes(Buffer buffer) const { return at(buffer).bytes; }
   template <class Scalar> Scalar* data(Buffer buffer) { return reinterpret_cast<Scalar*>(bytes(buffer).data()); }
   template <class Scalar> const Scalar* data(Buffer buffer) const {
     return reinterpret_cast<const Scalar*>(bytes(buffer).data());
   }
 
   /// Counts the changes of a buffer, so that a device knows when its copy is old.
-  std::uint64_t version(Buffer buffer) const { return versions_[std::size_t(buffer)]; }
-  void touch(Buffer buffer) { versions_[std::size_t(buffer)]++; }
+  std::uint64_t version(Buffer buffer) const { return at(buffer).version; }
+  void touch(Buffer buffer) { at(buffer).version++; }
+  void touch_all();
   /// Counts the changes of where buffers stand and how long they are, but for what `exchange` does.
   std::uint64_t layout() const { return layout_; }
 
-  // one value at a time, in double, for the border
+  // one value at a time, in double, for the border; of buffers of reals
   double get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const;
   void set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value);
   Vec3 get3(Buffer buffer, std::uint32_t row, std::uint32_t offset) const;
@@ -55,10 +63,26 @@ class Tables {
   std::size_t memory_bytes() const;
 
  private:
+  struct Column {
+    bool used = false;
+    Table table{};
+    std::size_t row_bytes = 0;
+    AlignedBytes initial;  // one row
+    AlignedBytes bytes;
+    std::uint64_t version = 0;
+  };
+  /// Columns stand in the order of the list of buffers, the host's own behind them.
+  static std::size_t index(Buffer buffer) {
+    return is_own(buffer) ? std::size_t(buffer) - buffer_count + table_buffer_count : std::size_t(buffer);
+  }
+  Column& at(Buffer buffer) { return columns_[index(buffer)]; }
+  const Column& at(Buffer buffer) const { return columns_[index(buffer)]; }
+  void fill(Column& column, std::uint32_t before, std::uint32_t rows);
+  void add_listed(Buffer buffer);
+
   Precision precision_;
-  std::array<AlignedBytes, table_buffer_count> bytes_;
-  std::array<std::uint32_t, table_count> rows_{};
-  std::array<std::uint64_t, table_buffer_count> versions_{};
+  std::vector<Column> columns_;
+  std::vector<std::uint32_t> rows_;  // by Table; 0: removed
   std::uint64_t layout_ = 0;
 };
 

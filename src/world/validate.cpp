@@ -30,9 +30,10 @@ Status check_extent(double x, const char* what) {
 }  // namespace
 
 const char* name(ErrorCode code) {
-  constexpr const char* names[] = {"none",          "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion",
-                                   "bad_time_step", "stale_id",    "bad_joint",    "bad_argument",     "unknown_name",
-                                   "unavailable",   "buffer_full", "device_error", "bad_file",         "bad_snapshot"};
+  constexpr const char* names[] = {"none",          "not_finite",  "bad_mass",    "degenerate_shape", "not_unit_quaternion",
+                                   "bad_time_step", "stale_id",    "bad_joint",   "bad_argument",     "unknown_name",
+                                   "name_taken",    "wrong_type",  "unavailable", "buffer_full",      "device_error",
+                                   "bad_file",      "bad_snapshot"};
   return names[int(code)];
 }
 

@@ -1,0 +1,82 @@
+// Kernels of the host's own: their signatures read and resolved, and the order in which they run.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pcphys/kernel.h"
+#include "pcphys/result.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+struct OwnArgument {
+  enum class Kind : std::uint8_t { in, inout, out, parameter };
+  std::string name;
+  Kind kind = Kind::in;
+  PropertyType type = PropertyType::real;
+  // of a property
+  Buffer buffer{};
+  std::uint32_t offset = 0, row_bytes = 0;
+  // of a parameter: where it stands in OwnKernel::parameters; one of the library's own is known by its name
+  std::uint32_t place = 0;
+  bool given = false;  // by the library: h, gravity
+  bool writes() const { return kind == Kind::inout || kind == Kind::out; }
+};
+
+struct OwnKernel {
+  static constexpr std::size_t most_arguments = 32;
+
+  std::uint64_t serial = 0;  // another for each kernel of the process
+  std::string name, body, file;
+  int line = 0;
+  KernelLoop loop = nullptr;
+  Table table = Table::body;
+  Stage stage = Stage::integrate;
+  bool after = false, once_a_step = false;
+  std::vector<std::string> follows;
+  std::vector<OwnArgument> arguments;
+  std::vector<Access> accesses;       // each buffer once; of bodies the list of those that move first
+  std::size_t real_bytes = 4;         // of the world
+  std::vector<std::byte> parameters;  // in the world's precision, each from a multiple of `parameter_bytes` on
+  static constexpr std::size_t parameter_bytes = 12 * 8;
+
+  bool writes(Buffer buffer) const {
+    for (const Access& a : accesses)
+      if (a.buffer == buffer && a.write) return true;
+    return false;
+  }
+};
+
+/// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers), unknown_name, wrong_type.
+Result<std::unique_ptr<OwnKernel>> resolve(const WorldState& state, const KernelDef& def);
+
+/// Another value for a parameter. Errors: unknown_name, wrong_type, not_finite.
+Status set(OwnKernel& kernel, const KernelParameter& parameter);
+
+/// The kernels of a world in the order in which those of one moment run.
+class OwnKernels {
+ public:
+  /// Errors: name_taken, and bad_argument where two write the same anew or the order goes in a circle; nothing is added then.
+  Status add(std::unique_ptr<OwnKernel> kernel);
+  Status remove(std::string_view name);
+  OwnKernel* find(std::string_view name) const;
+  void clear();
+
+  std::span<OwnKernel* const> ordered() const { return ordered_; }
+  bool empty() const { return kernels_.empty(); }
+  /// Counts the changes.
+  std::uint64_t version() const { return version_; }
+
+ private:
+  Status order(std::vector<OwnKernel*>& out) const;
+
+  std::vector<std::unique_ptr<OwnKernel>> kernels_;  // as they were added
+  std::vector<OwnKernel*> ordered_;
+  std::uint64_t version_ = 0;
+};
+
+}  // namespace pcphys

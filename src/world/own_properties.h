@@ -1,0 +1,52 @@
+// The host's own properties and tables: names, types, and where they stand in Tables.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "world/tables.h"
+
+namespace pcphys {
+
+struct OwnProperty {
+  std::string name, unit;
+  PropertyType type = PropertyType::real;
+  Role role = Role::state;
+  Table table{};
+  Buffer buffer{};
+  std::uint32_t generation = 0;
+  bool used = false;
+};
+struct OwnTable {
+  std::string name;
+  Table table{};
+  std::uint32_t generation = 0;
+  bool used = false;
+};
+
+struct OwnProperties {
+  /// In the first free place; which.
+  std::uint32_t add(OwnProperty property);
+  std::vector<OwnProperty> list;  // property k has the handle properties().size() + k
+  std::vector<OwnTable> tables;   // table k has the id own_tables_from + k
+};
+inline constexpr std::uint32_t own_tables_from = 2;  // after bodies and joints
+
+/// Where a property's numbers stand in a row, the library's or the host's own.
+struct Field {
+  Buffer buffer{};
+  std::uint32_t offset = 0, bytes = 0;  // in the row
+  PropertyType type = PropertyType::real;
+};
+/// Fields of a role, the library's first, in the order of the lists.
+std::vector<Field> fields(const Tables& tables, const OwnProperties& own, Table table, Role role);
+
+/// Bytes of a number of that type.
+std::size_t number_bytes(PropertyType type, std::size_t real_bytes);
+/// Of a row that holds one value and nothing else: vectors and matrices fill whole quads, as kernels read them.
+std::size_t own_row_bytes(PropertyType type, std::size_t real_bytes);
+double read_number(const std::byte* p, PropertyType type, std::size_t real_bytes);
+void write_number(std::byte* p, PropertyType type, std::size_t real_bytes, double value);
+
+}  // namespace pcphys

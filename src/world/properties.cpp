@@ -1,0 +1,300 @@
+// Properties by name and by handle: the library's, and those that a host adds.
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "world/state.h"
+#include "world/validate.h"
+
+namespace pcphys {
+namespace {
+
+std::string quoted(std::string_view text) { return "\"" + std::string(text) + "\""; }
+
+/// What is known of a property, whoever brought it.
+struct Found {
+  PropertyInfo info;
+  Table table{};
+  Buffer buffer{};
+  std::uint32_t offset = 0;  // bytes in the row
+  Id<struct AnyPropertyTag> id;
+};
+
+std::string_view table_name(const WorldState& s, Table table) {
+  for (const OwnTable& t : s.own.tables)
+    if (t.used && t.table == table) return t.name;
+  return name(table);
+}
+Found listed(const WorldState& s, std::uint32_t k) {
+  const PropertySchema& p = properties()[k];
+  return {{p.name, p.unit, name(p.table), p.type, p.role, false},
+          p.table,
+          p.buffer,
+          std::uint32_t(p.offset * s.tables.real_bytes()),
+          {k, 1}};
+}
+Found own(const WorldState& s, std::uint32_t k) {
+  const OwnProperty& p = s.own.list[k];
+  return {{p.name, p.unit, table_name(s, p.table), p.type, p.role, true},
+          p.table,
+          p.buffer,
+          0,
+          {std::uint32_t(pcphys::properties().size()) + k, p.generation}};
+}
+template <class Do> void each_property(const WorldState& s, Do&& what) {
+  for (std::uint32_t k = 0; k < properties().size(); k++) what(listed(s, k));
+  for (std::uint32_t k = 0; k < s.own.list.size(); k++)
+    if (s.own.list[k].used) what(own(s, k));
+}
+bool by_name(const WorldState& s, std::string_view name, Found& found) {
+  bool any = false;
+  each_property(s, [&](const Found& f) {
+    if (f.info.name == name) found = f, any = true;
+  });
+  return any;
+}
+bool by_id(const WorldState& s, std::uint32_t index, std::uint32_t generation, Found& found) {
+  const std::uint32_t listed_count = std::uint32_t(properties().size());
+  if (index < listed_count) {
+    found = listed(s, index);
+    return generation == 1;
+  }
+  const std::uint32_t k = index - listed_count;
+  if (k >= s.own.list.size() || !s.own.list[k].used || s.own.list[k].generation != generation) return false;
+  found = own(s, k);
+  return true;
+}
+Error unknown(std::string_view name) {
+  return {ErrorCode::unknown_name,
+          "There is no property " + quoted(name) + "; docs/properties.md lists those of the library, World::properties all."};
+}
+
+/// Words of GLSL that a property could be called.
+constexpr std::string_view words_of_glsl[] = {
+    "active",    "and",    "attribute", "bool",      "break",     "buffer",    "case",       "cast",     "class",   "coherent",
+    "common",    "const",  "continue",  "default",   "discard",   "do",        "double",     "else",     "enum",    "extern",
+    "false",     "filter", "fixed",     "flat",      "float",     "for",       "goto",       "half",     "highp",   "if",
+    "in",        "inline", "inout",     "input",     "int",       "invariant", "layout",     "long",     "lowp",    "main",
+    "mat2",      "mat3",   "mat4",      "mediump",   "namespace", "noinline",  "not",        "or",       "out",     "output",
+    "partition", "patch",  "precise",   "precision", "public",    "readonly",  "resource",   "restrict", "return",  "sample",
+    "shared",    "short",  "sizeof",    "smooth",    "static",    "struct",    "subroutine", "superp",   "switch",  "template",
+    "this",      "true",   "typedef",   "uint",      "uniform",   "union",     "unsigned",   "using",    "varying", "vec2",
+    "vec3",      "vec4",   "void",      "volatile",  "while",     "writeonly", "xor"};
+
+/// Names stand in the text of kernels, in C++ and GLSL.
+Status check_name(std::string_view name, const char* what) {
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  bool fits = !name.empty() && letter(name[0]) && name.find("__") == name.npos && name.size() <= 64;
+  for (const char c : name) fits &= letter(c) || (c >= '0' && c <= '9') || c == '_';
+  for (const char* reserved : {"gl_", "pc_", "PC_", "io_"}) fits &= !name.starts_with(reserved);
+  if (!fits)
+    return Error{ErrorCode::bad_argument,
+                 "The name of a " + std::string(what) + " is " + quoted(name) +
+                     "; it must begin with a letter, hold up to 64 letters, digits and single underscores, "
+                     "and not begin with gl_, pc_ or io_."};
+  if (std::ranges::find(words_of_glsl, name) != std::end(words_of_glsl))
+    return Error{ErrorCode::bad_argument, "A " + std::string(what) + " cannot be called " + quoted(name) +
+                                              ": that is a word of C++ or GLSL, in which kernels are written."};
+  return {};
+}
+
+Error taken(std::string_view name, const char* what, std::string_view by) {
+  return {ErrorCode::name_taken,
+          "There is a " + std::string(what) + " " + quoted(name) + " already" + std::string(by) + "; choose another name."};
+}
+
+Status check_numbers(PropertyType type, const double* numbers, std::string_view name) {
+  if (type == PropertyType::int32 || type == PropertyType::uint32) return {};
+  for (std::uint32_t c = 0; c < components(type); c++)
+    if (Status ok = check_finite(numbers[c], ("value of the property " + quoted(name)).c_str()); !ok) return ok;
+  return {};
+}
+
+/// The row of an object in the property's table.
+Result<std::uint32_t> find_row(const WorldState& s, const Found& f, RowOf object) {
+  constexpr const char* kinds[] = {"body", "joint", "row of a table of the host's own"};
+  const RowOf::Kind wanted = f.table == Table::body    ? RowOf::Kind::body
+                             : f.table == Table::joint ? RowOf::Kind::joint
+                                                       : RowOf::Kind::row;
+  if (object.kind != wanted)
+    return Error{ErrorCode::bad_argument, "The property " + quoted(f.info.name) + " is of the table " + quoted(f.info.table) +
+                                              "; ask with a " + kinds[std::size_t(wanted)] + "."};
+  if (object.kind == RowOf::Kind::row) {
+    if (object.index == 0 || object.index >= s.tables.rows(f.table))
+      return Error{ErrorCode::bad_argument, "The table " + quoted(f.info.table) + " has rows 1 to " +
+                                                std::to_string(s.tables.rows(f.table) - 1) + "; there is no row " +
+                                                std::to_string(object.index) + "."};
+    return object.index;
+  }
+  const IdPool& pool = object.kind == RowOf::Kind::body ? s.body_ids : s.joint_ids;
+  if (!pool.valid(BodyId{object.index, object.generation})) return stale(kinds[std::size_t(object.kind)]);
+  return pool.row(object.index);
+}
+
+}  // namespace
+
+std::string_view name(Role role) {
+  constexpr std::string_view names[] = {"input", "state", "derived", "scratch"};
+  return names[std::size_t(role)];
+}
+std::string_view name(PropertyType type) {
+  constexpr std::string_view names[] = {"real", "vec3", "quat", "sym3", "vec4", "mat3", "float32", "float64", "int32", "uint32"};
+  return names[std::size_t(type)];
+}
+std::uint32_t components(PropertyType type) {
+  constexpr std::uint32_t counts[] = {1, 3, 4, 6, 4, 9, 1, 1, 1, 1};
+  return counts[std::size_t(type)];
+}
+
+Result<Table> WorldState::table_of(TableId id) const {
+  if (id == body_table) return Table::body;
+  if (id == joint_table) return Table::joint;
+  const std::uint32_t k = id.index - own_tables_from;
+  if (id.index < own_tables_from || k >= own.tables.size() || !own.tables[k].used || own.tables[k].generation != id.generation)
+    return stale("table");
+  return own.tables[k].table;
+}
+
+Result<PropertyView> World::view(std::string_view property) const {
+  const Tables& t = state_->tables;
+  Found f;
+  if (!by_name(*state_, property, f)) return unknown(property);
+  const PropertyType type = f.info.type;
+  return PropertyView{t.bytes(f.buffer).data() + f.offset,
+                      t.rows(f.table),
+                      t.row_bytes(f.buffer),
+                      components(type),
+                      number_bytes(type, t.real_bytes()) == 4 ? Precision::f32 : Precision::f64,
+                      type};
+}
+
+Result<World::AnyProperty> World::add_property(std::string_view name, PropertyType type, const double* initial,
+                                               std::string_view unit, TableId table, Role role) {
+  WorldState& s = *state_;
+  Status ok = check_name(name, "property");
+  if (ok) ok = check_numbers(type, initial, name);
+  if (!ok) return ok.error();
+  Found there;
+  if (by_name(s, name, there)) return taken(name, "property", there.info.own ? "" : " among those of the library");
+  const Result<Table> of = s.table_of(table);
+  if (!of) return of.error();
+  const std::size_t real = s.tables.real_bytes();
+  std::array<std::byte, 12 * 8> row{};
+  for (std::uint32_t c = 0; c < components(type); c++)
+    write_number(row.data() + c * number_bytes(type, real), type, real, initial[c]);
+  const Buffer buffer = s.tables.add(*of, std::span(row).first(own_row_bytes(type, real)));
+  const std::uint32_t k = s.own.add({std::string(name), std::string(unit), type, role, *of, buffer});
+  return AnyProperty{std::uint32_t(pcphys::properties().size()) + k, s.own.list[k].generation};
+}
+
+Status World::remove_property(std::string_view name) {
+  WorldState& s = *state_;
+  Found f;
+  if (!by_name(s, name, f)) return unknown(name);
+  if (!f.info.own)
+    return Error{ErrorCode::bad_argument,
+                 "The property " + quoted(name) + " is the library's; only a host's own can be removed."};
+  s.tables.remove(f.buffer);
+  s.own.list[f.id.index - pcphys::properties().size()].used = false;
+  return {};
+}
+
+Result<World::AnyProperty> World::find_property(std::string_view name, PropertyType type) const {
+  Found f;
+  if (!by_name(*state_, name, f)) return unknown(name);
+  if (f.info.type != type)
+    return Error{ErrorCode::wrong_type, "The property " + quoted(name) + " holds values of type " +
+                                            std::string(pcphys::name(f.info.type)) + ", not " + std::string(pcphys::name(type)) +
+                                            "."};
+  return AnyProperty{f.id.index, f.id.generation};
+}
+
+Status World::read(std::uint32_t property, std::uint32_t generation, RowOf object, double* numbers) const {
+  const WorldState& s = *state_;
+  Found f;
+  if (!by_id(s, property, generation, f)) return stale("property");
+  const Result<std::uint32_t> row = find_row(s, f, object);
+  if (!row) return row.error();
+  const std::size_t real = s.tables.real_bytes();
+  const std::byte* p = s.tables.bytes(f.buffer).data() + *row * s.tables.row_bytes(f.buffer) + f.offset;
+  for (std::uint32_t c = 0; c < components(f.info.type); c++)
+    numbers[c] = read_number(p + c * number_bytes(f.info.type, real), f.info.type, real);
+  return {};
+}
+
+Status World::write(std::uint32_t property, std::uint32_t generation, RowOf object, const double* numbers) {
+  WorldState& s = *state_;
+  Found f;
+  if (!by_id(s, property, generation, f)) return stale("property");
+  if (!f.info.own)
+    return Error{ErrorCode::bad_argument,
+                 "The property " + quoted(f.info.name) +
+                     " is the library's, and others follow from it; use the function of World that sets it."};
+  if (Status ok = check_numbers(f.info.type, numbers, f.info.name); !ok) return ok;
+  const Result<std::uint32_t> row = find_row(s, f, object);
+  if (!row) return row.error();
+  const std::size_t real = s.tables.real_bytes();
+  std::byte* p = s.tables.bytes(f.buffer).data() + *row * s.tables.row_bytes(f.buffer);
+  for (std::uint32_t c = 0; c < components(f.info.type); c++)
+    write_number(p + c * number_bytes(f.info.type, real), f.info.type, real, numbers[c]);
+  s.tables.touch(f.buffer);
+  return {};
+}
+
+std::vector<PropertyInfo> World::properties() const {
+  std::vector<PropertyInfo> all;
+  each_property(*state_, [&](const Found& f) { all.push_back(f.info); });
+  return all;
+}
+
+Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) {
+  WorldState& s = *state_;
+  if (Status ok = check_name(name, "table"); !ok) return ok.error();
+  bool there = false;
+  for (std::size_t t = 0; t < table_count; t++) there |= pcphys::name(Table(t)) == name;
+  for (const OwnTable& t : s.own.tables) there |= t.used && t.name == name;
+  if (there) return taken(name, "table", "");
+  std::uint32_t k = 0;
+  while (k < s.own.tables.size() && s.own.tables[k].used) k++;
+  if (k == s.own.tables.size()) s.own.tables.emplace_back();
+  OwnTable& t = s.own.tables[k];
+  t = {std::string(name), s.tables.add_table(), t.generation + 1, true};
+  s.tables.resize(t.table, rows + 1);
+  return TableId{own_tables_from + k, t.generation};
+}
+
+namespace {
+Result<OwnTable*> own_table(WorldState& s, TableId id, const char* what) {
+  if (id == body_table || id == joint_table)
+    return Error{ErrorCode::bad_argument, std::string("Only a table of the host's own can be ") + what +
+                                              "; bodies and joints come and go by create_* and destroy."};
+  if (const Result<Table> found = s.table_of(id); !found) return found.error();
+  return &s.own.tables[id.index - own_tables_from];
+}
+}  // namespace
+
+Status World::resize(TableId table, std::uint32_t rows) {
+  const Result<OwnTable*> found = own_table(*state_, table, "resized");
+  if (!found) return found.error();
+  state_->tables.resize((*found)->table, rows + 1);
+  return {};
+}
+
+Result<std::uint32_t> World::rows(TableId table) const {
+  const Result<Table> found = state_->table_of(table);
+  if (!found) return found.error();
+  return state_->tables.rows(*found) - 1;
+}
+
+Status World::remove(TableId table) {
+  WorldState& s = *state_;
+  const Result<OwnTable*> found = own_table(s, table, "removed");
+  if (!found) return found.error();
+  for (OwnProperty& p : s.own.list)
+    if (p.used && p.table == (*found)->table) p.used = false;
+  s.tables.remove_table((*found)->table);
+  (*found)->used = false;
+  return {};
+}
+
+}  // namespace pcphys

@@ -1,0 +1,171 @@
+// Pins kernels of the host's own: forces and properties that they make are those of the same arithmetic done otherwise; CPU and GL
+// agree to the bit, in both precisions, for every type and wherever stages run; they run when and in the order that they ask for;
+// a kernel that does not fit is refused with its reason, and the world and its motion are as without it.
+#include <cmath>
+
+#include "support_world.h"
+
+using namespace worldtest;
+
+namespace {
+
+PCPHYS_KERNEL(weight, (PC_IN(Real) mass, PC_INOUT(Vec3) force, PC_PARAM(Vec3) pull), { force = pc_madd(force, pull, mass); })
+
+PCPHYS_KERNEL(tether, (PC_IN(Vec3) position, PC_IN(Vec3) home, PC_INOUT(Vec3) force, PC_PARAM(Real) stiffness), {
+  Vec3 away = pc_sub(home, position);
+  force = pc_madd(force, away, stiffness);
+})
+
+PCPHYS_KERNEL(thruster,
+              (PC_IN(Quaternion) orientation, PC_INOUT(Real) fuel, PC_INOUT(Vec3) force, PC_PARAM(Real) thrust,
+               PC_PARAM(Real) flow, PC_PARAM(Real) h),
+              {
+                Real wanted = flow * h;
+                Real burned = pc_min(fuel, wanted);
+                Real share = pc_div(burned, wanted);
+                Vec3 up = pc_rotate(orientation, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
+                fuel = fuel - burned;
+                force = pc_madd(force, up, thrust * share);
+              })
+
+PCPHYS_KERNEL(all_types,
+              (PC_INOUT(Real) r, PC_INOUT(Vec3) v, PC_INOUT(Quaternion) q, PC_INOUT(Sym3) s, PC_INOUT(Quad) f, PC_INOUT(Mat3) m,
+               PC_INOUT(uint) n, PC_PARAM(Vec3) by),
+              {
+                r = r + by.x;
+                v = pc_cross(v, by);
+                q.w = q.w * by.y;
+                s.yz = s.yz + s.xx;
+                f.s = f.s - f.v.x;
+                m.y.z = pc_dot(m.x, m.z);
+                n = n + 3u;
+              })
+
+PCPHYS_KERNEL(count_steps, (PC_INOUT(uint) steps), { steps = steps + 1u; })
+
+SceneWorld with_own(Precision precision) {
+  SceneWorld s = scene_world("balls", 40, precision);
+  must(s.world.add_property<Real>("fuel", 2.0, "kg"));
+  must(s.world.add_property<Vec3>("home", {0, 3, 0}, "m", body_table, Role::input));
+  return s;
+}
+void add_forces(Stepper& stepper, World& world) {
+  must(stepper.add_kernel(world, {.text = tether::text(), .parameters = {{"stiffness", 20.0}}}));
+  must(stepper.add_kernel(world, {.text = thruster::text(), .parameters = {{"thrust", 40.0}, {"flow", 1.5}}}));
+}
+
+}  // namespace
+
+TEST_CASE("a kernel's force is a force: a weight made by one falls as gravity does") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World fallen(WorldDef{precision, {0, -9.81, 0}}), pulled(WorldDef{precision, {}});
+    const BodyId a = must(fallen.create_body(ball({0, 50, 0}))), b = must(pulled.create_body(ball({0, 50, 0})));
+    Stepper one, two;
+    must(two.add_kernel(pulled, {.text = weight::text(), .parameters = {{"pull", Vec3{0, -9.81, 0}}}}));
+    run(fallen, one, 60);
+    run(pulled, two, 60);
+    const double tolerance = precision == Precision::f32 ? 1e-5 : 1e-12;
+    CHECK(must(pulled.pose(b)).position.y == doctest::Approx(must(fallen.pose(a)).position.y).epsilon(tolerance));
+    CHECK(must(pulled.velocity(b)).y == doctest::Approx(must(fallen.velocity(a)).y).epsilon(tolerance));
+    must(two.set_parameter("weight", {"pull", Vec3{0, 9.81, 0}}));
+    run(pulled, two, 60);
+    CHECK(std::abs(must(pulled.velocity(b)).y) <
+          0.05);  // the velocity is half a sub-step behind: 2 g h / 2 of the old law is in it
+  }
+}
+
+TEST_CASE("a force of the place, in each sub-step, is of second order") {
+  double errors[2];
+  for (int fine = 0; fine < 2; fine++) {
+    World world(WorldDef{Precision::f64, {}});
+    must(world.add_property<Vec3>("home", {}, "m", body_table, Role::input));
+    BodyDef def = ball({1, 0, 0});
+    def.mass = 2;
+    const BodyId b = must(world.create_body(def));
+    Stepper stepper;
+    must(stepper.add_kernel(world, {.text = tether::text(), .parameters = {{"stiffness", 8.0}}}));  // 2 rad/s
+    const int steps = fine ? 120 : 60;
+    run(world, stepper, steps, 1.0 / steps);
+    errors[fine] = std::abs(must(world.pose(b)).position.x - std::cos(2.0));
+  }
+  CHECK(errors[0] < 1e-4);
+  CHECK(errors[0] / errors[1] == doctest::Approx(4).epsilon(0.1));
+}
+
+TEST_CASE("on the GPU to the bit, wherever stages run") {
+  require_gl();
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    std::uint64_t wanted = 0;
+    for (const Mix& mix : mixes()) {
+      SceneWorld s = with_own(precision);
+      Stepper stepper(mix.settings());
+      add_forces(stepper, s.world);
+      run(s.world, stepper, 60);
+      const std::uint64_t hash = s.world.hash();
+      if (wanted == 0) wanted = hash;
+      CHECK_MESSAGE(hash == wanted, mix.text());
+      double burned = 0;
+      const PropertyView fuel = must(s.world.view("fuel"));
+      for (std::size_t row = 1; row < fuel.count; row++) burned += 2 - fuel.at(row);
+      CHECK(burned > 10);
+    }
+    SceneWorld without = with_own(precision);
+    Stepper plain;
+    run(without.world, plain, 60);
+    CHECK(without.world.hash() != wanted);
+  }
+}
+
+TEST_CASE("every type is read and written alike on both sides") {
+  require_gl();
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    std::uint64_t hashes[2];
+    for (int gl = 0; gl < 2; gl++) {
+      World world(WorldDef{precision, {}});
+      const TableId table = must(world.add_table("things", 100));
+      must(world.add_property<Real>("r", 0.1, "1", table));
+      must(world.add_property<Vec3>("v", {1, 2, 3}, "1", table));
+      must(world.add_property<Quat>("q", {0.1, 0.2, 0.3, 0.9}, "1", table));
+      must(world.add_property<SymMat3>("s", {1, 2, 3, 4, 5, 6}, "1", table));
+      must(world.add_property<Vec4>("f", {1, 2, 3, 40}, "1", table));
+      must(world.add_property<Mat3>("m", {1, 2, 3, 4, 5, 6, 7, 8, 9}, "1", table));
+      must(world.add_property<std::uint32_t>("n", 7, "1", table));
+      StepSettings settings;
+      if (gl) settings.set_all(Place::gl);
+      Stepper stepper(settings);
+      must(stepper.add_kernel(world, {.text = all_types::text(), .over = table, .parameters = {{"by", Vec3{0.5, 0.75, 1}}}}));
+      run(world, stepper, 3);
+      CHECK(must(world.get(must(world.property<std::uint32_t>("n")), RowOf(100))) == 7 + 3 * 3 * 4);
+      hashes[gl] = world.hash();
+    }
+    CHECK(hashes[0] == hashes[1]);
+  }
+}
+
+TEST_CASE("when: once a step, or in each sub-step") {
+  SceneWorld s = scene_world("balls", 5);
+  const auto steps = must(s.world.add_property<std::uint32_t>("steps"));
+  const BodyId body = s.world.bodies().back();
+  for (const bool once : {true, false})
+    for (const Stage stage : {Stage::integrate, Stage::joints, Stage::impulses})
+      for (const bool after : {false, true}) {
+        Stepper stepper;
+        must(stepper.add_kernel(s.world, {.text = count_steps::text(), .stage = stage, .after = after, .once_a_step = once}));
+        const std::uint32_t before = must(s.world.get(steps, body));
+        run(s.world, stepper, 5);
+        CHECK(must(s.world.get(steps, body)) - before == (once ? 5 : 5 * stepper.settings().substeps));
+      }
+}
+
+TEST_CASE("removed, the world moves as without it") {
+  SceneWorld a = with_own(Precision::f32), b = with_own(Precision::f32);
+  Stepper one, two;
+  (void)must(a.world.add_force(a.world.bodies()[1], Wrench{{1, 0, 0}, {}}));
+  (void)must(b.world.add_force(b.world.bodies()[1], Wrench{{1, 0, 0}, {}}));
+  add_forces(two, b.world);
+  must(two.remove_kernel(b.world, "tether"));
+  must(two.remove_kernel(b.world, "thruster"));
+  run(a.world, one, 30);
+  run(b.world, two, 30);
+  CHECK(a.world.hash() == b.world.hash());
+}
