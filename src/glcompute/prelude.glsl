@@ -43,6 +43,7 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 // four reals of a lane side by side: 16 or 32 bytes an access, neighbouring lanes adjacent.
 #define PC_INFO(field) pc_info.field
 #define PC_GATHER(buffer, i, k) pc_quad_of(io_##buffer[(i) * quads_##buffer + (k)])
+#define PC_QUAD_AT(i, quads, k) ((i) * (quads) + (k))
 #define PC_ROW(buffer, i) ((i) * quads_##buffer)
 #define PC_ROW_QUAD(buffer, row, k) pc_quad_of(io_##buffer[(row) + (k)])
 #define PC_SCATTER(buffer, i, k, q) io_##buffer[(i) * quads_##buffer + (k)] = pc_real4_of(q)

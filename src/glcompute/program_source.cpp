@@ -202,22 +202,22 @@ std::string own_place(const OwnKernel& k, const OwnArgument& a, std::uint32_t c)
   }
   const std::string array = "io_" + own_label(k, a.buffer);
   if (is_own(a.buffer) && single(a.type)) return array + "[row]";
-  const std::uint32_t at = a.offset / std::uint32_t(k.real_bytes) + c, row_quads = a.row_bytes / std::uint32_t(4 * k.real_bytes);
-  return array + "[row * " + number(row_quads) + "u + " + number(at / 4) + "u]." + "xyzw"[at % 4];
+  const std::uint32_t at = a.offset / std::uint32_t(k.real_bytes) + c, quad_bytes = std::uint32_t(k.real_bytes << 2);
+  return array + "[PC_QUAD_AT(row, " + number(a.row_bytes / quad_bytes) + "u, " + number(at / 4) + "u)]." + "xyzw"[at % 4];
 }
 /// Component c of a value of that type in the kernel's text.
 std::string own_part(PropertyType type, std::uint32_t c) {
-  constexpr const char* vec3[] = {".x", ".y", ".z"};
-  constexpr const char* quaternion[] = {".v.x", ".v.y", ".v.z", ".w"};
-  constexpr const char* quad[] = {".v.x", ".v.y", ".v.z", ".s"};
-  constexpr const char* sym3[] = {".xx", ".xy", ".xz", ".yy", ".yz", ".zz"};
-  constexpr const char* mat3[] = {".x.x", ".x.y", ".x.z", ".y.x", ".y.y", ".y.z", ".z.x", ".z.y", ".z.z"};
+  constexpr const char* of_vec3[] = {".x", ".y", ".z"};
+  constexpr const char* of_quaternion[] = {".v.x", ".v.y", ".v.z", ".w"};
+  constexpr const char* of_quad[] = {".v.x", ".v.y", ".v.z", ".s"};
+  constexpr const char* of_sym3[] = {".xx", ".xy", ".xz", ".yy", ".yz", ".zz"};
+  constexpr const char* of_mat3[] = {".x.x", ".x.y", ".x.z", ".y.x", ".y.y", ".y.z", ".z.x", ".z.y", ".z.z"};
   switch (type) {
-    case PropertyType::vec3: return vec3[c];
-    case PropertyType::quat: return quaternion[c];
-    case PropertyType::vec4: return quad[c];
-    case PropertyType::sym3: return sym3[c];
-    case PropertyType::mat3: return mat3[c];
+    case PropertyType::vec3: return of_vec3[c];
+    case PropertyType::quat: return of_quaternion[c];
+    case PropertyType::vec4: return of_quad[c];
+    case PropertyType::sym3: return of_sym3[c];
+    case PropertyType::mat3: return of_mat3[c];
     default: return "";
   }
 }
@@ -236,11 +236,11 @@ std::string own_main(const OwnKernel& k, std::uint32_t local_size) {
   text += k.table == Table::body ? "  uint row = io_bodies[k];\n" : "  uint row = k;\n";
   std::string call;
   for (const OwnArgument& a : k.arguments) {
-    const std::string value = a.writes() ? a.name : "in_" + a.name;
-    if (!a.writes()) text += std::string("  ") + glsl_type(a.type) + " " + value + ";\n";
+    const std::string word = a.writes() ? a.name : "in_" + a.name;
+    if (!a.writes()) text += std::string("  ") + glsl_type(a.type) + " " + word + ";\n";
     for (std::uint32_t c = 0; c < components(a.type); c++)
-      text += "  " + value + own_part(a.type, c) + " = " + own_place(k, a, c) + ";\n";
-    if (!a.writes()) call += (call.empty() ? "" : ", ") + value;
+      text += "  " + word + own_part(a.type, c) + " = " + own_place(k, a, c) + ";\n";
+    if (!a.writes()) call += (call.empty() ? "" : ", ") + word;
   }
   text += "  pc_own(" + call + ");\n";
   for (const OwnArgument& a : k.arguments)

@@ -205,6 +205,19 @@ Result<std::unique_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   return k;
 }
 
+Status check_properties(const WorldState& s, const OwnKernel& k) {
+  for (const OwnArgument& a : k.arguments) {
+    Found f;
+    if (a.kind == OwnArgument::Kind::parameter) continue;
+    if (!find_property(s, a.name, f) || f.buffer != a.buffer || f.type != a.type || f.table != k.table)
+      return Error{ErrorCode::stale_id,
+                   "The kernel " + quoted(k.name) + " uses the property " + quoted(a.name) +
+                       ", which was removed; remove the kernel too (Stepper::remove_kernel), and add it again where "
+                       "there is a new one of that name. The world is as it was."};
+  }
+  return {};
+}
+
 Status set(OwnKernel& k, const KernelParameter& value) {
   const auto a = std::ranges::find_if(k.arguments, [&](const OwnArgument& argument) {
     return argument.kind == OwnArgument::Kind::parameter && argument.name == value.name && !argument.given;

@@ -54,6 +54,9 @@ struct OwnKernel {
 /// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers), unknown_name, wrong_type.
 Result<std::unique_ptr<OwnKernel>> resolve(const WorldState& state, const KernelDef& def);
 
+/// Whether the properties that it was resolved to are still there; stale_id, naming the one that is not.
+Status check_properties(const WorldState& state, const OwnKernel& kernel);
+
 /// Another value for a parameter. Errors: unknown_name, wrong_type, not_finite.
 Status set(OwnKernel& kernel, const KernelParameter& parameter);
 

@@ -15,6 +15,7 @@
 #include "plan/infos.h"
 #include "plan/octaves.h"
 #include "plan/plan.h"
+#include "step/check_settings.h"
 #include "step/own_forces.h"
 #include "step/processor_state.h"
 #include "step/runner.h"
@@ -29,44 +30,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int most_tries = 8;
-
-Status check_settings(const StepSettings& s) {
-  if (s.substeps < 1 || s.substeps > most_substeps)
-    return Error{ErrorCode::bad_time_step,
-                 "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
-  if (Status ok = Workers::check(s.threads); !ok) return ok;
-  if (s.refinement < 1 || s.refinement > most_substeps)
-    return Error{ErrorCode::bad_argument,
-                 "The refinement of islands is " + std::to_string(s.refinement) + "; it must lie between 1 (never) and 1000."};
-  for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
-    if (!std::isfinite(x) || x < 0)
-      return Error{ErrorCode::bad_argument,
-                   "Push speed, restitution threshold and contact margin must be finite and not below zero."};
-  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8)
-    return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(s.lanes) +
-                                             " lanes; use 1, 4, 8 (float only), or 0 for the widest that the processor has."};
-  if (s.narrow == NarrowPhase::fcl && !fcl_hook())
-    return Error{ErrorCode::unavailable,
-                 "FCL is not in use: link pcphys::fcl and call pcphys::use_fcl() (libfcl-dev, a build with it), or use the "
-                 "native narrow phase."};
-  return {};
-}
-
-std::string scientific(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
-
-Status check_dt(double dt) {
-  if (dt >= constants::shortest_step && dt <= constants::longest_step) return {};
-  if (std::isfinite(dt) && dt > 0)
-    return Error{ErrorCode::bad_time_step, "The time step is " + scientific(dt) + " s; it must lie between " +
-                                               scientific(constants::shortest_step) + " and " +
-                                               scientific(constants::longest_step) + " s. The world is as it was."};
-  return Error{ErrorCode::bad_time_step,
-               "The time step is " + std::to_string(dt) + " s; it must be finite and above zero. The world is as it was."};
-}
 
 }  // namespace
 
@@ -86,6 +49,7 @@ struct Stepper::Inside {
   StepReport report;
   std::deque<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few; they stay where they are
   OwnKernels own;                                        // of the host
+  std::uint64_t own_removals = 0;                        // of its properties, when they were last looked at
   std::uint64_t own_serial = 0;                          // of the world that they are of
   const StepPlan* plan = nullptr;
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
@@ -158,7 +122,14 @@ struct Stepper::Inside {
     return runner.check(place, kernel);
   }
   Status check_own(const WorldState& s) {
-    if (own.empty() || own_serial == s.serial) return {};
+    if (own.empty()) return {};
+    if (own_serial == s.serial) {
+      if (own_removals == s.removals) return {};
+      for (const OwnKernel* k : own.ordered())
+        if (Status ok = check_properties(s, *k); !ok) return ok;
+      own_removals = s.removals;
+      return {};
+    }
     return Error{ErrorCode::bad_argument,
                  "This stepper has kernels of another world (Stepper::add_kernel); step that one, or use another stepper."};
   }
@@ -404,6 +375,7 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
     in.own.clear();
     in.own_changed();
   }
+  if (Status ok = in.check_own(s); !ok) return ok;
   auto kernel = resolve(s, def);
   if (!kernel) return kernel.error();
   const OwnKernel& added = **kernel;
@@ -411,6 +383,7 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
   const bool forces = added.writes(Buffer::force) && !s.gathered;
   if (Status ok = in.own.add(std::move(*kernel)); !ok) return ok;
   in.own_serial = s.serial;
+  in.own_removals = s.removals;
   in.own_changed();
   Status ok = in.check_kernel(s, added);
   if (ok && forces) {
@@ -426,7 +399,9 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
 Status Stepper::remove_kernel(World& world, std::string_view name) {
   Inside& in = *inside_;
   WorldState& s = world.state();
-  if (Status ok = in.check_own(s); !ok) return ok;
+  if (in.own_serial != s.serial)
+    return Error{ErrorCode::bad_argument,
+                 "This stepper has no kernels of this world; remove_kernel takes the world that they were added for."};
   if (Status ok = in.own.remove(name); !ok) return ok;
   in.own_changed();
   const auto makes_forces = [](const OwnKernel* k) { return k->writes(Buffer::force) && !k->name.starts_with("pc_"); };

@@ -195,6 +195,7 @@ Status World::remove_property(std::string_view name) {
     return Error{ErrorCode::bad_argument,
                  "The property " + quoted(name) + " is the library's; only a host's own can be removed."};
   s.tables.remove(f.buffer);
+  s.removals++;
   s.own.list[f.id.index - pcphys::properties().size()].used = false;
   return {};
 }
@@ -293,6 +294,7 @@ Status World::remove(TableId table) {
   for (OwnProperty& p : s.own.list)
     if (p.used && p.table == (*found)->table) p.used = false;
   s.tables.remove_table((*found)->table);
+  s.removals++;
   (*found)->used = false;
   return {};
 }

@@ -89,6 +89,7 @@ struct WorldState {
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;  // objects, kinds, filters
+  std::uint64_t removals = 0;           // of properties and tables of the host's own
   std::uint64_t contacts_version = 1;   // contacts that no step made: a snapshot was restored
 
   /// Body rows of a contact: the first is the one that moves, so that arms are short.

@@ -1,0 +1,55 @@
+#include "step/check_settings.h"
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "collision/hook.h"
+#include "cpu/workers.h"
+#include "pcphys/constants.h"
+#include "plan/octaves.h"
+#include "world/validate.h"
+
+namespace pcphys {
+
+namespace {
+std::string scientific(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
+}
+}  // namespace
+
+Status check_settings(const StepSettings& s) {
+  if (s.substeps < 1 || s.substeps > most_substeps)
+    return Error{ErrorCode::bad_time_step,
+                 "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
+  if (Status ok = Workers::check(s.threads); !ok) return ok;
+  if (s.refinement < 1 || s.refinement > most_substeps)
+    return Error{ErrorCode::bad_argument,
+                 "The refinement of islands is " + std::to_string(s.refinement) + "; it must lie between 1 (never) and 1000."};
+  for (double x : {s.push_speed, s.restitution_threshold, s.contact_margin})
+    if (!std::isfinite(x) || x < 0)
+      return Error{ErrorCode::bad_argument,
+                   "Push speed, restitution threshold and contact margin must be finite and not below zero."};
+  if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8)
+    return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(s.lanes) +
+                                             " lanes; use 1, 4, 8 (float only), or 0 for the widest that the processor has."};
+  if (s.narrow == NarrowPhase::fcl && !fcl_hook())
+    return Error{ErrorCode::unavailable,
+                 "FCL is not in use: link pcphys::fcl and call pcphys::use_fcl() (libfcl-dev, a build with it), or use the "
+                 "native narrow phase."};
+  return {};
+}
+
+Status check_dt(double dt) {
+  if (dt >= constants::shortest_step && dt <= constants::longest_step) return {};
+  if (std::isfinite(dt) && dt > 0)
+    return Error{ErrorCode::bad_time_step, "The time step is " + scientific(dt) + " s; it must lie between " +
+                                               scientific(constants::shortest_step) + " and " +
+                                               scientific(constants::longest_step) + " s. The world is as it was."};
+  return Error{ErrorCode::bad_time_step,
+               "The time step is " + std::to_string(dt) + " s; it must be finite and above zero. The world is as it was."};
+}
+
+}  // namespace pcphys
