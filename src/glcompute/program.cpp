@@ -11,7 +11,7 @@ namespace {
 Error refused(const std::string& label, const std::string& log, const ProgramSource& source) {
   std::string message = "The GL driver refused the program `" + label + "`: " + log + " (files:";
   for (std::size_t i = 0; i < source.files.size(); i++) message += ' ' + std::to_string(i) + ' ' + source.files[i];
-  return {ErrorCode::device_error, message + ")"};
+  return {ErrorCode::device_error, message + ")."};
 }
 
 template <class GetLength, class GetLog> std::string log_of(GLuint object, GetLength get_length, GetLog get_log) {
