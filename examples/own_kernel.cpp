@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "pcphys/pcphys.h"
+#include "pcphys/write_kernel.h"
 
 using namespace pcphys;
 

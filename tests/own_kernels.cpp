@@ -3,6 +3,7 @@
 // a kernel that does not fit is refused with its reason, and the world and its motion are as without it.
 #include <cmath>
 
+#include "pcphys/write_kernel.h"
 #include "support_world.h"
 
 using namespace worldtest;

@@ -1,5 +1,6 @@
 // Pins what is refused of a host's own kernels, with which words; that nothing is added then; and that a kernel whose property was
 // removed stops the step, not the world.
+#include "pcphys/write_kernel.h"
 #include "support_world.h"
 
 using namespace worldtest;

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "pcphys/write_kernel.h"
+
 namespace pcphys {
 namespace {
 

@@ -1,0 +1,86 @@
+// Kernels of the host's own: a function of one row of a table, run by the step over all of them, on the CPU, on the GPU or on either.
+//
+//   PCPHYS_KERNEL(wind_drag, (PC_IN(Vec3) displacement_rate, PC_IN(Real) area, PC_INOUT(Vec3) force, PC_PARAM(Vec3) wind), {
+//     Vec3 past = pc_sub(wind, displacement_rate);
+//     Real push = area * pc_length(past);
+//     force = pc_madd(force, past, push);
+//   })
+//   stepper.add_kernel(world, {.text = wind_drag::text(), .parameters = {{"wind", Vec3{5, 0, 0}}}});
+//
+// The signature declares what is read (PC_IN), changed (PC_INOUT), written anew (PC_OUT) and given with the kernel (PC_PARAM). Names
+// are those of properties, the library's (docs/properties.md) or the host's own; types Real, Vec3, Quaternion, Quad (four numbers),
+// Sym3, Mat3, float, double, int, uint. The parameters `h` (the sub-step, Real) and `gravity` (Vec3) need not be given. From one
+// text come a C++ function and a GLSL program; in both what is PC_IN or PC_PARAM is const. Of the library's properties a kernel may
+// write force, torque, displacement_rate and angular_momentum.
+//
+// Not part of pcphys.h: kernels' text needs macros of short names (precise, PC_REAL, ...).
+#pragma once
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+#include "pcphys/kernel.h"
+#include "pcphys/kernel_text.h"
+
+namespace pcphys {
+
+namespace detail {
+template <auto Run, class = decltype(Run)> struct RowLoop;
+template <auto Run, class... Arguments> struct RowLoop<Run, void (*)(Arguments...)> {
+  static void run(const KernelRows& k) { run(k, std::index_sequence_for<Arguments...>()); }
+
+ private:
+  template <class T> static T load(const std::byte* p) {
+    T value;
+    std::memcpy(&value, p, sizeof value);
+    return value;
+  }
+  template <class Argument, class T> static void store(std::byte* p, const T& value) {
+    if constexpr (std::is_reference_v<Argument>) std::memcpy(p, &value, sizeof value);
+  }
+  template <std::size_t... I> static void run(const KernelRows& k, std::index_sequence<I...>) {
+    for (std::uint32_t n = k.begin; n < k.end; n++) {
+      const std::size_t row = k.rows ? k.rows[n] : n;
+      std::tuple<std::remove_cvref_t<Arguments>...> values{
+          load<std::remove_cvref_t<Arguments>>(k.columns[I] + row * k.strides[I])...};
+      Run(std::get<I>(values)...);
+      (store<Arguments>(k.columns[I] + row * k.strides[I], std::get<I>(values)), ...);
+    }
+  }
+};
+}  // namespace detail
+
+#define PCPHYS_KERNEL_SIDE(side, signature, ...)            \
+  struct side {                                             \
+    using Real = ::pcphys::kernel_##side::Real;             \
+    using Vec3 = ::pcphys::kernel_##side::Vec3;             \
+    using Quad = ::pcphys::kernel_##side::Quad;             \
+    using Quaternion = ::pcphys::kernel_##side::Quaternion; \
+    using Sym3 = ::pcphys::kernel_##side::Sym3;             \
+    using Mat3 = ::pcphys::kernel_##side::Mat3;             \
+    using uint = std::uint32_t;                             \
+    static void run signature {                             \
+      using namespace ::pcphys::kernel_##side;              \
+      __VA_ARGS__                                           \
+    }                                                       \
+  };
+#define PCPHYS_KERNEL_TEXT(Name, signature, declared, body, ...) \
+  struct Name {                                                  \
+    PCPHYS_KERNEL_SIDE(f32, signature, __VA_ARGS__)              \
+    PCPHYS_KERNEL_SIDE(f64, signature, __VA_ARGS__)              \
+    static ::pcphys::KernelText text() {                         \
+      return {#Name,                                             \
+              declared,                                          \
+              body,                                              \
+              __FILE__,                                          \
+              __LINE__,                                          \
+              &::pcphys::detail::RowLoop<&f32::run>::run,        \
+              &::pcphys::detail::RowLoop<&f64::run>::run};       \
+    }                                                            \
+  };
+/// Written once for both sides, in the common subset.
+#define PCPHYS_KERNEL(Name, signature, ...) PCPHYS_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
+/// C++ alone: anything that C++ can say.
+#define PCPHYS_CPU_KERNEL(Name, signature, ...) PCPHYS_KERNEL_TEXT(Name, signature, #signature, nullptr, __VA_ARGS__)
+
+}  // namespace pcphys
