@@ -170,3 +170,36 @@ TEST_CASE("removed, the world moves as without it") {
   run(b.world, two, 30);
   CHECK(a.world.hash() == b.world.hash());
 }
+
+TEST_CASE("forces belong to the world's steps, whichever stepper makes them") {
+  // made by one stepper, they are gone for the next; and that one may go first
+  SceneWorld a = with_own(Precision::f32), b = with_own(Precision::f32);
+  for (World* world : {&a.world, &b.world}) (void)must(world->add_force(world->bodies()[1], Wrench{{1, 0, 0}, {0, 2, 0}}));
+  Stepper with, without, plain;
+  add_forces(with, b.world);
+  run(a.world, plain, 20);
+  run(b.world, without, 20);
+  CHECK(a.world.hash() == b.world.hash());
+  run(b.world, with, 5);
+  CHECK(a.world.hash() != b.world.hash());
+  const std::vector<std::byte> then = b.world.snapshot();
+  run(b.world, without, 20);
+  const std::uint64_t hash = b.world.hash();
+  must(with.remove_kernel(b.world, "tether"));
+  must(with.remove_kernel(b.world, "thruster"));
+  must(b.world.restore(then));
+  run(b.world, without, 20);
+  CHECK(b.world.hash() == hash);
+}
+
+TEST_CASE("a plan that is kept names its kernels when they are gone") {
+  SceneWorld s = with_own(Precision::f32);
+  Stepper stepper;
+  add_forces(stepper, s.world);
+  const StepPlan plan = must(stepper.plan_for(s.world, frame));
+  must(stepper.remove_kernel(s.world, "tether"));
+  must(stepper.remove_kernel(s.world, "thruster"));
+  CHECK(to_text(plan).find("thruster") != std::string::npos);
+  CHECK(to_text(plan).find("pc_gather_forces") != std::string::npos);
+  CHECK(to_text(must(stepper.plan_for(s.world, frame))).find("thruster") == std::string::npos);
+}

@@ -2,6 +2,7 @@
 // A pure function of what the world holds and of the settings; it can be printed and compared.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,8 +67,9 @@ struct StepPlan {
   std::uint32_t substeps = 0;  // of octave 0
   std::vector<PlanEntry> entries;
   std::vector<LeftOut> left_out;
-  std::vector<PlanBinding> bindings;  // each buffer of each place once
-  std::vector<Buffer> overwritten;    // in the host's tables
+  std::vector<PlanBinding> bindings;                  // each buffer of each place once
+  std::vector<Buffer> overwritten;                    // in the host's tables
+  std::vector<std::shared_ptr<const OwnKernel>> own;  // kernels of the host's own that entries name
   friend bool operator==(const StepPlan&, const StepPlan&) = default;
 };
 

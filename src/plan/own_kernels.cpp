@@ -159,9 +159,9 @@ bool same_moment(const OwnKernel& a, const OwnKernel& b) {
 
 }  // namespace
 
-Result<std::unique_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef& def) {
+Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef& def) {
   static std::atomic<std::uint64_t> serials{0};
-  auto k = std::make_unique<OwnKernel>();
+  auto k = std::make_shared<OwnKernel>();
   k->serial = ++serials;
   k->name = def.text.name;
   k->body = def.text.body ? def.text.body : "";
@@ -245,13 +245,12 @@ OwnKernel* OwnKernels::find(std::string_view name) const {
   return nullptr;
 }
 
-Status OwnKernels::order(std::vector<OwnKernel*>& out) const {
-  std::vector<OwnKernel*> left;
-  for (const auto& k : kernels_) left.push_back(k.get());
+Status OwnKernels::order(std::vector<std::shared_ptr<OwnKernel>>& out) const {
+  std::vector<std::shared_ptr<OwnKernel>> left = kernels_;
   out.clear();
   while (!left.empty()) {
-    const auto free = std::ranges::find_if(left, [&](const OwnKernel* b) {
-      return std::ranges::none_of(left, [&](const OwnKernel* a) { return a != b && same_moment(*a, *b) && precedes(*a, *b); });
+    const auto free = std::ranges::find_if(left, [&](const auto& b) {
+      return std::ranges::none_of(left, [&](const auto& a) { return a != b && same_moment(*a, *b) && precedes(*a, *b); });
     });
     if (free == left.end())
       return bad(*left[0], "and " + quoted(left[1]->name) +
@@ -263,7 +262,7 @@ Status OwnKernels::order(std::vector<OwnKernel*>& out) const {
   return {};
 }
 
-Status OwnKernels::add(std::unique_ptr<OwnKernel> kernel) {
+Status OwnKernels::add(std::shared_ptr<OwnKernel> kernel) {
   if (find(kernel->name))
     return Error{ErrorCode::name_taken,
                  "There is a kernel " + quoted(kernel->name) + " already; remove it, or choose another name."};
@@ -283,7 +282,7 @@ Status OwnKernels::add(std::unique_ptr<OwnKernel> kernel) {
                   " anew at the same moment; say which follows which (KernelDef::follows), or let one change it (PC_INOUT).");
   }
   kernels_.push_back(std::move(kernel));
-  std::vector<OwnKernel*> ordered;
+  std::vector<std::shared_ptr<OwnKernel>> ordered;
   if (Status ok = order(ordered); !ok) {
     kernels_.pop_back();
     return ok;

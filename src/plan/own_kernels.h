@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcphys/kernel.h"
@@ -52,7 +53,7 @@ struct OwnKernel {
 };
 
 /// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers), unknown_name, wrong_type.
-Result<std::unique_ptr<OwnKernel>> resolve(const WorldState& state, const KernelDef& def);
+Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& state, const KernelDef& def);
 
 /// Whether the properties that it was resolved to are still there; stale_id, naming the one that is not.
 Status check_properties(const WorldState& state, const OwnKernel& kernel);
@@ -64,21 +65,23 @@ Status set(OwnKernel& kernel, const KernelParameter& parameter);
 class OwnKernels {
  public:
   /// Errors: name_taken, and bad_argument where two write the same anew or the order goes in a circle; nothing is added then.
-  Status add(std::unique_ptr<OwnKernel> kernel);
+  Status add(std::shared_ptr<OwnKernel> kernel);
   Status remove(std::string_view name);
   OwnKernel* find(std::string_view name) const;
   void clear();
 
-  std::span<OwnKernel* const> ordered() const { return ordered_; }
+  /// A plan keeps those that it runs.
+  using Ordered = std::span<const std::shared_ptr<OwnKernel>>;
+  Ordered ordered() const { return ordered_; }
   bool empty() const { return kernels_.empty(); }
   /// Counts the changes.
   std::uint64_t version() const { return version_; }
 
  private:
-  Status order(std::vector<OwnKernel*>& out) const;
+  Status order(std::vector<std::shared_ptr<OwnKernel>>& out) const;
 
-  std::vector<std::unique_ptr<OwnKernel>> kernels_;  // as they were added
-  std::vector<OwnKernel*> ordered_;
+  std::vector<std::shared_ptr<OwnKernel>> kernels_;  // as they were added
+  std::vector<std::shared_ptr<OwnKernel>> ordered_;
   std::uint64_t version_ = 0;
 };
 

@@ -13,10 +13,10 @@ namespace {
 /// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
 class Builder {
  public:
-  Builder(const PlanSignature& signature, std::span<OwnKernel* const> own, StepPlan& plan)
+  Builder(const PlanSignature& signature, OwnKernels::Ordered own, StepPlan& plan)
       : signature_(signature), own_(own), plan_(plan) {
     std::size_t count = buffer_count;
-    for (const OwnKernel* k : own)
+    for (const auto& k : own)
       for (const Access& a : k->accesses) count = std::max(count, std::size_t(a.buffer) + 1);
     buffers_.resize(count);
     for (Known& b : buffers_) b.current[std::size_t(Place::cpu)] = true;
@@ -34,7 +34,7 @@ class Builder {
 
   /// The host's own kernels of a moment of the step, in a sub-step of `count`.
   void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count, bool once_a_step) {
-    for (const OwnKernel* k : own_) {
+    for (const auto& k : own_) {
       if (k->stage != stage || k->after != after || k->once_a_step != once_a_step) continue;
       if (once_a_step && substep != (after ? count - 1 : 0)) continue;
       // rows that are no bodies are of no octave
@@ -42,7 +42,8 @@ class Builder {
       Place place = signature_.places[std::size_t(stage)];
       if (k->body.empty()) place = Place::cpu;
       if (!k->loop) place = Place::gl;
-      add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, k, 0}, k->accesses, Domain::body);
+      add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, k.get(), 0}, k->accesses,
+          Domain::body);
     }
   }
   void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count) {
@@ -101,9 +102,9 @@ class Builder {
     settle();
   }
   const OwnKernel* user_of(Buffer buffer) const {
-    for (const OwnKernel* k : own_)
+    for (const auto& k : own_)
       for (const Access& a : k->accesses)
-        if (a.buffer == buffer && is_own(buffer)) return k;
+        if (a.buffer == buffer && is_own(buffer)) return k.get();
     return nullptr;
   }
   void overwrite(Buffer buffer) {
@@ -114,7 +115,7 @@ class Builder {
   }
 
   const PlanSignature& signature_;
-  std::span<OwnKernel* const> own_;
+  OwnKernels::Ordered own_;
   StepPlan& plan_;
   std::uint8_t octave_ = 0;
   std::vector<Known> buffers_;  // by Buffer
@@ -263,9 +264,10 @@ std::span<const Access> accesses(const PlanEntry& entry) {
 }
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }
 
-StepPlan make_plan(const PlanSignature& s, std::span<OwnKernel* const> own) {
+StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   StepPlan plan;
   plan.substeps = s.substeps;
+  plan.own.assign(own.begin(), own.end());
   leave_out(s, plan);
   if (!s.bodies && own.empty()) return plan;
   Builder b(s, own, plan);

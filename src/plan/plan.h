@@ -5,6 +5,7 @@
 #include <span>
 
 #include "pcphys/plan.h"
+#include "plan/own_kernels.h"
 #include "world/schema.h"
 
 namespace pcphys {
@@ -40,7 +41,7 @@ struct PlanSignature {
 };
 
 /// `own`: kernels of the host's own, in the order in which those of one moment run.
-StepPlan make_plan(const PlanSignature& signature, std::span<OwnKernel* const> own = {});
+StepPlan make_plan(const PlanSignature& signature, OwnKernels::Ordered own = {});
 
 /// Of a kernel, the library's or the host's own.
 std::span<const Access> accesses(const PlanEntry& entry);

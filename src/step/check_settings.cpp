@@ -1,7 +1,6 @@
 #include "step/check_settings.h"
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "collision/hook.h"
@@ -11,14 +10,6 @@
 #include "world/validate.h"
 
 namespace pcphys {
-
-namespace {
-std::string scientific(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
-}  // namespace
 
 Status check_settings(const StepSettings& s) {
   if (s.substeps < 1 || s.substeps > most_substeps)
@@ -45,9 +36,9 @@ Status check_settings(const StepSettings& s) {
 Status check_dt(double dt) {
   if (dt >= constants::shortest_step && dt <= constants::longest_step) return {};
   if (std::isfinite(dt) && dt > 0)
-    return Error{ErrorCode::bad_time_step, "The time step is " + scientific(dt) + " s; it must lie between " +
-                                               scientific(constants::shortest_step) + " and " +
-                                               scientific(constants::longest_step) + " s. The world is as it was."};
+    return Error{ErrorCode::bad_time_step, "The time step is " + number(dt) + " s; it must lie between " +
+                                               number(constants::shortest_step) + " and " + number(constants::longest_step) +
+                                               " s. The world is as it was."};
   return Error{ErrorCode::bad_time_step,
                "The time step is " + std::to_string(dt) + " s; it must be finite and above zero. The world is as it was."};
 }

@@ -22,7 +22,7 @@ Timer timer_of(const PlanEntry& entry) {
 
 bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
   if (s.integrate == place || s.joints == place || s.impulses == place) return true;
-  return std::ranges::any_of(own.ordered(), [&](const OwnKernel* k) { return place == Place::gl ? !k->loop : k->body.empty(); });
+  return std::ranges::any_of(own.ordered(), [&](const auto& k) { return place == Place::gl ? !k->loop : k->body.empty(); });
 }
 
 std::size_t info_index(const PlanEntry& entry) { return std::size_t{entry.octave} * phase_count + std::size_t(entry.phase); }

@@ -16,7 +16,7 @@
 #include "plan/octaves.h"
 #include "plan/plan.h"
 #include "step/check_settings.h"
-#include "step/own_forces.h"
+#include "step/own_work.h"
 #include "step/processor_state.h"
 #include "step/runner.h"
 #include "step/schedule.h"
@@ -48,9 +48,8 @@ struct Stepper::Inside {
   Runner runner;
   StepReport report;
   std::deque<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few; they stay where they are
-  OwnKernels own;                                        // of the host
-  std::uint64_t own_removals = 0;                        // of its properties, when they were last looked at
-  std::uint64_t own_serial = 0;                          // of the world that they are of
+  OwnWork own;                                           // kernels of the host's own
+  std::uint64_t own_seen = 0;                            // of which changes plans know
   const StepPlan* plan = nullptr;
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
@@ -105,12 +104,16 @@ struct Stepper::Inside {
     return plans.emplace_back(wanted, make_plan(wanted, own.ordered())).second;
   }
 
-  /// Kernels of the host's own came or went.
-  void own_changed() {
+  /// Plans are of the kernels of the host's own that there are, and so are the places that take part.
+  Status follow_own(WorldState& s) {
+    const Status ok = own.follow(s);
+    if (own_seen == own.kernels().version()) return ok;
+    own_seen = own.kernels().version();
     plans.clear();
     plan = nullptr;
     runner.unbind();
     prepared.reset();
+    return ok;
   }
   /// Compiles it where it is to run, while it can still be refused.
   Status check_kernel(const WorldState& s, const OwnKernel& kernel) {
@@ -120,18 +123,6 @@ struct Stepper::Inside {
     if (place == Place::cpu) return {};
     if (Status ok = prepare(s.tables.precision()); !ok) return ok;
     return runner.check(place, kernel);
-  }
-  Status check_own(const WorldState& s) {
-    if (own.empty()) return {};
-    if (own_serial == s.serial) {
-      if (own_removals == s.removals) return {};
-      for (const OwnKernel* k : own.ordered())
-        if (Status ok = check_properties(s, *k); !ok) return ok;
-      own_removals = s.removals;
-      return {};
-    }
-    return Error{ErrorCode::bad_argument,
-                 "This stepper has kernels of another world (Stepper::add_kernel); step that one, or use another stepper."};
   }
 
   template <class Scalar> void fill_octaves(InfoOf<Scalar> (&infos)[octave_count][phase_count]) {
@@ -185,7 +176,7 @@ struct Stepper::Inside {
 
   Status prepare(Precision precision) {
     prepared.reset();
-    Status ok = runner.prepare(settings, precision, own);
+    Status ok = runner.prepare(settings, precision, own.kernels());
     if (ok) prepared = precision;
     return ok;
   }
@@ -193,7 +184,7 @@ struct Stepper::Inside {
   Status step(World& world, double dt) {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
-    if (ok) ok = check_own(s);
+    if (ok) ok = follow_own(s);
     if (ok && !checked) ok = check_settings(settings);
     checked = bool(ok);
     if (ok && !(s.gravity == sound_gravity)) {
@@ -355,6 +346,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   Inside& in = *inside_;
   Status ok = check_dt(dt);
   if (ok) ok = check_settings(in.settings);
+  if (ok) ok = in.own.check(world.state());
   if (!ok) return ok.error();
   Schedule schedule;
   schedule.update_structure(world.state());
@@ -371,46 +363,18 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
 Status Stepper::add_kernel(World& world, const KernelDef& def) {
   Inside& in = *inside_;
   WorldState& s = world.state();
-  if (!in.own.empty() && in.own_serial != s.serial) {
-    in.own.clear();
-    in.own_changed();
-  }
-  if (Status ok = in.check_own(s); !ok) return ok;
-  auto kernel = resolve(s, def);
-  if (!kernel) return kernel.error();
-  const OwnKernel& added = **kernel;
-  const std::string name = added.name;
-  const bool forces = added.writes(Buffer::force) && !s.gathered;
-  if (Status ok = in.own.add(std::move(*kernel)); !ok) return ok;
-  in.own_serial = s.serial;
-  in.own_removals = s.removals;
-  in.own_changed();
-  Status ok = in.check_kernel(s, added);
-  if (ok && forces) {
-    gather_forces(s);
-    auto begin = resolve(s, gathering(def.once_a_step));
-    ok = begin ? in.own.add(std::move(*begin)) : Status(begin.error());
-    if (!ok) stop_gathering(s);
-  }
-  if (!ok) (void)in.own.remove(name);
+  if (in.own.of_another(s)) in.own.clear();
+  Status ok = in.follow_own(s);
+  if (!ok) return ok;
+  const Result<const OwnKernel*> added = in.own.add(s, def);
+  if (!added) return added.error();
+  ok = in.follow_own(s);
+  if (ok) ok = in.check_kernel(s, **added);
+  if (!ok) (void)in.own.remove(s, def.text.name);
   return ok;
 }
 
-Status Stepper::remove_kernel(World& world, std::string_view name) {
-  Inside& in = *inside_;
-  WorldState& s = world.state();
-  if (in.own_serial != s.serial)
-    return Error{ErrorCode::bad_argument,
-                 "This stepper has no kernels of this world; remove_kernel takes the world that they were added for."};
-  if (Status ok = in.own.remove(name); !ok) return ok;
-  in.own_changed();
-  const auto makes_forces = [](const OwnKernel* k) { return k->writes(Buffer::force) && !k->name.starts_with("pc_"); };
-  if (s.gathered && std::ranges::none_of(in.own.ordered(), makes_forces)) {
-    (void)in.own.remove("pc_gather_forces");
-    stop_gathering(s);
-  }
-  return {};
-}
+Status Stepper::remove_kernel(World& world, std::string_view name) { return inside_->own.remove(world.state(), name); }
 
 Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& parameter) {
   OwnKernel* k = inside_->own.find(kernel);

@@ -3,11 +3,15 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "world/tables.h"
 
 namespace pcphys {
+
+/// Of names that the library gives to kernels and columns beside the host's own; no name of the host's begins so.
+inline constexpr std::string_view own_prefix = "pc_";
 
 struct OwnProperty {
   std::string name, unit;

@@ -35,7 +35,7 @@ Found listed(const WorldState& s, std::uint32_t k) {
 }
 Found own(const WorldState& s, std::uint32_t k) {
   const OwnProperty& p = s.own.list[k];
-  return {{p.name, p.unit, table_name(s, p.table), p.type, p.role, true},
+  return {{p.name, p.unit, table_name(s, p.table), p.type, p.role, !p.name.starts_with(own_prefix)},
           p.table,
           p.buffer,
           0,
@@ -86,7 +86,8 @@ Status check_name(std::string_view name, const char* what) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   bool fits = !name.empty() && letter(name[0]) && name.find("__") == name.npos && name.size() <= 64;
   for (const char c : name) fits &= letter(c) || (c >= '0' && c <= '9') || c == '_';
-  for (const char* reserved : {"gl_", "pc_", "PC_", "io_"}) fits &= !name.starts_with(reserved);
+  for (const std::string_view reserved : {std::string_view("gl_"), own_prefix, std::string_view("PC_"), std::string_view("io_")})
+    fits &= !name.starts_with(reserved);
   if (!fits)
     return Error{ErrorCode::bad_argument,
                  "The name of a " + std::string(what) + " is " + quoted(name) +

@@ -9,11 +9,6 @@
 namespace pcphys {
 namespace {
 
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
 bool sane(double x) { return std::isfinite(x) && std::fabs(x) <= constants::largest_input; }
 
 Status check_extent(double x, const char* what) {
@@ -35,6 +30,12 @@ const char* name(ErrorCode code) {
                                    "name_taken",    "wrong_type",  "unavailable", "buffer_full",      "device_error",
                                    "bad_file",      "bad_snapshot"};
   return names[int(code)];
+}
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
 }
 
 Error stale(const char* what) {

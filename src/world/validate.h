@@ -1,10 +1,14 @@
 // Checks of everything a host hands in. Each error says what was wrong and what to do.
 #pragma once
+#include <string>
+
 #include "pcphys/result.h"
 #include "pcphys/types.h"
 
 namespace pcphys {
 
+/// As error messages show it: six digits at most.
+std::string number(double x);
 /// Of an id that names nothing; `what` is "body", "joint", "force".
 Error stale(const char* what);
 Status check_finite(double value, const char* what);

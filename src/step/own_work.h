@@ -1,0 +1,39 @@
+// A stepper's kernels of the host's own, and what forces are before they add to them.
+#pragma once
+#include <string_view>
+
+#include "plan/own_kernels.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+class OwnWork {
+ public:
+  /// Before a step of this world, and before a kernel is added: whether the kernels fit it still. Where forces are made, by this
+  /// stepper or another, they begin anew in each (sub-)step with what constants and callbacks give (WorldState::gathered), which is
+  /// a kernel too. Errors: bad_argument where they are of another world; stale_id where a property was removed.
+  Status follow(WorldState& state);
+  /// The same where nothing may change.
+  Status check(const WorldState& state) const;
+
+  /// Errors: those of `resolve` and OwnKernels::add. `follow` comes first, and after it.
+  Result<const OwnKernel*> add(WorldState& state, const KernelDef& def);
+  Status remove(WorldState& state, std::string_view name);
+  OwnKernel* find(std::string_view name) const { return kernels_.find(name); }
+  void clear() { kernels_.clear(); }
+
+  const OwnKernels& kernels() const { return kernels_; }
+  OwnKernels::Ordered ordered() const { return kernels_.ordered(); }
+  bool of_another(const WorldState& state) const { return hosts() && serial_ != state.serial; }
+
+ private:
+  bool hosts() const;
+  bool makes_forces() const;
+  Status begin_forces(WorldState& state);
+
+  OwnKernels kernels_;
+  std::uint64_t serial_ = 0;    // of the world that they are of
+  std::uint64_t removals_ = 0;  // of its properties, when they were last looked at
+};
+
+}  // namespace pcphys
