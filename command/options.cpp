@@ -155,6 +155,8 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--steps", options.steps, "how many steps (default: 600)");
   app.add_option("--dt", options.dt, "time step [s], also as a fraction")->capture_default_str();
   app.add_option("--substeps", options.substeps, "sub-steps a step")->capture_default_str();
+  app.add_option("--order", options.order, "2, or 4: joint trees on which nothing but forces and pins acts move in fourth order")
+      ->capture_default_str();
   app.add_option("--precision", options.precision, "float or double")->capture_default_str();
   app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
   app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
@@ -192,6 +194,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.settings.narrow = options.narrow == "fcl" ? NarrowPhase::fcl : NarrowPhase::native;
   setup.settings.integrator = options.integrator == "seed" ? Integrator::seed : Integrator::verlet;
   setup.settings.substeps = std::uint32_t(options.substeps);
+  setup.settings.order = std::uint32_t(options.order);
   setup.settings.threads =
       options.threads > 0 ? std::uint32_t(options.threads) : std::clamp(std::thread::hardware_concurrency(), 1u, 256u);
   setup.settings.device = int(options.device);

@@ -24,7 +24,7 @@ struct RunOptions {
   std::string narrow = "native", precision = "float", lanes = "auto", sleep = "off", integrator = "verlet", timings = "on";
   std::string dt = "1/60";
   std::optional<long long> steps;
-  long long substeps = 4, threads = 1, warmup = 0, device = -1;
+  long long substeps = 4, order = 2, threads = 1, warmup = 0, device = -1;
   double ratio = 100;
   std::string json, csv, gltf;
   bool hash = false, poses = false;

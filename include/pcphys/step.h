@@ -21,6 +21,9 @@ struct StepSettings {
   Place integrate = Place::cpu, joints = Place::cpu, impulses = Place::cpu;
   Integrator integrator = Integrator::verlet;
   std::uint32_t substeps = 4;
+  /// Of the motion of joint trees: 2, or 4 where nothing but forces and pins acts on one (docs/integrate.md). A sub-step of fourth
+  /// order costs five.
+  std::uint32_t order = 2;
   /// Most by which a step may multiply the sub-steps of an island that needs it (docs/substeps.md); 1: never.
   std::uint32_t refinement = 16;
   std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is, or fewer where those are enough
@@ -46,6 +49,7 @@ struct StepReport {
   std::uint64_t step = 0;      // how many steps this stepper has made
   std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
   std::uint32_t refined = 0;   // bodies whose islands made more than the setting
+  std::uint32_t fourth_order = 0;  // bodies that moved in fourth order (StepSettings::order)
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of the same bodies, joints
   /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).

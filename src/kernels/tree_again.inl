@@ -6,6 +6,8 @@
 #include "tree_store.inl"
 #include "angle_rows.inl"
 #include "tree_sweep.inl"
+#include "tree_momentum.inl"
+#include "tree_predict.inl"
 #include "tree_joint_kept.inl"
 
 // Limits keep what they carry; locked rows are corrected like pins.

@@ -39,3 +39,13 @@ PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given
     PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 1u, angular);
   }
 }
+
+// Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
+// between heavy ones as the difference of large numbers.
+PC_FN void pc_tree_apply(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
+  }
+  pc_tree_add_changes(PC_PASS m, t, given_push, given_turn);
+}

@@ -10,6 +10,8 @@
 #endif
 #include "tree_factor.inl"
 #include "tree_sweep.inl"
+#include "tree_momentum.inl"
+#include "tree_predict.inl"
 
 // Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {

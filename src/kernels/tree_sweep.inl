@@ -1,6 +1,3 @@
-#include "free_rotation.inl"
-#include "tree_momentum.inl"
-
 // Solving with a tree's factor, and what its impulses do to the bodies.
 //
 // A child moves as x = X x_parent + S q - (c, 0): X x = (l + a x d, a) with d = r_p - r_c, S q = (r_c x q, q), q the
@@ -68,54 +65,4 @@ PC_FN Vec3 pc_row_impulses(PC_IO Tree t, Slot n, uint k, Real limits) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return pc_zero3();  // lint: allow (zeros otherwise)
   Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   return Vec3(pc_row_impulse(PC_PASS n, 0u, turn, limits), pc_row_impulse(PC_PASS n, 1u, turn, limits), pc_row_impulse(PC_PASS n, 2u, turn, limits));
-}
-
-// Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
-// between heavy ones as the difference of large numbers.
-PC_FN void pc_tree_apply(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
-  for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
-  }
-  pc_tree_add_changes(PC_PASS m, t, given_push, given_turn);
-}
-
-// In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
-PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted) {
-  Real h = PC_INFO(h);
-  for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
-    Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
-    Quad moments = pc_quad(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), PC_LD(tree_rows, n, TREE_MOMENTS + 3u));
-    Quaternion turn = pc_quaternion(pc_zero3(), PC_REAL(0.0)); precise Real spin = pc_abs(b.l.x) + pc_abs(b.l.y) + pc_abs(b.l.z); Mask turns = pc_nonzero(spin);
-    if (PC_ANY(turns)) {  // lint: allow (other lanes keep what they have)
-      Quaternion spun = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, h), pc_conjugate(q)); turn = pc_quaternion(pc_select3(turns, spun.v, turn.v), pc_select(turns, spun.w, turn.w));
-    }
-    pc_st3_tree(PC_PASS n, TREE_TURN, pc_select3(wanted, turn.v, pc_ld3_tree(PC_PASS n, TREE_TURN))); PC_ST(tree_rows, n, TREE_TURN + 3u, pc_select(wanted, turn.w, PC_LD(tree_rows, n, TREE_TURN + 3u)));
-    pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, pc_angular_velocity(b)));
-  }
-}
-// An arm turned, minus the arm.
-PC_FN Vec3 pc_swing(PC_IO Slot n, Vec3 r) {
-  Vec3 q = pc_ld3_tree(PC_PASS n, TREE_TURN); precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(1.0);
-  precise Vec3 s = pc_cross(q, r) * PC_REAL(2.0); precise Vec3 d = s * w + pc_cross(q, s); return d;
-}
-// Of a body that turns about its pin the gap's rate of now: it keeps none over the sub-step. What is rounding stays: undoing
-// it would round the velocities once more.
-PC_FN void pc_pivot_residual(PC_IO Slot m, Tree t) {
-  Slot n = PC_NODE(m, t.first + 1u); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u)); Vec3 w = pc_angular_velocity(b);
-  Slot up = PC_NODE(m, t.first); pc_st6_tree(PC_PASS up, TREE_X, pc_six(pc_zero3(), pc_zero3()));
-  pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, w)); 
-  Vec3 c = pc_add(b.v, pc_cross(w, pc_ld3_tree(PC_PASS n, TREE_RC))); precise Real noise = pc_length(b.v) * PC_INFO(rounding);
-  pc_st3_tree(PC_PASS n, TREE_C, pc_select3(pc_length(c) > noise, c, pc_zero3()));
-}
-PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted) {
-  if (pc_is_pivot(PC_PASS t) == 1u) { pc_pivot_residual(PC_PASS m, t); return; }
-  pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5));
-  for (uint k = 1u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    Vec3 moved = pc_sub(pc_swing(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_RC)), pc_swing(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_RP)));
-    precise Vec3 c = (pc_ld3_tree(PC_PASS n, TREE_X) - pc_ld3_tree(PC_PASS up, TREE_X)) + moved * PC_INFO(inverse_h);
-    pc_st3_tree(PC_PASS n, TREE_C, c);
-  }
 }

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "pcphys/constants.h"
+#include "plan/composition.h"
+#include "plan/forest.h"
 #include "plan/infos.h"
 #include "plan/spins.h"
 
@@ -58,7 +60,7 @@ void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, b
 }
 
 bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
-                     const StepSettings& settings, double dt) {
+                     std::span<const std::uint32_t> fourth, const StepSettings& settings, double dt) {
   wanted_.clear();
   const std::uint8_t highest = settings.integrator == Integrator::seed ? 0 : highest_octave(settings);
   loads_.want(state, settings, dt, highest, wanted_);
@@ -68,22 +70,31 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   before_.swap(of_bodies_);
   of_bodies_.clear();
   used_ = 1;
-  refined_ = 0;
+  refined_ = fourth_order_ = 0;
+  if (!wanted_.empty() || !fourth.empty()) of_bodies_.assign(state.bodies.size(), 0);
   if (!wanted_.empty()) {
     islands_.build(state);
-    of_bodies_.assign(state.bodies.size(), 0);
     for (const Wanted& w : wanted_) {
       const std::uint32_t root = islands_.root(w.body);
       const bool whole = w.any_size || islands_.size(root) <= constants::large_island;
       of_bodies_[root] = std::max(of_bodies_[root], whole ? w.octave : std::uint8_t{1});
     }
-    used_ = 0;
     for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
       if (state.stands(row)) continue;
       of_bodies_[row] = of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
-      used_ |= 1u << of_bodies_[row];
       refined_ += of_bodies_[row] > 0;
     }
+  }
+  for (const std::uint32_t tree : fourth)  // each is an island
+    for (const TreeNode& node : forest.tree(tree)) {
+      if (!state.responds(node.body)) continue;
+      of_bodies_[node.body] += octave_count;
+      fourth_order_++;
+    }
+  if (!of_bodies_.empty()) {
+    used_ = 0;
+    for (std::uint32_t row = 1; row < of_bodies_.size(); row++)
+      if (!state.stands(row)) used_ |= 1u << of_bodies_[row];
   }
   return !std::ranges::equal(before_, of_bodies_);
 }

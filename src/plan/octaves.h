@@ -1,5 +1,5 @@
 // Sub-step classes: an island of octave k makes 2^k times the sub-steps that the settings ask for, and all others go on as they
-// are (docs/substeps.md). Chosen before the step from what the world's tables hold, so that it is the same on any backend.
+// are (docs/substeps.md); of fourth order the octave counts from octave_count on (plan/composition.h). Chosen before the step from what the world's tables hold, so that it is the same on any backend.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -46,16 +46,18 @@ class Octaves {
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
   /// Of a step of `dt`. `faces`: some contact has more than one point, so that something may stand on something. False: they are
-  /// those of the step before.
-  bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces, const StepSettings& settings,
-              double dt);
+  /// those of the step before. `fourth`: the trees of fourth order.
+  bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
+              std::span<const std::uint32_t> fourth, const StepSettings& settings, double dt);
 
-  /// By body row; empty: all are of octave 0.
+  /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
-  /// Bit k: some body that moves is of octave k.
+  /// Bit k: some body that moves is of class k.
   std::uint32_t used() const { return used_; }
   /// How many bodies are of a higher octave than 0.
   std::uint32_t refined() const { return refined_; }
+  /// How many are of fourth order.
+  std::uint32_t fourth_order() const { return fourth_order_; }
 
  private:
   Loads loads_;
@@ -63,7 +65,7 @@ class Octaves {
   Islands islands_;
   std::vector<Wanted> wanted_;
   std::vector<std::uint8_t> of_bodies_, before_;
-  std::uint32_t used_ = 1, refined_ = 0;
+  std::uint32_t used_ = 1, refined_ = 0, fourth_order_ = 0;
 };
 
 }  // namespace pcphys

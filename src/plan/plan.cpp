@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "pcphys/constants.h"
+#include "plan/composition.h"
+#include "plan/fourth_order.h"
 #include "plan/own_kernels.h"
 
 namespace pcphys {
@@ -134,6 +136,9 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
   if (s.trees && !s.solves_trees()) out("tree solve", "every joint is a pin that one body turns about");
   if (s.pivots_alone) out("free motion", "every body that moves turns about a pin");
+  if (s.order == 4 && !s.trees) out("fourth order of joint trees", "the world has none");
+  for (unsigned why = 0; why < unsigned(SecondOrder::count); why++)
+    if (s.second_order >> why & 1) out(reason(SecondOrder(why))[0], reason(SecondOrder(why))[1]);
   if (!s.shapes) out("collision", "no two shapes could ever touch");
   if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
@@ -257,6 +262,17 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   b.own(Stage::impulses, true, last, count, true);
 }
 
+/// All stages of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on them.
+void stages(Builder& b, const PlanSignature& s, unsigned octave) {
+  const std::uint32_t count = (s.substeps << octave) * fourth_stages, last = count - 1;
+  b.enter(std::uint8_t(octave_count + octave));
+  b.kernel(motion(s).begin, Phase::first, 0);
+  b.kernel(Kernel::smooth_prepare, Phase::first, 0);
+  for (std::uint32_t k = 0; k < count; k++) b.kernel(Kernel::smooth_stage, Phase::stage, k);
+  b.kernel(Kernel::smooth_synchronise, Phase::last, last);
+  b.kernel(motion(s).restagger, Phase::last, last);
+}
+
 }  // namespace
 
 std::span<const Access> accesses(const PlanEntry& entry) {
@@ -274,6 +290,8 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   if (!s.bodies) own_alone(b, s);
   for (std::uint8_t octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> octave & 1) substeps(b, s, octave);
+  for (unsigned octave = 0; s.bodies && octave < octave_count; octave++)
+    if (s.octaves >> (octave_count + octave) & 1) stages(b, s, octave);
   if (!plan.entries.empty()) b.results(plan.entries.back().substep);
   return plan;
 }

@@ -15,6 +15,10 @@ Status check_settings(const StepSettings& s) {
   if (s.substeps < 1 || s.substeps > most_substeps)
     return Error{ErrorCode::bad_time_step,
                  "The number of sub-steps is " + std::to_string(s.substeps) + "; it must lie between 1 and 1000."};
+  if (s.order != 2 && s.order != 4)
+    return Error{ErrorCode::bad_argument, "The order is " + std::to_string(s.order) + "; it must be 2, or 4 for joint trees."};
+  if (s.order == 4 && s.integrator == Integrator::seed)
+    return Error{ErrorCode::bad_argument, "The original's scheme (seed) is of first order; use the order 2 with it, or verlet."};
   if (Status ok = Workers::check(s.threads); !ok) return ok;
   if (s.refinement < 1 || s.refinement > most_substeps)
     return Error{ErrorCode::bad_argument,

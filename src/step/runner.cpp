@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "plan/composition.h"
+
 namespace pcphys {
 namespace {
 
@@ -25,7 +27,6 @@ bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
   return std::ranges::any_of(own.ordered(), [&](const auto& k) { return place == Place::gl ? !k->loop : k->body.empty(); });
 }
 
-std::size_t info_index(const PlanEntry& entry) { return std::size_t{entry.octave} * phase_count + std::size_t(entry.phase); }
 /// Where contact_impact raises its flag.
 std::uint32_t flag_quad() {
   static const std::uint32_t quad =
@@ -250,7 +251,7 @@ void Runner::add_run(const PlanEntry& entry, const WorldState& state, const Sche
   // where they stand is known when all are there
   runs_.push_back({entry.kernel,
                    entry.barrier || entry.again > 0,
-                   std::uint32_t(info_index(entry)),
+                   block_of(entry),
                    lanes(entry.place, k.domain, schedule),
                    {static_cast<const Range*>(nullptr), ranges_.size() - first}});
 }
@@ -263,7 +264,7 @@ void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Sche
     ranges_.push_back({1, state.tables.rows(entry.own->table)});
   runs_.push_back({Kernel::begin,
                    entry.barrier,
-                   std::uint32_t(info_index(entry)),
+                   block_of(entry),
                    1,
                    {static_cast<const Range*>(nullptr), ranges_.size() - first},
                    entry.own});
@@ -293,7 +294,7 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState&
     run.ranges = std::span(ranges_).subspan(first, run.ranges.size());
     first += run.ranges.size();
   }
-  infos_ = std::uint32_t(phase_count) * (plan.entries.empty() ? 1 : 1 + plan.entries.back().octave);
+  infos_ = first_block(plan.entries.empty() ? 1 : 1 + plan.entries.back().octave);
   kept_.clear();
   for (const Buffer buffer : plan.overwritten)
     if (keeps(buffer)) kept_.push_back(buffer);

@@ -12,6 +12,7 @@
 #include "collision/hook.h"
 #include "pcphys/constants.h"
 #include "pcphys/step.h"
+#include "plan/fourth_order.h"
 #include "plan/infos.h"
 #include "plan/octaves.h"
 #include "plan/plan.h"
@@ -45,6 +46,7 @@ struct Stepper::Inside {
   Detector detector;
   Schedule schedule;
   Octaves octaves;
+  FourthOrder fourth;
   Runner runner;
   StepReport report;
   std::deque<std::pair<PlanSignature, StepPlan>> plans;  // those seen, few; they stay where they are
@@ -56,9 +58,9 @@ struct Stepper::Inside {
   bool other = false;                                 // than those of the last step
   InfoInputs infos_from;                              // of the next four
   Precision infos_precision = Precision::f32;
-  std::uint32_t infos_of = 0;  // octaves, as bits
-  InfoOf<float> infos_f[octave_count][phase_count];
-  InfoOf<double> infos_d[octave_count][phase_count];
+  std::uint32_t infos_of = 0;  // classes, as bits
+  InfoBlocks<float> infos_f;
+  InfoBlocks<double> infos_d;
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
   int tries = 0;                                // of this step
@@ -83,6 +85,7 @@ struct Stepper::Inside {
     PlanSignature s;
     s.substeps = settings.substeps;
     s.integrator = settings.integrator;
+    s.order = settings.order;
     s.places = {settings.integrate, settings.joints, settings.impulses};
     s.bodies = from.moving > 0;
     s.drag = from.drag;
@@ -125,9 +128,12 @@ struct Stepper::Inside {
     return runner.check(place, kernel);
   }
 
-  template <class Scalar> void fill_octaves(InfoOf<Scalar> (&infos)[octave_count][phase_count]) {
-    for (unsigned octave = 0; octave < octave_count; octave++)
-      if ((octaves.used() & ~infos_of) >> octave & 1) fill_infos(infos_from, infos[octave], octave);
+  template <class Scalar> void fill_classes(InfoBlocks<Scalar>& infos) {
+    const std::uint32_t missing = octaves.used() & ~infos_of;
+    for (unsigned octave = 0; octave < octave_count; octave++) {
+      if (missing >> octave & 1) fill_infos(infos_from, infos.second[octave], octave);
+      if (missing >> (octave_count + octave) & 1) fill_infos(infos_from, infos.fourth[octave], octave);
+    }
     infos_of |= octaves.used();
   }
 
@@ -140,8 +146,8 @@ struct Stepper::Inside {
       infos_precision = precision;
     }
     const bool single = precision == Precision::f32;
-    if (octaves.used() & ~infos_of) single ? fill_octaves(infos_f) : fill_octaves(infos_d);
-    return single ? static_cast<const void*>(infos_f) : infos_d;
+    if (octaves.used() & ~infos_of) single ? fill_classes(infos_f) : fill_classes(infos_d);
+    return single ? static_cast<const void*>(&infos_f) : &infos_d;
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
@@ -225,11 +231,21 @@ struct Stepper::Inside {
     schedule.trees.solved().write(s);
     write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
     octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
+    fourth.forget();
   }
 
   void update_contacts(const WorldState& s) {
     schedule.update_contacts(s);
     octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven);
+    fourth.forget_contacts();
+  }
+
+  /// Which trees move in fourth order in this step.
+  void choose_order(const WorldState& s, double dt) {
+    const TreeSlots& trees = schedule.trees;
+    if (settings.order != 4) return fourth.choose_none();
+    fourth.find_trees(s, trees.forest(), trees.solved(), trees.closing());
+    fourth.choose(s, substep_length(dt, settings.substeps), !own.ordered().empty());
   }
 
   void freeze_leaving(WorldState& s) {
@@ -253,10 +269,14 @@ struct Stepper::Inside {
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.points > found.contacts, settings, dt) || other)
+    choose_order(s, dt);
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.points > found.contacts, fourth.trees(),
+                       settings, dt) ||
+        other)
       schedule.group(octaves.of_bodies());
     PlanSignature wanted = signature(schedule);
     wanted.octaves = octaves.used();
+    wanted.second_order = fourth.reasons();
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
@@ -281,8 +301,9 @@ struct Stepper::Inside {
     strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
     if (strayed) return {};
     s.last_substep = h;
-    report.substeps = wanted.substeps << (std::bit_width(octaves.used()) - 1);
+    report.substeps = wanted.substeps << highest_octave(octaves.used());
     report.refined = octaves.refined();
+    report.fourth_order = octaves.fourth_order();
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;

@@ -1,0 +1,38 @@
+// Where the sub-step will take the bodies of a tree, and what that leaves for its pins to undo.
+#include "free_rotation.inl"
+#include "tree_swing.inl"
+
+// In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
+PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted) {
+  Real h = PC_INFO(h);
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
+    Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
+    Quad moments = pc_quad(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), PC_LD(tree_rows, n, TREE_MOMENTS + 3u));
+    Quaternion turn = pc_quaternion(pc_zero3(), PC_REAL(0.0)); precise Real spin = pc_abs(b.l.x) + pc_abs(b.l.y) + pc_abs(b.l.z); Mask turns = pc_nonzero(spin);
+    if (PC_ANY(turns)) {  // lint: allow (other lanes keep what they have)
+      Quaternion spun = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, h), pc_conjugate(q)); turn = pc_quaternion(pc_select3(turns, spun.v, turn.v), pc_select(turns, spun.w, turn.w));
+    }
+    pc_st3_tree(PC_PASS n, TREE_TURN, pc_select3(wanted, turn.v, pc_ld3_tree(PC_PASS n, TREE_TURN))); PC_ST(tree_rows, n, TREE_TURN + 3u, pc_select(wanted, turn.w, PC_LD(tree_rows, n, TREE_TURN + 3u)));
+    pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, pc_angular_velocity(b)));
+  }
+}
+// Of a body that turns about its pin the gap's rate of now: it keeps none over the sub-step. What is rounding stays: undoing
+// it would round the velocities once more.
+PC_FN void pc_pivot_residual(PC_IO Slot m, Tree t) {
+  Slot n = PC_NODE(m, t.first + 1u); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u)); Vec3 w = pc_angular_velocity(b);
+  Slot up = PC_NODE(m, t.first); pc_st6_tree(PC_PASS up, TREE_X, pc_six(pc_zero3(), pc_zero3()));
+  pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, w)); 
+  Vec3 c = pc_add(b.v, pc_cross(w, pc_ld3_tree(PC_PASS n, TREE_RC))); precise Real noise = pc_length(b.v) * PC_INFO(rounding);
+  pc_st3_tree(PC_PASS n, TREE_C, pc_select3(pc_length(c) > noise, c, pc_zero3()));
+}
+PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted) {
+  if (pc_is_pivot(PC_PASS t) == 1u) { pc_pivot_residual(PC_PASS m, t); return; }
+  pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5));
+  for (uint k = 1u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    Vec3 moved = pc_sub(pc_swing(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_RC)), pc_swing(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_RP)));
+    precise Vec3 c = (pc_ld3_tree(PC_PASS n, TREE_X) - pc_ld3_tree(PC_PASS up, TREE_X)) + moved * PC_INFO(inverse_h);
+    pc_st3_tree(PC_PASS n, TREE_C, c);
+  }
+}

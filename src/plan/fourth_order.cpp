@@ -1,0 +1,121 @@
+#include "plan/fourth_order.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pcphys/constants.h"
+
+namespace pcphys {
+namespace {
+
+constexpr std::uint32_t bit(SecondOrder why) { return 1u << unsigned(why); }
+
+double trace(const WorldState& state, std::uint32_t row) {
+  const Vec3 moments = state.tables.get3(Buffer::mass, row, 0);
+  return moments.x + moments.y + moments.z;
+}
+
+/// How much a force on a pin turns the body.
+double response(const WorldState& state, std::uint32_t row, Vec3 arm) {
+  return state.responds(row) ? length(arm) / trace(state, row) : 0;
+}
+
+std::uint32_t of_body(const WorldState& state, std::uint32_t row) {
+  std::uint32_t why = 0;
+  if (!state.responds(row) && !state.stands(row)) why |= bit(SecondOrder::carried);
+  if (state.responds(row) && (state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0))
+    why |= bit(SecondOrder::drag);
+  return why;
+}
+
+std::uint32_t of_joint(const WorldState& state, std::uint32_t row, const SolvedJoints& joints) {
+  std::uint32_t why = 0;
+  if (state.joints[row].driven()) why |= bit(SecondOrder::drive);
+  if (joints.def(state, row).freedom.kind != AngleFreedom::Kind::free) why |= bit(SecondOrder::angles);
+  return why;
+}
+
+}  // namespace
+
+std::array<const char*, 2> reason(SecondOrder why) {
+  switch (why) {
+    case SecondOrder::pivot: return {"fourth order of bodies on one pin", "their turning about it is of fourth order already"};
+    case SecondOrder::loop: return {"fourth order of loops", "a joint that closes one, or a spring, acts from outside of the tree"};
+    case SecondOrder::angles: return {"fourth order of joints with angles", "limits and locks act once a sub-step"};
+    case SecondOrder::drive: return {"fourth order of driven joints", "motors and springs act once a sub-step"};
+    case SecondOrder::drag: return {"fourth order with drag", "a negative stage would push"};
+    case SecondOrder::carried: return {"fourth order of what is carried", "a kinematic body may carry several trees"};
+    case SecondOrder::contact: return {"fourth order of what is touched", "contacts act once a sub-step"};
+    case SecondOrder::stiff: return {"fourth order of loaded pins", "they swing too fast for the sub-step without stiffness"};
+    default: return {"fourth order", "kernels of the host's own act in each sub-step"};
+  }
+}
+
+void FourthOrder::find_trees(const WorldState& state, const Forest& forest, const SolvedJoints& joints,
+                             std::span<const std::uint32_t> closing) {
+  if (std::exchange(trees_known_, true)) return;
+  tree_of_.assign(state.bodies.size(), 0);
+  why_not_.assign(forest.trees(), 0);
+  pins_.clear();
+  first_pin_.assign(1, 0);
+  for (std::uint32_t i = 0; i < forest.trees(); i++) {
+    const std::span<const TreeNode> tree = forest.tree(i);
+    if (tree.front().flipped) why_not_[i] |= bit(SecondOrder::pivot);
+    for (const TreeNode& node : tree) {
+      why_not_[i] |= of_body(state, node.body) | (node.joint > 0 ? of_joint(state, node.joint, joints) : 0);
+      if (state.responds(node.body)) tree_of_[node.body] = i + 1;
+    }
+    find_pins(state, tree, joints);
+    first_pin_.push_back(std::uint32_t(pins_.size()));
+  }
+  for (const std::uint32_t row : closing)
+    for (const std::uint32_t body : {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)})
+      if (tree_of_[body] > 0) why_not_[tree_of_[body] - 1] |= bit(SecondOrder::loop);
+}
+
+void FourthOrder::find_pins(const WorldState& state, std::span<const TreeNode> tree, const SolvedJoints& joints) {
+  for (const TreeNode& node : tree.subspan(1)) {
+    const JointDef& def = joints.def(state, node.joint);
+    const Vec3 own = node.flipped ? def.frame_a.position : def.frame_b.position;
+    const Vec3 parents = node.flipped ? def.frame_b.position : def.frame_a.position;
+    pins_.push_back({node.joint, std::max(response(state, node.body, own), response(state, tree[node.parent].body, parents))});
+  }
+}
+
+void FourthOrder::find_touched(const WorldState& state) {
+  if (std::exchange(contacts_known_, true)) return;
+  touched_.assign(why_not_.size(), false);
+  for (const auto& ends : state.contacts.ends)
+    for (const std::uint32_t body : ends)
+      if (tree_of_[body] > 0) touched_[tree_of_[body] - 1] = true;
+}
+
+/// (h w / 2)^2 of what the pins' forces of the last sub-step turn fastest, from above.
+double FourthOrder::stiffness(const WorldState& state, std::uint32_t tree, double h) const {
+  double most = 0;
+  for (std::uint32_t i = first_pin_[tree]; i < first_pin_[tree + 1]; i++) {
+    const double impulse = length(state.tables.get3(Buffer::joint_impulse, pins_[i].joint, 0));
+    most = std::max(most, impulse * pins_[i].response);
+  }
+  return state.last_substep > 0 ? most * h * h / state.last_substep : 0;
+}
+
+void FourthOrder::choose_none() {
+  chosen_.clear();
+  reasons_ = 0;
+}
+
+void FourthOrder::choose(const WorldState& state, double h, bool own) {
+  choose_none();
+  find_touched(state);
+  for (std::uint32_t i = 0; i < why_not_.size(); i++) {
+    std::uint32_t why = why_not_[i];
+    if (own) why |= bit(SecondOrder::own_kernel);
+    if (touched_[i]) why |= bit(SecondOrder::contact);
+    if (why == 0 && stiffness(state, i, h) > constants::stiff_pins) why |= bit(SecondOrder::stiff);
+    reasons_ |= why;
+    if (why == 0) chosen_.push_back(i);
+  }
+}
+
+}  // namespace pcphys

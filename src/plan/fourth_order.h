@@ -1,0 +1,56 @@
+// Which joint trees move in fourth order (StepSettings::order, docs/integrate.md): those on which nothing but forces and pins acts,
+// softly enough for the sub-step.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "plan/forest.h"
+#include "plan/solved_joints.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+/// Why a tree stays at second order.
+enum class SecondOrder : std::uint8_t { pivot, loop, angles, drive, drag, carried, contact, stiff, own_kernel, count };
+/// What and why, of the plan.
+std::array<const char*, 2> reason(SecondOrder why);
+
+class FourthOrder {
+ public:
+  /// Follows a change of objects; of contacts.
+  void forget() { trees_known_ = contacts_known_ = false; }
+  void forget_contacts() { contacts_known_ = false; }
+  /// Once for each change of objects. `closing`: rows of joints that stand in no tree.
+  void find_trees(const WorldState& state, const Forest& forest, const SolvedJoints& joints, std::span<const std::uint32_t> closing);
+  /// For sub-steps of the length h. `own`: kernels of the host's own act in them.
+  void choose(const WorldState& state, double h, bool own);
+  void choose_none();
+
+  /// Trees of fourth order, ascending.
+  std::span<const std::uint32_t> trees() const { return chosen_; }
+  /// Of the others, bits by SecondOrder.
+  std::uint32_t reasons() const { return reasons_; }
+
+ private:
+  /// A pin, and how much a force on it turns its two bodies: the longer of |r| / trace of the inertia [1/(kg m)].
+  struct Pin {
+    std::uint32_t joint;  // row
+    double response;
+  };
+  void find_pins(const WorldState& state, std::span<const TreeNode> tree, const SolvedJoints& joints);
+  void find_touched(const WorldState& state);
+  double stiffness(const WorldState& state, std::uint32_t tree, double h) const;
+
+  std::vector<std::uint32_t> tree_of_;      // by body row: tree + 1, of bodies that move
+  std::vector<std::uint32_t> why_not_;      // by tree, bits that follow from the objects
+  std::vector<Pin> pins_;
+  std::vector<std::uint32_t> first_pin_;    // by tree, and the end
+  std::vector<char> touched_;               // by tree
+  bool trees_known_ = false, contacts_known_ = false;
+  std::vector<std::uint32_t> chosen_;
+  std::uint32_t reasons_ = 0;
+};
+
+}  // namespace pcphys
