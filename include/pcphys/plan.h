@@ -23,10 +23,9 @@ std::string_view name(Stage stage);
 enum class Integrator : std::uint8_t { verlet, seed };
 const char* name(Integrator integrator);
 
-/// Which coefficients a kernel is given: those of the step's start, of the solve, of the relax pass, or of the step's end; or, of
-/// islands of fourth order, those of the sub-step's stage (docs/integrate.md).
-enum class Phase : std::uint8_t { first, biased, relax, last, stage };
-inline constexpr unsigned phase_count = 4;  // without the stages
+/// Which coefficients a kernel is given: those of the step's start, of the solve, of the relax pass, or of the step's end.
+enum class Phase : std::uint8_t { first, biased, relax, last };
+inline constexpr unsigned phase_count = 4;
 
 /// Sub-step classes: islands of octave k make 2^k times the sub-steps that the settings ask for (docs/substeps.md).
 inline constexpr unsigned octave_count = 10;
@@ -44,7 +43,7 @@ struct PlanEntry {
   Buffer buffer{};  // of a transfer
   Phase phase = Phase::biased;
   bool barrier = false;            // uses what a kernel before it wrote, or writes what one read, on the same device
-  std::uint32_t substep = 0;       // of the octave's; of fourth order its stages, five a sub-step
+  std::uint32_t substep = 0;       // of the octave's
   std::uint8_t octave = 0;         // of the islands that a kernel is for; octave_count more for those of fourth order
   const OwnKernel* own = nullptr;  // a kernel of the host's own, in place of `kernel`; of a transfer, one that uses the buffer
   std::uint32_t again = 0;  // runs only while the kernel's run before struck something, and at most so often; 0: once, always

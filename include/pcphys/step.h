@@ -21,8 +21,7 @@ struct StepSettings {
   Place integrate = Place::cpu, joints = Place::cpu, impulses = Place::cpu;
   Integrator integrator = Integrator::verlet;
   std::uint32_t substeps = 4;
-  /// Of the motion of joint trees: 2, or 4 where nothing but forces and pins acts on one (docs/integrate.md). A sub-step of fourth
-  /// order costs five.
+  /// Of the motion of joint trees: 2, or 4 where nothing but forces and pins acts on one (docs/integrate.md).
   std::uint32_t order = 2;
   /// Most by which a step may multiply the sub-steps of an island that needs it (docs/substeps.md); 1: never.
   std::uint32_t refinement = 16;

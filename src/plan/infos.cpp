@@ -19,19 +19,23 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
   return {frequency_times_h / (h * a), c / (1 + c), 1 / (1 + c)};
 }
 
-/// Of a solve.
-template <class Scalar> InfoOf<Scalar> of_solve(const InfoInputs& from, double h) {
+}  // namespace
+
+template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
+  const double h = from.h / double(1u << octave);
   const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
   const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
   const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
 
-  InfoOf<Scalar> biased{};
+  InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
+  biased = {};
   biased.h = Scalar(h);
   biased.inverse_h = Scalar(1 / h);
   biased.gravity_x = Scalar(from.gravity.x);
   biased.gravity_y = Scalar(from.gravity.y);
   biased.gravity_z = Scalar(from.gravity.z);
-  biased.h_before = Scalar(h);
+  biased.h_before = Scalar(from.h);
+  biased.by_forces = octave > 0;
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
   biased.contact_impulse_scale = Scalar(contact.impulse_scale);
@@ -63,26 +67,18 @@ template <class Scalar> InfoOf<Scalar> of_solve(const InfoInputs& from, double h
   biased.restitution_threshold = Scalar(from.restitution_threshold);
   biased.rounding = Scalar(constants::rest_roundings * epsilon);
   biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
-  return biased;
-}
 
-/// Where sub-steps go from the length `before` to `after`.
-template <class Scalar> InfoOf<Scalar> of_change(InfoOf<Scalar> info, double before, double after) {
-  info.h = Scalar(after);
-  info.inverse_h = Scalar(1 / after);
-  info.h_change = Scalar(1 - after / before);
-  info.h_before = Scalar(before);
-  info.impulse_ratio = Scalar(after / before);
-  return info;
-}
-
-/// Of a class whose step begins and ends with sub-steps of the length h.
-template <class Scalar> void fill_phases(const InfoInputs& from, double h, bool by_forces, InfoOf<Scalar>* infos) {
-  InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
-  biased = of_solve<Scalar>(from, h);
-  biased.by_forces = by_forces;
-  infos[unsigned(Phase::first)] = of_change(biased, from.last_substep > 0 ? from.last_substep : from.h, h);
-  infos[unsigned(Phase::last)] = of_change(biased, h, from.h);
+  const auto change = [&](Phase phase, double before, double after) {
+    InfoOf<Scalar>& info = infos[unsigned(phase)];
+    info = biased;
+    info.h = Scalar(after);
+    info.inverse_h = Scalar(1 / after);
+    info.h_change = Scalar(1 - after / before);
+    info.h_before = Scalar(before);
+    info.impulse_ratio = Scalar(after / before);
+  };
+  change(Phase::first, from.last_substep > 0 ? from.last_substep : from.h, h);
+  change(Phase::last, h, from.h);
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
@@ -93,24 +89,7 @@ template <class Scalar> void fill_phases(const InfoInputs& from, double h, bool 
   relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
-}  // namespace
-
-template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
-  fill_phases(from, from.h / double(1u << octave), octave > 0, infos);
-}
-
-template <class Scalar>
-void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count + fourth_stages], unsigned octave) {
-  const double h = from.h / double(1u << octave);
-  fill_phases(from, h * stage_shares[0], true, infos);
-  for (std::uint32_t i = 0; i < fourth_stages; i++)
-    infos[phase_count + i] = of_change(infos[unsigned(Phase::biased)], h * stage_shares[(i + fourth_stages - 1) % fourth_stages],
-                                       h * stage_shares[i]);
-}
-
 template void fill_infos<float>(const InfoInputs&, InfoOf<float> (&)[phase_count], unsigned);
 template void fill_infos<double>(const InfoInputs&, InfoOf<double> (&)[phase_count], unsigned);
-template void fill_infos<float>(const InfoInputs&, InfoOf<float> (&)[phase_count + fourth_stages], unsigned);
-template void fill_infos<double>(const InfoInputs&, InfoOf<double> (&)[phase_count + fourth_stages], unsigned);
 
 }  // namespace pcphys

@@ -3,7 +3,6 @@
 #include "pcphys/math.h"
 #include "pcphys/plan.h"
 #include "pcphys/step.h"
-#include "plan/composition.h"
 #include "world/schema.h"
 
 namespace pcphys {
@@ -29,14 +28,5 @@ struct InfoInputs {
 
 /// One block a phase, by Phase, for islands of an octave. What is remembered from step to step is of the world's sub-step.
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave = 0);
-/// The same of fourth order, and one block a stage.
-template <class Scalar>
-void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count + fourth_stages], unsigned octave);
-
-/// Of all classes of islands, by first_block.
-template <class Scalar> struct InfoBlocks {
-  InfoOf<Scalar> second[octave_count][phase_count];
-  InfoOf<Scalar> fourth[octave_count][phase_count + fourth_stages];
-};
 
 }  // namespace pcphys

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "pcphys/constants.h"
-#include "plan/composition.h"
+#include "plan/island_class.h"
 #include "plan/forest.h"
 #include "plan/infos.h"
 #include "plan/spins.h"

@@ -1,5 +1,5 @@
 // Sub-step classes: an island of octave k makes 2^k times the sub-steps that the settings ask for, and all others go on as they
-// are (docs/substeps.md); of fourth order the octave counts from octave_count on (plan/composition.h). Chosen before the step from what the world's tables hold, so that it is the same on any backend.
+// are (docs/substeps.md); of fourth order the octave counts from octave_count on (plan/island_class.h). Chosen before the step from what the world's tables hold, so that it is the same on any backend.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "pcphys/constants.h"
-#include "plan/composition.h"
 #include "plan/fourth_order.h"
+#include "plan/island_class.h"
 #include "plan/own_kernels.h"
 
 namespace pcphys {
@@ -262,15 +262,11 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   b.own(Stage::impulses, true, last, count, true);
 }
 
-/// All stages of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on them.
-void stages(Builder& b, const PlanSignature& s, unsigned octave) {
-  const std::uint32_t count = (s.substeps << octave) * fourth_stages, last = count - 1;
+/// All sub-steps of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on them.
+void smooth_substeps(Builder& b, const PlanSignature& s, unsigned octave) {
   b.enter(std::uint8_t(octave_count + octave));
-  b.kernel(motion(s).begin, Phase::first, 0);
-  b.kernel(Kernel::smooth_prepare, Phase::first, 0);
-  for (std::uint32_t k = 0; k < count; k++) b.kernel(Kernel::smooth_stage, Phase::stage, k);
-  b.kernel(Kernel::smooth_synchronise, Phase::last, last);
-  b.kernel(motion(s).restagger, Phase::last, last);
+  b.kernel(Kernel::smooth_prepare, Phase::biased, 0);
+  for (std::uint32_t k = 0; k < s.substeps << octave; k++) b.kernel(Kernel::smooth_step, Phase::biased, k);
 }
 
 }  // namespace
@@ -291,7 +287,7 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   for (std::uint8_t octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> octave & 1) substeps(b, s, octave);
   for (unsigned octave = 0; s.bodies && octave < octave_count; octave++)
-    if (s.octaves >> (octave_count + octave) & 1) stages(b, s, octave);
+    if (s.octaves >> (octave_count + octave) & 1) smooth_substeps(b, s, octave);
   if (!plan.entries.empty()) b.results(plan.entries.back().substep);
   return plan;
 }

@@ -13,7 +13,7 @@ namespace pcphys {
 /// Everything a plan depends on.
 struct PlanSignature {
   std::uint32_t substeps = 4;
-  std::uint32_t octaves = 1;       // bit k: some island is of class k (plan/composition.h)
+  std::uint32_t octaves = 1;       // bit k: some island is of class k (plan/island_class.h)
   std::uint32_t order = 2;         // StepSettings::order
   std::uint32_t second_order = 0;  // of order 4, why some trees are not: bits by SecondOrder
   Integrator integrator = Integrator::verlet;

@@ -1,7 +1,7 @@
 // The plan as text, and the names in it.
 #include <string>
 
-#include "plan/composition.h"
+#include "plan/island_class.h"
 #include "plan/own_kernels.h"
 #include "plan/plan.h"
 
@@ -29,7 +29,7 @@ std::string_view stage_name(const PlanEntry& entry) {
   return entry.kind == PlanEntry::Kind::kernel ? name(stage(entry)) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
-  constexpr std::string_view names[] = {"first", "biased", "relax", "last", "stage"};
+  constexpr std::string_view names[phase_count] = {"first", "biased", "relax", "last"};
   return names[std::size_t(entry.phase)];
 }
 
@@ -57,10 +57,7 @@ std::string to_text(const StepPlan& plan) {
   text += "sub     place stage      what                 phase   reads -> writes (B: waits for earlier writes)\n";
   for (const PlanEntry& e : plan.entries) {
     std::string line = std::to_string(e.substep);
-    if (is_fourth_order(e.octave))
-      line += "/" + std::to_string((plan.substeps << octave_of(e.octave)) * fourth_stages);
-    else if (e.octave > 0)
-      line += "/" + std::to_string(plan.substeps << e.octave);
+    if (octave_of(e.octave) > 0) line += "/" + std::to_string(plan.substeps << octave_of(e.octave));
     pad(line, 8);
     line += name(e.place);
     pad(line, 14);

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "plan/composition.h"
+#include "plan/island_class.h"
 
 namespace pcphys {
 namespace {
@@ -27,6 +27,8 @@ bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
   return std::ranges::any_of(own.ordered(), [&](const auto& k) { return place == Place::gl ? !k->loop : k->body.empty(); });
 }
 
+/// The numbers of a class are those of its octave, whatever the order.
+std::size_t info_index(const PlanEntry& entry) { return std::size_t{octave_of(entry.octave)} * phase_count + std::size_t(entry.phase); }
 /// Where contact_impact raises its flag.
 std::uint32_t flag_quad() {
   static const std::uint32_t quad =
@@ -251,7 +253,7 @@ void Runner::add_run(const PlanEntry& entry, const WorldState& state, const Sche
   // where they stand is known when all are there
   runs_.push_back({entry.kernel,
                    entry.barrier || entry.again > 0,
-                   block_of(entry),
+                   std::uint32_t(info_index(entry)),
                    lanes(entry.place, k.domain, schedule),
                    {static_cast<const Range*>(nullptr), ranges_.size() - first}});
 }
@@ -264,7 +266,7 @@ void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Sche
     ranges_.push_back({1, state.tables.rows(entry.own->table)});
   runs_.push_back({Kernel::begin,
                    entry.barrier,
-                   block_of(entry),
+                   std::uint32_t(info_index(entry)),
                    1,
                    {static_cast<const Range*>(nullptr), ranges_.size() - first},
                    entry.own});
@@ -294,7 +296,9 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState&
     run.ranges = std::span(ranges_).subspan(first, run.ranges.size());
     first += run.ranges.size();
   }
-  infos_ = first_block(plan.entries.empty() ? 1 : 1 + plan.entries.back().octave);
+  unsigned octave = 0;
+  for (const PlanEntry& entry : plan.entries) octave = std::max(octave, octave_of(entry.octave));
+  infos_ = phase_count * (1 + octave);
   kept_.clear();
   for (const Buffer buffer : plan.overwritten)
     if (keeps(buffer)) kept_.push_back(buffer);

@@ -14,6 +14,7 @@
 #include "pcphys/step.h"
 #include "plan/fourth_order.h"
 #include "plan/infos.h"
+#include "plan/island_class.h"
 #include "plan/octaves.h"
 #include "plan/plan.h"
 #include "step/check_settings.h"
@@ -58,9 +59,9 @@ struct Stepper::Inside {
   bool other = false;                                 // than those of the last step
   InfoInputs infos_from;                              // of the next four
   Precision infos_precision = Precision::f32;
-  std::uint32_t infos_of = 0;  // classes, as bits
-  InfoBlocks<float> infos_f;
-  InfoBlocks<double> infos_d;
+  std::uint32_t infos_of = 0;  // octaves, as bits
+  InfoOf<float> infos_f[octave_count][phase_count];
+  InfoOf<double> infos_d[octave_count][phase_count];
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
   int tries = 0;                                // of this step
@@ -128,13 +129,11 @@ struct Stepper::Inside {
     return runner.check(place, kernel);
   }
 
-  template <class Scalar> void fill_classes(InfoBlocks<Scalar>& infos) {
-    const std::uint32_t missing = octaves.used() & ~infos_of;
-    for (unsigned octave = 0; octave < octave_count; octave++) {
-      if (missing >> octave & 1) fill_infos(infos_from, infos.second[octave], octave);
-      if (missing >> (octave_count + octave) & 1) fill_infos(infos_from, infos.fourth[octave], octave);
-    }
-    infos_of |= octaves.used();
+  template <class Scalar> void fill_octaves(InfoOf<Scalar> (&infos)[octave_count][phase_count]) {
+    const std::uint32_t used = octaves_of(octaves.used());
+    for (unsigned octave = 0; octave < octave_count; octave++)
+      if ((used & ~infos_of) >> octave & 1) fill_infos(infos_from, infos[octave], octave);
+    infos_of |= used;
   }
 
   const void* fill(const WorldState& s, double h) {
@@ -146,8 +145,8 @@ struct Stepper::Inside {
       infos_precision = precision;
     }
     const bool single = precision == Precision::f32;
-    if (octaves.used() & ~infos_of) single ? fill_classes(infos_f) : fill_classes(infos_d);
-    return single ? static_cast<const void*>(&infos_f) : &infos_d;
+    if (octaves_of(octaves.used()) & ~infos_of) single ? fill_octaves(infos_f) : fill_octaves(infos_d);
+    return single ? static_cast<const void*>(infos_f) : infos_d;
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
@@ -301,7 +300,7 @@ struct Stepper::Inside {
     strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
     if (strayed) return {};
     s.last_substep = h;
-    report.substeps = wanted.substeps << highest_octave(octaves.used());
+    report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
     report.refined = octaves.refined();
     report.fourth_order = octaves.fourth_order();
     report.pairs = found.pairs;

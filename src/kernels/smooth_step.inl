@@ -1,0 +1,171 @@
+// A sub-step of fourth order of a joint tree on which nothing but forces and pins acts (docs/integrate.md). What moves freely in it are
+// the turns of its bodies and the place of its root; pins give the rest. Four stages of Runge and Kutta: with L the angular momenta,
+// q = exp(theta) q0, and l and alpha what the tree's factor answers to forces, to the pull of what turns and to L x w,
+//   L' = I alpha + w x L,   theta' = w - theta x w / 2 + theta x (theta x w) / 12,   p_root'' = l
+// (H. Munthe-Kaas, BIT 38, 1998, 92). Pins hold to rounding whatever the sub-step: places follow from turns.
+//
+// Between steps velocities stand half a sub-step of the world's behind the pose, as everywhere: v = u + half change. They are brought onto
+// the pins at the start, as a host may have set them otherwise.
+#include "smooth_rows.inl"
+#include "tree_store.inl"
+#include "tree_factor.inl"
+#include "tree_sweep.inl"
+#include "turned.inl"
+
+PC_FN Quaternion pc_smooth_facing(PC_IO Slot n) { return pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u)); }
+PC_FN Mask pc_smooth_moves(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0); }
+PC_FN Vec3 pc_smooth_product(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
+
+// Of a node that faces q: inertia, and the angular velocity that its momentum gives it.
+PC_FN void pc_smooth_face(PC_IO Slot n, Quaternion q) {
+  pc_st3_tree(PC_PASS n, TREE_FACING, q.v); PC_ST(tree_rows, n, TREE_FACING + 3u, q.w);
+  Sym3 inertia = pc_world_inertia(q, pc_ld3_tree(PC_PASS n, SMOOTH_MOMENTS)); pc_sts_tree(PC_PASS n, TREE_BODY, inertia); pc_sts_tree(PC_PASS n, TREE_INERTIA, inertia);
+  pc_st3_tree(PC_PASS n, SMOOTH_W, pc_rotate(q, pc_smooth_product(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), pc_rotate(pc_conjugate(q), pc_ld3_tree(PC_PASS n, SMOOTH_L)))));
+}
+PC_FN void pc_smooth_arms(PC_IO Slot n, Slot up) {
+  pc_st3_tree(PC_PASS n, TREE_RC, pc_rotate(pc_smooth_facing(PC_PASS n), pc_ld3_tree(PC_PASS n, SMOOTH_ANCHOR)));
+  pc_st3_tree(PC_PASS n, TREE_RP, pc_rotate(pc_smooth_facing(PC_PASS up), pc_ld3_tree(PC_PASS n, SMOOTH_UP_ANCHOR)));
+}
+
+// The pose and the velocities that a node begins with.
+PC_FN void pc_smooth_start(PC_IO Slot n) {
+  Index body = PC_ENDS(tree_ends, n, 0u); Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u); Quad turned = PC_GATHER(pose, body, 1u);
+  Quad u = PC_GATHER(velocity_parts, body, 0u); Quad l = PC_GATHER(velocity_parts, body, 1u); Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
+  Vec3 zero = pc_zero3(); Mask in_phase = angular.s < PC_REAL(0.0); Mask moves = linear.s > PC_REAL(0.0);
+  Vec3 v = pc_add(linear.v, pc_add(pc_select3(in_phase, zero, u.v), u_low.v)); Vec3 spin = pc_add(angular.v, pc_add(pc_select3(in_phase, zero, l.v), l_low.v));
+  pc_st3_tree(PC_PASS n, SMOOTH_V, pc_select3(moves, v, zero)); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_select3(moves, spin, zero));
+  pc_smooth_face(PC_PASS n, pc_quaternion(turned.v, turned.s));
+  pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(zero, zero));
+}
+// The rate of a node's pin, to be undone; 1 where it is more than rounding.
+PC_FN Real pc_smooth_rate(PC_IO Slot n, Slot up) {
+  Vec3 v = pc_ld3_tree(PC_PASS n, SMOOTH_V); Vec3 v_up = pc_ld3_tree(PC_PASS up, SMOOTH_V);
+  Vec3 swung = pc_sub(pc_cross(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_RC)), pc_cross(pc_ld3_tree(PC_PASS up, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_RP)));
+  Vec3 c = pc_add(pc_sub(v, v_up), swung); pc_st3_tree(PC_PASS n, TREE_C, c);
+  precise Real noise = (pc_length(v) + pc_length(v_up)) * PC_INFO(rounding); return pc_select(pc_length(c) > noise, PC_REAL(1.0), PC_REAL(0.0));
+}
+// Brings the velocities onto the pins, with the factor at the start.
+PC_FN void pc_smooth_onto_pins(PC_IO Slot m, Tree t) {
+  Real open = PC_REAL(0.0);
+  for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); open = pc_max(open, pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)))); }
+  if (PC_ANY(open > PC_REAL(0.5))) {  // lint: allow (a rate of nothing changes nothing)
+    for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), open)); }
+    pc_tree_sweep(PC_PASS m, t, TREE_C, SMOOTH_V_SUM, PC_REAL(0.0));
+    for (uint k = 0u; k < t.count; k++) {
+      Slot n = PC_NODE(m, t.first + k); Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
+      pc_st3_tree(PC_PASS n, SMOOTH_V, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_V), pc_ld3_tree(PC_PASS n, TREE_X))); pc_st3_tree(PC_PASS n, SMOOTH_W, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
+      pc_st3_tree(PC_PASS n, SMOOTH_L, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_L), spun, PC_LD(tree_rows, n, TREE_TOTAL)));
+    }
+  }
+  for (uint k = 0u; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); Vec3 zero = pc_zero3(); pc_st3_tree(PC_PASS n, SMOOTH_START, pc_ld3_tree(PC_PASS n, SMOOTH_L)); pc_st3_tree(PC_PASS n, SMOOTH_TURN, zero);
+    pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_TURN_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, zero);
+  }
+}
+
+// What acts on a node from outside of its pins, and what turning makes its pin open with.
+PC_FN void pc_smooth_load(PC_IO Slot n) {
+  Real share = pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL)); Real mass = PC_LD(tree_rows, n, TREE_MASS); Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  precise Vec3 push = gravity * mass + pc_ld3_tree(PC_PASS n, SMOOTH_FORCE) * share;
+  precise Vec3 turn = (pc_ld3_tree(PC_PASS n, SMOOTH_TORQUE) - pc_cross(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, SMOOTH_L))) * share;
+  pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(push, turn));
+}
+PC_FN Vec3 pc_smooth_pull(Vec3 w, Vec3 r) { return pc_cross(w, pc_cross(w, r)); }
+PC_FN void pc_smooth_open(PC_IO Slot n, Slot up) {
+  pc_st3_tree(PC_PASS n, TREE_C, pc_sub(pc_smooth_pull(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_RC)), pc_smooth_pull(pc_ld3_tree(PC_PASS up, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_RP))));
+}
+// After a stage's sweep: its share of the sums, and with `next` of time the state of the stage after it.
+PC_FN void pc_smooth_gain(PC_IO Slot n, Real weight, Real way_weight, Real next) {
+  Vec3 w = pc_ld3_tree(PC_PASS n, SMOOTH_W); Vec3 turn = pc_ld3_tree(PC_PASS n, SMOOTH_TURN); Vec3 answer = pc_ld3_tree(PC_PASS n, TREE_X);
+  Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
+  precise Vec3 l_rate = spun * PC_LD(tree_rows, n, TREE_TOTAL) + pc_cross(w, pc_ld3_tree(PC_PASS n, SMOOTH_L));
+  Vec3 across = pc_cross(turn, w); precise Vec3 turn_rate = w - across * PC_REAL(0.5) + pc_cross(turn, across) * PC_REAL(0.083333333333333333);
+  pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), l_rate, weight)); pc_st3_tree(PC_PASS n, SMOOTH_TURN_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_TURN_SUM), turn_rate, weight));
+  pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_V_SUM), answer, weight)); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_WAY_SUM), answer, way_weight));
+  pc_st3_tree(PC_PASS n, SMOOTH_TURN, pc_scale(turn_rate, next)); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_scale(l_rate, next));
+}
+// The state of a stage but the first.
+PC_FN void pc_smooth_turn(PC_IO Slot n) {
+  Index body = PC_ENDS(tree_ends, n, 0u); Quad turned = PC_GATHER(pose, body, 1u); Turn turn = pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN));
+  pc_st3_tree(PC_PASS n, SMOOTH_L, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_START), pc_ld3_tree(PC_PASS n, SMOOTH_L)));
+  pc_smooth_face(PC_PASS n, pc_quaternion_mul(turn.q, pc_quaternion(turned.v, turned.s)));
+}
+
+// How much of a gap the sub-step closes: what is more than 32 epsilon of the arm, but no faster than joint_push_speed.
+PC_FN Vec3 pc_smooth_closing(PC_IO Vec3 gap, Vec3 arm) {
+  Real size = pc_length(gap); precise Real most = PC_INFO(h) * PC_INFO(joint_push_speed); precise Real noise = pc_length(arm) * PC_INFO(rounding);
+  Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_select3(size > noise, pc_scale(gap, share), pc_zero3());
+}
+PC_FN Vec3 pc_smooth_swing(Turn turn, Vec3 r) { Vec3 s = pc_scale(pc_cross(turn.q.v, r), PC_REAL(2.0)); precise Vec3 d = s * turn.q.w + pc_cross(turn.q.v, s); return d; }
+// How far a node moves: with its parent, by what both arms swing, and by what closes the gap. Its arms and velocity at the end.
+PC_FN void pc_smooth_follow(PC_IO Slot n, Slot up) {
+  Index body = PC_ENDS(tree_ends, n, 0u); Index above = PC_ENDS(tree_ends, up, 0u);
+  Quad place = PC_GATHER(pose, body, 0u); Quad turned = PC_GATHER(pose, body, 1u); Quad low = PC_GATHER(pose, body, 2u); Quad place_up = PC_GATHER(pose, above, 0u); Quad turned_up = PC_GATHER(pose, above, 1u); Quad low_up = PC_GATHER(pose, above, 2u);
+  Vec3 rc = pc_rotate(pc_quaternion(turned.v, turned.s), pc_ld3_tree(PC_PASS n, SMOOTH_ANCHOR)); Vec3 rp = pc_rotate(pc_quaternion(turned_up.v, turned_up.s), pc_ld3_tree(PC_PASS n, SMOOTH_UP_ANCHOR));
+  Vec3 apart = pc_add(pc_sub(place.v, place_up.v), pc_sub(low.v, low_up.v)); Vec3 gap = pc_add(apart, pc_sub(rc, rp));
+  Vec3 swing = pc_smooth_swing(pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN)), rc); Vec3 swing_up = pc_smooth_swing(pc_turn(pc_ld3_tree(PC_PASS up, SMOOTH_TURN)), rp);
+  precise Vec3 way = pc_ld3_tree(PC_PASS up, SMOOTH_WAY_SUM) + (swing_up - swing) - pc_smooth_closing(PC_PASS gap, rc); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, way);
+  Vec3 swung = pc_sub(pc_cross(pc_ld3_tree(PC_PASS up, SMOOTH_W), pc_add(rp, swing_up)), pc_cross(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_add(rc, swing)));
+  pc_st3_tree(PC_PASS n, SMOOTH_V, pc_add(pc_ld3_tree(PC_PASS up, SMOOTH_V), swung));
+}
+// The sums of all stages: momentum, turn and angular velocity at the end.
+PC_FN void pc_smooth_finish(PC_IO Slot n) {
+  precise Real sixth = PC_INFO(h) * PC_REAL(0.16666666666666666667); Vec3 l = pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_START), pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), sixth);
+  pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_ld3_tree(PC_PASS n, SMOOTH_L)); pc_st3_tree(PC_PASS n, SMOOTH_L, l); pc_st3_tree(PC_PASS n, SMOOTH_START, l);
+  pc_st3_tree(PC_PASS n, SMOOTH_TURN, pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_TURN_SUM), sixth));
+}
+// Stores a node: the pose, and velocities half of the world's sub-step behind it.
+PC_FN void pc_smooth_store(PC_IO Slot n) {
+  Index body = PC_ENDS(tree_ends, n, 0u); Mask moves = pc_smooth_moves(PC_PASS n); precise Real half_step = PC_INFO(h_before) * PC_REAL(0.5);
+  Quad linear = PC_GATHER(motion, body, 0u); Quad place = PC_GATHER(pose, body, 0u); Quad turned = PC_GATHER(pose, body, 1u); Quad place_low = PC_GATHER(pose, body, 2u); Quad turned_low = PC_GATHER(pose, body, 3u);
+  Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
+  TwoSum p = pc_two_sum(place.v, pc_add(place_low.v, pc_ld3_tree(PC_PASS n, SMOOTH_WAY_SUM))); place.v = p.sum; place_low.v = pc_snap3(p.low);
+  Quaternion q = pc_quaternion(turned.v, turned.s); Turn turn = pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN));
+  Turned next = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(turn.q.v, turn.fall), q));
+  Vec3 u_half = pc_snap3(pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), half_step)); Vec3 l_half = pc_snap3(pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), half_step));
+  TwoSum u = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_V), pc_negate(u_half)); TwoSum l = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_START), pc_negate(l_half));
+  linear.v = pc_snap3(u.sum); u_low.v = pc_snap3(u.low); l_low.v = pc_snap3(l.low);
+  PC_SCATTER_IF(moves, pose, body, 0u, place); PC_SCATTER_IF(moves, pose, body, 1u, next.q); PC_SCATTER_IF(moves, pose, body, 2u, place_low); PC_SCATTER_IF(moves, pose, body, 3u, next.low);
+  PC_SCATTER_IF(moves, motion, body, 0u, linear); PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_snap3(l.sum), PC_REAL(0.0)));
+  PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(u_half, PC_REAL(0.0))); PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(l_half, PC_REAL(0.0)));
+  PC_SCATTER_IF(moves, velocity_parts, body, 2u, u_low); PC_SCATTER_IF(moves, velocity_parts, body, 3u, l_low);
+}
+// What its pin did, as an impulse of the world's sub-step.
+PC_FN void pc_smooth_remember(PC_IO Tree t, Slot n, uint k) {
+  Real flip = pc_select(PC_IS(pc_is_flipped(PC_PASS t, k)), PC_REAL(-1.0), PC_REAL(1.0)); Index joint = PC_ENDS(tree_ends, n, 1u);
+  precise Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN) * flip * PC_LD(tree_rows, n, TREE_TOTAL) * PC_INFO(h_before);
+  PC_SCATTER(joint_impulse, joint, 0u, pc_quad(pc_snap3(pin), PC_REAL(0.0))); PC_SCATTER(joint_impulse, joint, 1u, pc_quad(pc_zero3(), PC_REAL(0.0)));
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Real h = PC_INFO(h); precise Real half_h = h * PC_REAL(0.5); Real one = PC_REAL(1.0); Real two = PC_REAL(2.0);
+  for (uint k = 0u; k < t.count; k++) pc_smooth_start(PC_PASS PC_NODE(m, t.first + k));
+  uint from = 1u;
+  if (PC_ANY(pc_smooth_moves(PC_PASS root))) from = 0u;  // lint: allow (what stands stays as it is)
+  for (uint stage = 0u; stage < 4u; stage++) {
+    if (stage > 0u) for (uint k = from; k < t.count; k++) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
+    for (uint k = 1u; k < t.count; k++) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    pc_factor(PC_PASS m, t);
+    if (stage == 0u) pc_smooth_onto_pins(PC_PASS m, t);
+    for (uint k = from; k < t.count; k++) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
+    for (uint k = 1u; k < t.count; k++) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, PC_REAL(0.0));
+    Real weight = one; Real way = one; Real next = half_h;
+    if (stage == 1u || stage == 2u) weight = two;
+    if (stage == 2u) next = h;
+    if (stage == 3u) { way = PC_REAL(0.0); next = one; }
+    for (uint k = from; k < t.count; k++) pc_smooth_gain(PC_PASS PC_NODE(m, t.first + k), weight, way, next);
+  }
+  // the root's way, and its velocity at the end
+  precise Real sixth = h * PC_REAL(0.16666666666666666667); Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
+  precise Vec3 gone = (v + pc_ld3_tree(PC_PASS root, SMOOTH_WAY_SUM) * sixth) * h; pc_st3_tree(PC_PASS root, SMOOTH_WAY_SUM, gone);
+  pc_st3_tree(PC_PASS root, SMOOTH_V, pc_madd(v, pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
+  for (uint k = from; k < t.count; k++) {
+    Slot n = PC_NODE(m, t.first + k); pc_smooth_finish(PC_PASS n);
+    Index body = PC_ENDS(tree_ends, n, 0u); Quad turned = PC_GATHER(pose, body, 1u); Turn turn = pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN));
+    pc_smooth_face(PC_PASS n, pc_quaternion_mul(turn.q, pc_quaternion(turned.v, turned.s)));
+  }
+  for (uint k = 1u; k < t.count; k++) pc_smooth_follow(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  for (uint k = from; k < t.count; k++) pc_smooth_store(PC_PASS PC_NODE(m, t.first + k));
+  for (uint k = 1u; k < t.count; k++) pc_smooth_remember(PC_PASS t, PC_NODE(m, t.first + k), k);
+}
