@@ -27,6 +27,7 @@ class Still final : public Simulated {
 Trial::Trial(Engine& engine, const Setting& setting) : engine_(engine), setting_(setting) {
   conditions_.precision = setting.precision;
   conditions_.settings.substeps = setting.substeps;
+  conditions_.settings.order = setting.order;
   conditions_.settings.restitution_threshold = 0;
 }
 

@@ -36,6 +36,7 @@ struct Setting {
   double dt = 0;
   std::uint32_t substeps = 1;
   bool bounded = true;  // what it reports is held to the case's bounds
+  std::uint32_t order = 2;
 };
 
 /// One run of a variant: an engine, a precision, a step length and a number of sub-steps.
@@ -46,6 +47,7 @@ class Trial {
 
   double dt() const { return setting_.dt; }
   std::uint32_t substeps() const { return conditions_.settings.substeps; }
+  std::uint32_t order() const { return conditions_.settings.order; }
   bool is_double() const { return conditions_.precision == Precision::f64; }
   /// Steps that make up this time [s].
   long steps(double seconds) const;
@@ -106,7 +108,8 @@ struct Variant {
   bool single = true;                          // runs in single precision too
   bool direct = false;                         // uses `resolve`: in pcphys alone, with steps of its own
   bool own = false;                            // of a setting that pcphys alone has
-  std::string second_order{};                  // the metric whose slope must be 1.9 at least, in double
+  std::uint32_t order = 2;                     // of pcphys: StepSettings::order
+  std::string second_order{};                  // the metric whose slope must be 1.9 at least, in double; 3.5 with order 4
   bool order_is_target = false;                // should, not must
   std::optional<double> floor{};    // what the measure of the first metric may be off by itself: errors below it are equal
   std::optional<double> lost_at{};  // the first metric is then as large as the motion itself: the run tells nothing of it

@@ -59,7 +59,7 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
         // what is slow with one sub-step is slower with more
         if (n.value > 1 && same(dt.value, ladder.back()) && !selection.slow) continue;
         if (n.value > 1 && !engine.has_substeps() && substeps.size() > 1) continue;
-        result.push_back({precision, dt.value, n.value, dt.bounded && n.bounded});
+        result.push_back({precision, dt.value, n.value, dt.bounded && n.bounded, variant.order});
       }
   }
   return result;
@@ -171,9 +171,9 @@ void add_orders(const Variant& variant, std::vector<Row>& rows) {
     if (std::get<3>(k) != metric || !last->bounded || last->precision != Precision::f64 || !last->peer.empty() || !last->order)
       continue;
     Row row = *last;
-    row.metric = "2 - order of " + metric.substr(0, metric.find(" ["));
-    row.error = 2 - *row.order;
-    (variant.order_is_target ? row.target : row.must) = 0.1;
+    row.metric = std::to_string(variant.order) + " - order of " + metric.substr(0, metric.find(" ["));
+    row.error = variant.order - *row.order;
+    (variant.order_is_target ? row.target : row.must) = variant.order == 4 ? 0.5 : 0.1;
     (variant.order_is_target ? row.must : row.target).reset();
     row.pass = !row.must || row.error <= *row.must;
     added.push_back(row);

@@ -51,11 +51,15 @@ def passed(rows):
     return f"{sum(r['pass'] for r in judged)} of {len(judged)}" if judged else "-"
 
 
+def is_order(row):
+    return row["metric"].startswith(("2 - order of", "4 - order of"))
+
+
 def orders(rows):
     """Slopes of the metrics whose slope is a must, double precision, one sub-step."""
     found = []
     for row in rows:
-        if row["metric"].startswith("2 - order of") and row["substeps"] == 1:
+        if is_order(row) and row["substeps"] == 1:
             found.append(f"{row['order']:.2f}")
     return ", ".join(dict.fromkeys(found)) or "-"
 
@@ -124,7 +128,7 @@ def misses(rows):
 # ---- beside peers ----------------------------------------------------------------------------------
 def drawn(rows):
     """Of a variant's rows, those of the metric that its diagram shows."""
-    rows = [r for r in rows if not r["metric"].startswith("2 - order of") and r["total_ms"] > 0]
+    rows = [r for r in rows if not is_order(r) and r["total_ms"] > 0]
     return [r for r in rows if r["metric"] == rows[0]["metric"]]
 
 

@@ -44,10 +44,10 @@ enum class Timer : std::uint8_t { forces, broad, narrow, plan, upload, integrate
 const char* name(Timer timer);
 
 struct StepReport {
-  Error error;                 // code none: the step was made. Otherwise the world is as it was before
-  std::uint64_t step = 0;      // how many steps this stepper has made
-  std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
-  std::uint32_t refined = 0;   // bodies whose islands made more than the setting
+  Error error;                     // code none: the step was made. Otherwise the world is as it was before
+  std::uint64_t step = 0;          // how many steps this stepper has made
+  std::uint32_t substeps = 0;      // the most that an island made: the setting, or more (StepSettings::refinement)
+  std::uint32_t refined = 0;       // bodies whose islands made more than the setting
   std::uint32_t fourth_order = 0;  // bodies that moved in fourth order (StepSettings::order)
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of the same bodies, joints

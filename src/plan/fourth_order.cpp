@@ -40,7 +40,8 @@ std::uint32_t of_joint(const WorldState& state, std::uint32_t row, const SolvedJ
 std::array<const char*, 2> reason(SecondOrder why) {
   switch (why) {
     case SecondOrder::pivot: return {"fourth order of bodies on one pin", "their turning about it is of fourth order already"};
-    case SecondOrder::loop: return {"fourth order of loops", "a joint that closes one, or a spring, acts from outside of the tree"};
+    case SecondOrder::loop:
+      return {"fourth order of loops", "a joint that closes one, or a spring, acts from outside of the tree"};
     case SecondOrder::angles: return {"fourth order of joints with angles", "limits and locks act once a sub-step"};
     case SecondOrder::drive: return {"fourth order of driven joints", "motors and springs act once a sub-step"};
     case SecondOrder::drag: return {"fourth order with drag", "a negative stage would push"};

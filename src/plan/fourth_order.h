@@ -23,7 +23,8 @@ class FourthOrder {
   void forget() { trees_known_ = contacts_known_ = false; }
   void forget_contacts() { contacts_known_ = false; }
   /// Once for each change of objects. `closing`: rows of joints that stand in no tree.
-  void find_trees(const WorldState& state, const Forest& forest, const SolvedJoints& joints, std::span<const std::uint32_t> closing);
+  void find_trees(const WorldState& state, const Forest& forest, const SolvedJoints& joints,
+                  std::span<const std::uint32_t> closing);
   /// For sub-steps of the length h. `own`: kernels of the host's own act in them.
   void choose(const WorldState& state, double h, bool own);
   void choose_none();
@@ -43,11 +44,11 @@ class FourthOrder {
   void find_touched(const WorldState& state);
   double stiffness(const WorldState& state, std::uint32_t tree, double h) const;
 
-  std::vector<std::uint32_t> tree_of_;      // by body row: tree + 1, of bodies that move
-  std::vector<std::uint32_t> why_not_;      // by tree, bits that follow from the objects
+  std::vector<std::uint32_t> tree_of_;  // by body row: tree + 1, of bodies that move
+  std::vector<std::uint32_t> why_not_;  // by tree, bits that follow from the objects
   std::vector<Pin> pins_;
-  std::vector<std::uint32_t> first_pin_;    // by tree, and the end
-  std::vector<char> touched_;               // by tree
+  std::vector<std::uint32_t> first_pin_;  // by tree, and the end
+  std::vector<char> touched_;             // by tree
   bool trees_known_ = false, contacts_known_ = false;
   std::vector<std::uint32_t> chosen_;
   std::uint32_t reasons_ = 0;

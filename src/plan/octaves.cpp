@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "pcphys/constants.h"
-#include "plan/island_class.h"
 #include "plan/forest.h"
 #include "plan/infos.h"
+#include "plan/island_class.h"
 #include "plan/spins.h"
 
 namespace pcphys {

@@ -28,7 +28,9 @@ bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
 }
 
 /// The numbers of a class are those of its octave, whatever the order.
-std::size_t info_index(const PlanEntry& entry) { return std::size_t{octave_of(entry.octave)} * phase_count + std::size_t(entry.phase); }
+std::size_t info_index(const PlanEntry& entry) {
+  return std::size_t{octave_of(entry.octave)} * phase_count + std::size_t(entry.phase);
+}
 /// Where contact_impact raises its flag.
 std::uint32_t flag_quad() {
   static const std::uint32_t quad =
