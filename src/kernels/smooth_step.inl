@@ -4,8 +4,8 @@
 //   L' = I alpha + w x L,   theta' = w - theta x w / 2 + theta x (theta x w) / 12,   p_root'' = l
 // (H. Munthe-Kaas, BIT 38, 1998, 92). Pins hold to rounding whatever the sub-step: places follow from turns.
 //
-// Between steps velocities stand half a sub-step of the world's behind the pose, as everywhere: v = u + half change. They are brought onto
-// the pins at the start, as a host may have set them otherwise.
+// Between sub-steps velocities stand half a sub-step behind the pose, as everywhere. They come back into phase by forces alone, and then onto
+// the pins, by impulses along the arms of that pose: whatever such impulses were given to them before, of either order, makes no difference.
 #include "smooth_rows.inl"
 #include "tree_store.inl"
 #include "tree_factor.inl"
@@ -27,12 +27,18 @@ PC_FN void pc_smooth_arms(PC_IO Slot n, Slot up) {
   pc_st3_tree(PC_PASS n, TREE_RP, pc_rotate(pc_smooth_facing(PC_PASS up), pc_ld3_tree(PC_PASS n, SMOOTH_UP_ANCHOR)));
 }
 
+// What forces alone give to a node's velocities in half a sub-step.
+struct Kick { Vec3 u; Vec3 l; };
+PC_FN Kick pc_smooth_kick(PC_IO Slot n, Real inverse_mass) {
+  precise Real half_h = PC_INFO(h) * PC_REAL(0.5); Vec3 acceleration = pc_madd(Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z)), pc_ld3_tree(PC_PASS n, SMOOTH_FORCE), inverse_mass);
+  Kick kick; kick.u = pc_snap3(pc_scale(acceleration, half_h)); kick.l = pc_snap3(pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_TORQUE), half_h)); return kick;
+}
 // The pose and the velocities that a node begins with.
 PC_FN void pc_smooth_start(PC_IO Slot n) {
   Index body = PC_ENDS(tree_ends, n, 0u); Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u); Quad turned = PC_GATHER(pose, body, 1u);
-  Quad u = PC_GATHER(velocity_parts, body, 0u); Quad l = PC_GATHER(velocity_parts, body, 1u); Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
-  Vec3 zero = pc_zero3(); Mask in_phase = angular.s < PC_REAL(0.0); Mask moves = linear.s > PC_REAL(0.0);
-  Vec3 v = pc_add(linear.v, pc_add(pc_select3(in_phase, zero, u.v), u_low.v)); Vec3 spin = pc_add(angular.v, pc_add(pc_select3(in_phase, zero, l.v), l_low.v));
+  Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
+  Vec3 zero = pc_zero3(); Mask moves = linear.s > PC_REAL(0.0); Kick kick = pc_smooth_kick(PC_PASS n, linear.s);
+  Vec3 v = pc_add(linear.v, pc_add(kick.u, u_low.v)); Vec3 spin = pc_add(angular.v, pc_add(kick.l, l_low.v));
   pc_st3_tree(PC_PASS n, SMOOTH_V, pc_select3(moves, v, zero)); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_select3(moves, spin, zero));
   pc_smooth_face(PC_PASS n, pc_quaternion(turned.v, turned.s));
   pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(zero, zero));
@@ -105,35 +111,44 @@ PC_FN void pc_smooth_follow(PC_IO Slot n, Slot up) {
   Vec3 apart = pc_add(pc_sub(place.v, place_up.v), pc_sub(low.v, low_up.v)); Vec3 gap = pc_add(apart, pc_sub(rc, rp));
   Vec3 swing = pc_smooth_swing(pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN)), rc); Vec3 swing_up = pc_smooth_swing(pc_turn(pc_ld3_tree(PC_PASS up, SMOOTH_TURN)), rp);
   precise Vec3 way = pc_ld3_tree(PC_PASS up, SMOOTH_WAY_SUM) + (swing_up - swing) - pc_smooth_closing(PC_PASS gap, rc); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, way);
-  Vec3 swung = pc_sub(pc_cross(pc_ld3_tree(PC_PASS up, SMOOTH_W), pc_add(rp, swing_up)), pc_cross(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_add(rc, swing)));
+  Vec3 arm = pc_add(rc, swing); Vec3 arm_up = pc_add(rp, swing_up); Vec3 swung = pc_sub(pc_cross(pc_ld3_tree(PC_PASS up, SMOOTH_W), arm_up), pc_cross(pc_ld3_tree(PC_PASS n, SMOOTH_W), arm));
   pc_st3_tree(PC_PASS n, SMOOTH_V, pc_add(pc_ld3_tree(PC_PASS up, SMOOTH_V), swung));
+  pc_st3_tree(PC_PASS n, TREE_RC, arm); pc_st3_tree(PC_PASS n, TREE_RP, arm_up);
+}
+// What its pin does to a node and to its parent at the end.
+PC_FN void pc_smooth_pin(PC_IO Slot n, Slot up) {
+  Vec3 f = pc_ld3_tree(PC_PASS n, TREE_PIN); Real light = pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_MASS)); precise Real light_up = -pc_inverse_or_zero(PC_LD(tree_rows, up, TREE_MASS));
+  Real total = PC_LD(tree_rows, n, TREE_TOTAL); precise Real back = -total;
+  pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_V_SUM), f, light)); pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), pc_cross(pc_ld3_tree(PC_PASS n, TREE_RC), f), total));
+  pc_st3_tree(PC_PASS up, SMOOTH_V_SUM, pc_madd(pc_ld3_tree(PC_PASS up, SMOOTH_V_SUM), f, light_up)); pc_st3_tree(PC_PASS up, SMOOTH_L_SUM, pc_madd(pc_ld3_tree(PC_PASS up, SMOOTH_L_SUM), pc_cross(pc_ld3_tree(PC_PASS n, TREE_RP), f), back));
 }
 // The sums of all stages: momentum, turn and angular velocity at the end.
 PC_FN void pc_smooth_finish(PC_IO Slot n) {
   precise Real sixth = PC_INFO(h) * PC_REAL(0.16666666666666666667); Vec3 l = pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_START), pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), sixth);
-  pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_ld3_tree(PC_PASS n, SMOOTH_L)); pc_st3_tree(PC_PASS n, SMOOTH_L, l); pc_st3_tree(PC_PASS n, SMOOTH_START, l);
+  pc_st3_tree(PC_PASS n, SMOOTH_L, l); pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_zero3()); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_zero3());
   pc_st3_tree(PC_PASS n, SMOOTH_TURN, pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_TURN_SUM), sixth));
 }
-// Stores a node: the pose, and velocities half of the world's sub-step behind it.
+// Stores a node: the pose, and velocities half a sub-step behind it.
 PC_FN void pc_smooth_store(PC_IO Slot n) {
-  Index body = PC_ENDS(tree_ends, n, 0u); Mask moves = pc_smooth_moves(PC_PASS n); precise Real half_step = PC_INFO(h_before) * PC_REAL(0.5);
+  Index body = PC_ENDS(tree_ends, n, 0u); Mask moves = pc_smooth_moves(PC_PASS n);
   Quad linear = PC_GATHER(motion, body, 0u); Quad place = PC_GATHER(pose, body, 0u); Quad turned = PC_GATHER(pose, body, 1u); Quad place_low = PC_GATHER(pose, body, 2u); Quad turned_low = PC_GATHER(pose, body, 3u);
   Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
   TwoSum p = pc_two_sum(place.v, pc_add(place_low.v, pc_ld3_tree(PC_PASS n, SMOOTH_WAY_SUM))); place.v = p.sum; place_low.v = pc_snap3(p.low);
   Quaternion q = pc_quaternion(turned.v, turned.s); Turn turn = pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN));
   Turned next = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(turn.q.v, turn.fall), q));
-  Vec3 u_half = pc_snap3(pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), half_step)); Vec3 l_half = pc_snap3(pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), half_step));
-  TwoSum u = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_V), pc_negate(u_half)); TwoSum l = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_START), pc_negate(l_half));
+  precise Real half_h = PC_INFO(h) * PC_REAL(0.5); Kick kick = pc_smooth_kick(PC_PASS n, linear.s);
+  Vec3 u_half = pc_snap3(pc_madd(kick.u, pc_ld3_tree(PC_PASS n, SMOOTH_V_SUM), half_h)); Vec3 l_half = pc_snap3(pc_madd(kick.l, pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), half_h));
+  TwoSum u = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_V), pc_negate(u_half)); TwoSum l = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_L), pc_negate(l_half));
   linear.v = pc_snap3(u.sum); u_low.v = pc_snap3(u.low); l_low.v = pc_snap3(l.low);
   PC_SCATTER_IF(moves, pose, body, 0u, place); PC_SCATTER_IF(moves, pose, body, 1u, next.q); PC_SCATTER_IF(moves, pose, body, 2u, place_low); PC_SCATTER_IF(moves, pose, body, 3u, next.low);
   PC_SCATTER_IF(moves, motion, body, 0u, linear); PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_snap3(l.sum), PC_REAL(0.0)));
   PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(u_half, PC_REAL(0.0))); PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(l_half, PC_REAL(0.0)));
   PC_SCATTER_IF(moves, velocity_parts, body, 2u, u_low); PC_SCATTER_IF(moves, velocity_parts, body, 3u, l_low);
 }
-// What its pin did, as an impulse of the world's sub-step.
+// What its pin does at the end, as an impulse of the sub-step.
 PC_FN void pc_smooth_remember(PC_IO Tree t, Slot n, uint k) {
   Real flip = pc_select(PC_IS(pc_is_flipped(PC_PASS t, k)), PC_REAL(-1.0), PC_REAL(1.0)); Index joint = PC_ENDS(tree_ends, n, 1u);
-  precise Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN) * flip * PC_LD(tree_rows, n, TREE_TOTAL) * PC_INFO(h_before);
+  precise Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN) * flip * PC_LD(tree_rows, n, TREE_TOTAL) * PC_INFO(h);
   PC_SCATTER(joint_impulse, joint, 0u, pc_quad(pc_snap3(pin), PC_REAL(0.0))); PC_SCATTER(joint_impulse, joint, 1u, pc_quad(pc_zero3(), PC_REAL(0.0)));
 }
 
@@ -153,7 +168,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Real weight = one; Real way = one; Real next = half_h;
     if (stage == 1u || stage == 2u) weight = two;
     if (stage == 2u) next = h;
-    if (stage == 3u) { way = PC_REAL(0.0); next = one; }
+    if (stage == 3u) way = PC_REAL(0.0);
     for (uint k = from; k < t.count; k++) pc_smooth_gain(PC_PASS PC_NODE(m, t.first + k), weight, way, next);
   }
   // the root's way, and its velocity at the end
@@ -166,6 +181,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_smooth_face(PC_PASS n, pc_quaternion_mul(turn.q, pc_quaternion(turned.v, turned.s)));
   }
   for (uint k = 1u; k < t.count; k++) pc_smooth_follow(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  for (uint k = 1u; k < t.count; k++) pc_smooth_pin(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
   for (uint k = from; k < t.count; k++) pc_smooth_store(PC_PASS PC_NODE(m, t.first + k));
   for (uint k = 1u; k < t.count; k++) pc_smooth_remember(PC_PASS t, PC_NODE(m, t.first + k), k);
 }

@@ -79,8 +79,13 @@ void FourthOrder::find_pins(const WorldState& state, std::span<const TreeNode> t
     const JointDef& def = joints.def(state, node.joint);
     const Vec3 own = node.flipped ? def.frame_a.position : def.frame_b.position;
     const Vec3 parents = node.flipped ? def.frame_b.position : def.frame_a.position;
-    pins_.push_back({node.joint, std::max(response(state, node.body, own), response(state, tree[node.parent].body, parents))});
+    pins_.push_back({node.joint, std::max(response(state, node.body, own), response(state, tree[node.parent].body, parents)),
+                     state.tables.get(Buffer::mass, node.body, 3)});
   }
+  if (state.responds(tree.front().body)) return;
+  Pin* const first = pins_.data() + pins_.size() - (tree.size() - 1);  // of node 1
+  for (std::size_t k = tree.size() - 1; k > 0; k--)
+    if (tree[k].parent > 0) first[tree[k].parent - 1].mass += first[k - 1].mass;
 }
 
 void FourthOrder::find_touched(const WorldState& state) {
@@ -91,14 +96,16 @@ void FourthOrder::find_touched(const WorldState& state) {
       if (tree_of_[body] > 0) touched_[tree_of_[body] - 1] = true;
 }
 
-/// (h w / 2)^2 of what the pins' forces of the last sub-step turn fastest, from above.
+/// (h w / 2)^2 of what the pins' forces turn fastest, from above: those of the last sub-step, or of the weight that hangs there where
+/// that is not known.
 double FourthOrder::stiffness(const WorldState& state, std::uint32_t tree, double h) const {
-  double most = 0;
+  double most = 0, weight = 0;
   for (std::uint32_t i = first_pin_[tree]; i < first_pin_[tree + 1]; i++) {
-    const double impulse = length(state.tables.get3(Buffer::joint_impulse, pins_[i].joint, 0));
-    most = std::max(most, impulse * pins_[i].response);
+    const Pin& pin = pins_[i];
+    most = std::max(most, length(state.tables.get3(Buffer::joint_impulse, pin.joint, 0)) * pin.response);
+    weight = std::max(weight, pin.mass * length(state.gravity) * pin.response);
   }
-  return state.last_substep > 0 ? most * h * h / state.last_substep : 0;
+  return h * h * (most > 0 && state.last_substep > 0 ? most / state.last_substep : weight);
 }
 
 void FourthOrder::choose_none() {

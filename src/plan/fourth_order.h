@@ -35,10 +35,11 @@ class FourthOrder {
   std::uint32_t reasons() const { return reasons_; }
 
  private:
-  /// A pin, and how much a force on it turns its two bodies: the longer of |r| / trace of the inertia [1/(kg m)].
+  /// A pin, how much a force on it turns its two bodies (the larger |r| / trace of the inertia) [1/(kg m)], and the mass that
+  /// hangs on it.
   struct Pin {
     std::uint32_t joint;  // row
-    double response;
+    double response, mass;
   };
   void find_pins(const WorldState& state, std::span<const TreeNode> tree, const SolvedJoints& joints);
   void find_touched(const WorldState& state);

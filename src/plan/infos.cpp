@@ -34,7 +34,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.gravity_x = Scalar(from.gravity.x);
   biased.gravity_y = Scalar(from.gravity.y);
   biased.gravity_z = Scalar(from.gravity.z);
-  biased.h_before = Scalar(from.h);
+  biased.h_before = Scalar(h);
   biased.by_forces = octave > 0;
   biased.impulse_ratio = 1;
   biased.contact_rate = Scalar(contact.rate);
