@@ -96,6 +96,9 @@ Status check_numbers(const RunOptions& options) {
   if (options.steps)
     if (auto status = check_range("steps", *options.steps, 1, many); !status) return status;
   if (auto status = check_range("substeps", options.substeps, 1, 1000); !status) return status;
+  if (options.order != 2 && options.order != 4)
+    return bad("--order is " + std::to_string(options.order) + "; give 2, or 4 for joint trees.");
+  if (options.order == 4 && options.integrator == "seed") return bad("--order 4 is not for --integrator seed.");
   if (auto status = check_range("threads", options.threads, 0, 256); !status) return status;
   if (auto status = check_range("device", options.device, -1, 1000); !status) return status;
   if (!(options.ratio > 0 && std::isfinite(options.ratio)))

@@ -95,6 +95,8 @@ inline constexpr double tree_spin_floor = 6e-5;
 /// Of fourth order a tree has no stiffness in its inertia: (frequency at which the forces of its pins would turn a body, times half the
 /// sub-step)^2, from above. Beyond it stays at second order.
 inline constexpr double stiff_pins = 1;
+/// And one of which the shortest sub-step turns a body by more than this [rad].
+inline constexpr double largest_smooth_turn = 1;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a

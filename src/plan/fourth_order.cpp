@@ -35,6 +35,16 @@ std::uint32_t of_joint(const WorldState& state, std::uint32_t row, const SolvedJ
   return why;
 }
 
+/// Whether some body of the tree spins faster than that [rad/s].
+bool spins_faster(const WorldState& state, std::span<const TreeNode> tree, double limit) {
+  return std::ranges::any_of(tree, [&](const TreeNode& node) {
+    if (!state.responds(node.body)) return false;
+    const Vec3 inverse = state.tables.get3(Buffer::mass, node.body, 4);
+    const double most = std::max({inverse.x, inverse.y, inverse.z}) * length(state.momentum_of_rotation(node.body));
+    return most > limit && length(state.angular_velocity(node.body)) > limit;
+  });
+}
+
 }  // namespace
 
 std::array<const char*, 2> reason(SecondOrder why) {
@@ -48,6 +58,8 @@ std::array<const char*, 2> reason(SecondOrder why) {
     case SecondOrder::carried: return {"fourth order of what is carried", "a kinematic body may carry several trees"};
     case SecondOrder::contact: return {"fourth order of what is touched", "contacts act once a sub-step"};
     case SecondOrder::stiff: return {"fourth order of loaded pins", "they swing too fast for the sub-step without stiffness"};
+    case SecondOrder::fast:
+      return {"fourth order of fast turns", "it does not stay stable where a sub-step turns a body too far"};
     default: return {"fourth order", "kernels of the host's own act in each sub-step"};
   }
 }
@@ -113,14 +125,16 @@ void FourthOrder::choose_none() {
   reasons_ = 0;
 }
 
-void FourthOrder::choose(const WorldState& state, double h, bool own) {
+void FourthOrder::choose(const WorldState& state, const Forest& forest, double h, std::uint8_t highest, bool own) {
   choose_none();
   find_touched(state);
+  const double fastest = constants::largest_smooth_turn * double(1u << highest) / h;
   for (std::uint32_t i = 0; i < why_not_.size(); i++) {
     std::uint32_t why = why_not_[i];
     if (own) why |= bit(SecondOrder::own_kernel);
     if (touched_[i]) why |= bit(SecondOrder::contact);
     if (why == 0 && stiffness(state, i, h) > constants::stiff_pins) why |= bit(SecondOrder::stiff);
+    if (why == 0 && spins_faster(state, forest.tree(i), fastest)) why |= bit(SecondOrder::fast);
     reasons_ |= why;
     if (why == 0) chosen_.push_back(i);
   }

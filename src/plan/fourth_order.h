@@ -13,7 +13,7 @@
 namespace pcphys {
 
 /// Why a tree stays at second order.
-enum class SecondOrder : std::uint8_t { pivot, loop, angles, drive, drag, carried, contact, stiff, own_kernel, count };
+enum class SecondOrder : std::uint8_t { pivot, loop, angles, drive, drag, carried, contact, stiff, fast, own_kernel, count };
 /// What and why, of the plan.
 std::array<const char*, 2> reason(SecondOrder why);
 
@@ -25,8 +25,8 @@ class FourthOrder {
   /// Once for each change of objects. `closing`: rows of joints that stand in no tree.
   void find_trees(const WorldState& state, const Forest& forest, const SolvedJoints& joints,
                   std::span<const std::uint32_t> closing);
-  /// For sub-steps of the length h. `own`: kernels of the host's own act in them.
-  void choose(const WorldState& state, double h, bool own);
+  /// For sub-steps of the length h, of which refined islands make 2^highest. `own`: kernels of the host's own act in them.
+  void choose(const WorldState& state, const Forest& forest, double h, std::uint8_t highest, bool own);
   void choose_none();
 
   /// Trees of fourth order, ascending.

@@ -43,15 +43,12 @@ void Islands::join(std::uint32_t a, std::uint32_t b) {
   size_[a] += size_[b];
 }
 
-namespace {
-/// Within StepSettings::refinement and the most sub-steps of a step.
 std::uint8_t highest_octave(const StepSettings& settings) {
   std::uint8_t octave = 0;
   while (octave + 1u < octave_count && 2u << octave <= settings.refinement && settings.substeps << (octave + 1) <= most_substeps)
     octave++;
   return octave;
 }
-}  // namespace
 
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
   uneven ? loads_.find(state, trees) : loads_.forget_contacts();

@@ -37,6 +37,9 @@ class Islands {
   std::vector<std::uint32_t> parent_, size_;  // by body row
 };
 
+/// The highest octave within StepSettings::refinement and the most sub-steps of a step.
+std::uint8_t highest_octave(const StepSettings& settings);
+
 class Octaves {
  public:
   /// Follows a change of objects, as Loads::find_loops.

@@ -239,12 +239,26 @@ struct Stepper::Inside {
     fourth.forget_contacts();
   }
 
+  /// The same of a plan without a step: with the contacts that there are.
+  void foresee_order(const WorldState& s, const Schedule& from, double dt, PlanSignature& wanted) const {
+    if (settings.order != 4) return;
+    const TreeSlots& trees = from.trees;
+    FourthOrder order;
+    order.find_trees(s, trees.forest(), trees.solved(), trees.closing());
+    order.choose(s, trees.forest(), substep_length(dt, settings.substeps), highest_octave(settings), !own.ordered().empty());
+    std::uint32_t bodies = 0;
+    for (const std::uint32_t tree : order.trees())
+      for (const TreeNode& node : trees.forest().tree(tree)) bodies += s.responds(node.body);
+    wanted.second_order = order.reasons();
+    wanted.octaves = (bodies < from.moving ? 1u : 0u) | (bodies > 0 ? 1u << octave_count : 0u);
+  }
+
   /// Which trees move in fourth order in this step.
   void choose_order(const WorldState& s, double dt) {
     const TreeSlots& trees = schedule.trees;
     if (settings.order != 4) return fourth.choose_none();
     fourth.find_trees(s, trees.forest(), trees.solved(), trees.closing());
-    fourth.choose(s, substep_length(dt, settings.substeps), !own.ordered().empty());
+    fourth.choose(s, trees.forest(), substep_length(dt, settings.substeps), highest_octave(settings), !own.ordered().empty());
   }
 
   void freeze_leaving(WorldState& s) {
@@ -377,6 +391,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.tree_contacts = wanted.shapes && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
+  in.foresee_order(world.state(), schedule, dt, wanted);
   return make_plan(wanted, in.own.ordered());
 }
 
