@@ -62,8 +62,7 @@ constexpr Call drag_calls[] = {{Kernel::begin_drag, 0},    {Kernel::integrate_dr
 constexpr Call seed_calls[] = {
     {Kernel::begin_seed, 0}, {Kernel::integrate_seed, 0}, {Kernel::advance_seed, 0}, {Kernel::synchronise_seed, 1}};
 
-constexpr Call smooth_calls[] = {
-    {Kernel::begin, 0}, {Kernel::smooth_prepare, 0}, {Kernel::smooth_step, 0}, {Kernel::smooth_step, 0}};
+constexpr Call smooth_calls[] = {{Kernel::smooth_prepare, 0}, {Kernel::smooth_step, 0}, {Kernel::smooth_step, 0}};
 
 /// The kernel that stands in where joints have motors or springs.
 Kernel driven(Kernel kernel) {

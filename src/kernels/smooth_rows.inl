@@ -13,4 +13,6 @@ const uint SMOOTH_V_SUM = 134u;     // in the root's velocity
 const uint SMOOTH_WAY_SUM = 120u;   // and in its way; at the end how far a body moves
 const uint SMOOTH_W = 114u;         // angular velocity of the stage
 const uint SMOOTH_V = 117u;         // velocity at the sub-step's start; at the end that of its end
+const uint SMOOTH_V_LOW = 6u;       // what rounding dropped from it
+const uint SMOOTH_L_LOW = 156u;     // and from the momentum
 const uint SMOOTH_TURN = 130u;      // of the stage, since the start, as a vector

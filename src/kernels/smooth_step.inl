@@ -4,8 +4,9 @@
 //   L' = I alpha + w x L,   theta' = w - theta x w / 2 + theta x (theta x w) / 12,   p_root'' = l
 // (H. Munthe-Kaas, BIT 38, 1998, 92). Pins hold to rounding whatever the sub-step: places follow from turns.
 //
-// Between sub-steps velocities stand half a sub-step behind the pose, as everywhere. They come back into phase by forces alone, and then onto
-// the pins, by impulses along the arms of that pose: whatever such impulses were given to them before, of either order, makes no difference.
+// Between sub-steps velocities stand half a sub-step behind the pose, as everywhere. Those that are read are taken up again where they fit the
+// pins, as this order leaves them. Others (of second order, or set by the host) come into phase by forces alone, and then onto the pins, by
+// impulses along the arms of that pose: whatever such impulses were given to them before makes no difference.
 #include "smooth_rows.inl"
 #include "tree_store.inl"
 #include "tree_factor.inl"
@@ -16,32 +17,49 @@ PC_FN Quaternion pc_smooth_facing(PC_IO Slot n) { return pc_quaternion(pc_ld3_tr
 PC_FN Mask pc_smooth_moves(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0); }
 PC_FN Vec3 pc_smooth_product(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
 
+PC_FN void pc_smooth_spin(PC_IO Slot n, Quaternion q) {
+  pc_st3_tree(PC_PASS n, SMOOTH_W, pc_rotate(q, pc_smooth_product(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), pc_rotate(pc_conjugate(q), pc_ld3_tree(PC_PASS n, SMOOTH_L)))));
+}
 // Of a node that faces q: inertia, and the angular velocity that its momentum gives it.
 PC_FN void pc_smooth_face(PC_IO Slot n, Quaternion q) {
   pc_st3_tree(PC_PASS n, TREE_FACING, q.v); PC_ST(tree_rows, n, TREE_FACING + 3u, q.w);
   Sym3 inertia = pc_world_inertia(q, pc_ld3_tree(PC_PASS n, SMOOTH_MOMENTS)); pc_sts_tree(PC_PASS n, TREE_BODY, inertia); pc_sts_tree(PC_PASS n, TREE_INERTIA, inertia);
-  pc_st3_tree(PC_PASS n, SMOOTH_W, pc_rotate(q, pc_smooth_product(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), pc_rotate(pc_conjugate(q), pc_ld3_tree(PC_PASS n, SMOOTH_L)))));
+  pc_smooth_spin(PC_PASS n, q);
 }
 PC_FN void pc_smooth_arms(PC_IO Slot n, Slot up) {
   pc_st3_tree(PC_PASS n, TREE_RC, pc_rotate(pc_smooth_facing(PC_PASS n), pc_ld3_tree(PC_PASS n, SMOOTH_ANCHOR)));
   pc_st3_tree(PC_PASS n, TREE_RP, pc_rotate(pc_smooth_facing(PC_PASS up), pc_ld3_tree(PC_PASS n, SMOOTH_UP_ANCHOR)));
 }
 
+// Adds to what stands as a sum of two reals: the rounding of each sub-step would add up.
+PC_FN void pc_smooth_add(PC_IO Slot n, uint high, uint low, Vec3 change) {
+  TwoSum s = pc_two_sum(pc_ld3_tree(PC_PASS n, high), pc_add(pc_ld3_tree(PC_PASS n, low), change)); pc_st3_tree(PC_PASS n, high, s.sum); pc_st3_tree(PC_PASS n, low, s.low);
+}
 // What forces alone give to a node's velocities in half a sub-step.
 struct Kick { Vec3 u; Vec3 l; };
-PC_FN Kick pc_smooth_kick(PC_IO Slot n, Real inverse_mass) {
-  precise Real half_h = PC_INFO(h) * PC_REAL(0.5); Vec3 acceleration = pc_madd(Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z)), pc_ld3_tree(PC_PASS n, SMOOTH_FORCE), inverse_mass);
+PC_FN Kick pc_smooth_kick(PC_IO Slot n, Real inverse_mass, Real h) {
+  precise Real half_h = h * PC_REAL(0.5); Vec3 acceleration = pc_madd(Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z)), pc_ld3_tree(PC_PASS n, SMOOTH_FORCE), inverse_mass);
   Kick kick; kick.u = pc_snap3(pc_scale(acceleration, half_h)); kick.l = pc_snap3(pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_TORQUE), half_h)); return kick;
 }
 // The pose and the velocities that a node begins with.
 PC_FN void pc_smooth_start(PC_IO Slot n) {
   Index body = PC_ENDS(tree_ends, n, 0u); Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u); Quad turned = PC_GATHER(pose, body, 1u);
-  Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
-  Vec3 zero = pc_zero3(); Mask moves = linear.s > PC_REAL(0.0); Kick kick = pc_smooth_kick(PC_PASS n, linear.s);
-  Vec3 v = pc_add(linear.v, pc_add(kick.u, u_low.v)); Vec3 spin = pc_add(angular.v, pc_add(kick.l, l_low.v));
-  pc_st3_tree(PC_PASS n, SMOOTH_V, pc_select3(moves, v, zero)); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_select3(moves, spin, zero));
+  Quad u = PC_GATHER(velocity_parts, body, 0u); Quad l = PC_GATHER(velocity_parts, body, 1u); Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
+  Vec3 zero = pc_zero3(); Mask moves = linear.s > PC_REAL(0.0);
+  TwoSum v = pc_two_sum(linear.v, pc_add(u.v, u_low.v)); TwoSum spin = pc_two_sum(angular.v, pc_add(l.v, l_low.v));
+  pc_st3_tree(PC_PASS n, SMOOTH_V, pc_select3(moves, v.sum, zero)); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_select3(moves, spin.sum, zero));
+  pc_st3_tree(PC_PASS n, SMOOTH_V_LOW, pc_select3(moves, v.low, zero)); pc_st3_tree(PC_PASS n, SMOOTH_L_LOW, pc_select3(moves, spin.low, zero));
   pc_smooth_face(PC_PASS n, pc_quaternion(turned.v, turned.s));
   pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(zero, zero));
+}
+// In lanes that want it the velocities by forces alone, of a body whose are not in phase.
+PC_FN void pc_smooth_restart(PC_IO Slot n, Mask wanted) {
+  Index body = PC_ENDS(tree_ends, n, 0u); Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u); Quad u_low = PC_GATHER(velocity_parts, body, 2u); Quad l_low = PC_GATHER(velocity_parts, body, 3u);
+  Mask kicked = pc_and(wanted, pc_and(linear.s > PC_REAL(0.0), angular.s > PC_REAL(-0.5))); Kick kick = pc_smooth_kick(PC_PASS n, linear.s, PC_INFO(h_before));
+  TwoSum v = pc_two_sum(linear.v, pc_add(kick.u, u_low.v)); TwoSum spin = pc_two_sum(angular.v, pc_add(kick.l, l_low.v));
+  pc_st3_tree(PC_PASS n, SMOOTH_V, pc_select3(kicked, v.sum, pc_ld3_tree(PC_PASS n, SMOOTH_V))); pc_st3_tree(PC_PASS n, SMOOTH_V_LOW, pc_select3(kicked, v.low, pc_ld3_tree(PC_PASS n, SMOOTH_V_LOW)));
+  pc_st3_tree(PC_PASS n, SMOOTH_L, pc_select3(kicked, spin.sum, pc_ld3_tree(PC_PASS n, SMOOTH_L))); pc_st3_tree(PC_PASS n, SMOOTH_L_LOW, pc_select3(kicked, spin.low, pc_ld3_tree(PC_PASS n, SMOOTH_L_LOW)));
+  pc_smooth_spin(PC_PASS n, pc_smooth_facing(PC_PASS n));
 }
 // The rate of a node's pin, to be undone; 1 where it is more than rounding.
 PC_FN Real pc_smooth_rate(PC_IO Slot n, Slot up) {
@@ -55,12 +73,16 @@ PC_FN void pc_smooth_onto_pins(PC_IO Slot m, Tree t) {
   Real open = PC_REAL(0.0);
   for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); open = pc_max(open, pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)))); }
   if (PC_ANY(open > PC_REAL(0.5))) {  // lint: allow (a rate of nothing changes nothing)
-    for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), open)); }
+    for (uint k = 0u; k < t.count; k++) pc_smooth_restart(PC_PASS PC_NODE(m, t.first + k), open > PC_REAL(0.5));
+    for (uint k = 1u; k < t.count; k++) {
+      Slot n = PC_NODE(m, t.first + k); pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+      pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), open));
+    }
     pc_tree_sweep(PC_PASS m, t, TREE_C, SMOOTH_V_SUM, PC_REAL(0.0));
     for (uint k = 0u; k < t.count; k++) {
       Slot n = PC_NODE(m, t.first + k); Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
-      pc_st3_tree(PC_PASS n, SMOOTH_V, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_V), pc_ld3_tree(PC_PASS n, TREE_X))); pc_st3_tree(PC_PASS n, SMOOTH_W, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
-      pc_st3_tree(PC_PASS n, SMOOTH_L, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_L), spun, PC_LD(tree_rows, n, TREE_TOTAL)));
+      pc_smooth_add(PC_PASS n, SMOOTH_V, SMOOTH_V_LOW, pc_ld3_tree(PC_PASS n, TREE_X)); pc_smooth_add(PC_PASS n, SMOOTH_L, SMOOTH_L_LOW, pc_scale(spun, PC_LD(tree_rows, n, TREE_TOTAL)));
+      pc_st3_tree(PC_PASS n, SMOOTH_W, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
     }
   }
   for (uint k = 0u; k < t.count; k++) {
@@ -112,7 +134,7 @@ PC_FN void pc_smooth_follow(PC_IO Slot n, Slot up) {
   Vec3 swing = pc_smooth_swing(pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN)), rc); Vec3 swing_up = pc_smooth_swing(pc_turn(pc_ld3_tree(PC_PASS up, SMOOTH_TURN)), rp);
   precise Vec3 way = pc_ld3_tree(PC_PASS up, SMOOTH_WAY_SUM) + (swing_up - swing) - pc_smooth_closing(PC_PASS gap, rc); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, way);
   Vec3 arm = pc_add(rc, swing); Vec3 arm_up = pc_add(rp, swing_up); Vec3 swung = pc_sub(pc_cross(pc_ld3_tree(PC_PASS up, SMOOTH_W), arm_up), pc_cross(pc_ld3_tree(PC_PASS n, SMOOTH_W), arm));
-  pc_st3_tree(PC_PASS n, SMOOTH_V, pc_add(pc_ld3_tree(PC_PASS up, SMOOTH_V), swung));
+  pc_st3_tree(PC_PASS n, SMOOTH_V, pc_add(pc_ld3_tree(PC_PASS up, SMOOTH_V), swung)); pc_st3_tree(PC_PASS n, SMOOTH_V_LOW, pc_zero3());
   pc_st3_tree(PC_PASS n, TREE_RC, arm); pc_st3_tree(PC_PASS n, TREE_RP, arm_up);
 }
 // What its pin does to a node and to its parent at the end.
@@ -124,8 +146,8 @@ PC_FN void pc_smooth_pin(PC_IO Slot n, Slot up) {
 }
 // The sums of all stages: momentum, turn and angular velocity at the end.
 PC_FN void pc_smooth_finish(PC_IO Slot n) {
-  precise Real sixth = PC_INFO(h) * PC_REAL(0.16666666666666666667); Vec3 l = pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_START), pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), sixth);
-  pc_st3_tree(PC_PASS n, SMOOTH_L, l); pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_zero3()); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_zero3());
+  precise Real sixth = PC_INFO(h) * PC_REAL(0.16666666666666666667); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_ld3_tree(PC_PASS n, SMOOTH_START));
+  pc_smooth_add(PC_PASS n, SMOOTH_L, SMOOTH_L_LOW, pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), sixth)); pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_zero3()); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_zero3());
   pc_st3_tree(PC_PASS n, SMOOTH_TURN, pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_TURN_SUM), sixth));
 }
 // Stores a node: the pose, and velocities half a sub-step behind it.
@@ -136,10 +158,10 @@ PC_FN void pc_smooth_store(PC_IO Slot n) {
   TwoSum p = pc_two_sum(place.v, pc_add(place_low.v, pc_ld3_tree(PC_PASS n, SMOOTH_WAY_SUM))); place.v = p.sum; place_low.v = pc_snap3(p.low);
   Quaternion q = pc_quaternion(turned.v, turned.s); Turn turn = pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN));
   Turned next = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(turn.q.v, turn.fall), q));
-  precise Real half_h = PC_INFO(h) * PC_REAL(0.5); Kick kick = pc_smooth_kick(PC_PASS n, linear.s);
+  precise Real half_h = PC_INFO(h) * PC_REAL(0.5); Kick kick = pc_smooth_kick(PC_PASS n, linear.s, PC_INFO(h));
   Vec3 u_half = pc_snap3(pc_madd(kick.u, pc_ld3_tree(PC_PASS n, SMOOTH_V_SUM), half_h)); Vec3 l_half = pc_snap3(pc_madd(kick.l, pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), half_h));
   TwoSum u = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_V), pc_negate(u_half)); TwoSum l = pc_two_sum(pc_ld3_tree(PC_PASS n, SMOOTH_L), pc_negate(l_half));
-  linear.v = pc_snap3(u.sum); u_low.v = pc_snap3(u.low); l_low.v = pc_snap3(l.low);
+  linear.v = pc_snap3(u.sum); u_low.v = pc_snap3(pc_add(u.low, pc_ld3_tree(PC_PASS n, SMOOTH_V_LOW))); l_low.v = pc_snap3(pc_add(l.low, pc_ld3_tree(PC_PASS n, SMOOTH_L_LOW)));
   PC_SCATTER_IF(moves, pose, body, 0u, place); PC_SCATTER_IF(moves, pose, body, 1u, next.q); PC_SCATTER_IF(moves, pose, body, 2u, place_low); PC_SCATTER_IF(moves, pose, body, 3u, next.low);
   PC_SCATTER_IF(moves, motion, body, 0u, linear); PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_snap3(l.sum), PC_REAL(0.0)));
   PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(u_half, PC_REAL(0.0))); PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(l_half, PC_REAL(0.0)));
@@ -174,7 +196,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // the root's way, and its velocity at the end
   precise Real sixth = h * PC_REAL(0.16666666666666666667); Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
   precise Vec3 gone = (v + pc_ld3_tree(PC_PASS root, SMOOTH_WAY_SUM) * sixth) * h; pc_st3_tree(PC_PASS root, SMOOTH_WAY_SUM, gone);
-  pc_st3_tree(PC_PASS root, SMOOTH_V, pc_madd(v, pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
+  pc_smooth_add(PC_PASS root, SMOOTH_V, SMOOTH_V_LOW, pc_scale(pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
   for (uint k = from; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); pc_smooth_finish(PC_PASS n);
     Index body = PC_ENDS(tree_ends, n, 0u); Quad turned = PC_GATHER(pose, body, 1u); Turn turn = pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN));

@@ -54,7 +54,7 @@ std::array<const char*, 2> reason(SecondOrder why) {
       return {"fourth order of loops", "a joint that closes one, or a spring, acts from outside of the tree"};
     case SecondOrder::angles: return {"fourth order of joints with angles", "limits and locks act once a sub-step"};
     case SecondOrder::drive: return {"fourth order of driven joints", "motors and springs act once a sub-step"};
-    case SecondOrder::drag: return {"fourth order with drag", "a negative stage would push"};
+    case SecondOrder::drag: return {"fourth order with drag", "drag acts by the exact terms of second order"};
     case SecondOrder::carried: return {"fourth order of what is carried", "a kinematic body may carry several trees"};
     case SecondOrder::contact: return {"fourth order of what is touched", "contacts act once a sub-step"};
     case SecondOrder::stiff: return {"fourth order of loaded pins", "they swing too fast for the sub-step without stiffness"};

@@ -264,14 +264,12 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
 
 /// All sub-steps of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on them.
 void smooth_substeps(Builder& b, const PlanSignature& s, unsigned octave) {
-  const Motion with = motion(s);
   const std::uint32_t count = s.substeps << octave, last = count - 1;
   b.enter(std::uint8_t(octave_count + octave));
-  b.kernel(with.begin, Phase::first, 0);
   b.kernel(Kernel::smooth_prepare, Phase::biased, 0);
-  for (std::uint32_t k = 0; k < count; k++) b.kernel(Kernel::smooth_step, Phase::biased, k);
+  for (std::uint32_t k = 0; k < count; k++) b.kernel(Kernel::smooth_step, k == 0 ? Phase::first : Phase::biased, k);
   if (octave == 0) return;
-  b.kernel(with.restagger, Phase::last, last);
+  b.kernel(motion(s).restagger, Phase::last, last);
   b.kernel(Kernel::tree_keep, Phase::last, last);
 }
 
