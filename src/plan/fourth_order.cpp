@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "pcphys/constants.h"
+#include "plan/infos.h"
+#include "plan/octaves.h"
 
 namespace pcphys {
 namespace {
@@ -120,24 +122,31 @@ double FourthOrder::stiffness(const WorldState& state, std::uint32_t tree, doubl
   return h * h * (most > 0 && state.last_substep > 0 ? most / state.last_substep : weight);
 }
 
-void FourthOrder::choose_none() {
+void FourthOrder::choose(const WorldState& state, const Forest& forest, const SolvedJoints& joints,
+                         std::span<const std::uint32_t> closing, bool own, const StepSettings& settings, double dt) {
   chosen_.clear();
-  reasons_ = 0;
-}
-
-void FourthOrder::choose(const WorldState& state, const Forest& forest, double h, std::uint8_t highest, bool own) {
-  choose_none();
+  bodies_ = reasons_ = 0;
+  if (settings.order != 4) return;
+  find_trees(state, forest, joints, closing);
   find_touched(state);
-  const double fastest = constants::largest_smooth_turn * double(1u << highest) / h;
+  const double h = substep_length(dt, settings.substeps);
+  const double fastest = constants::largest_smooth_turn * double(1u << highest_octave(settings)) / h;
   for (std::uint32_t i = 0; i < why_not_.size(); i++) {
+    const std::span<const TreeNode> tree = forest.tree(i);
     std::uint32_t why = why_not_[i];
     if (own) why |= bit(SecondOrder::own_kernel);
     if (touched_[i]) why |= bit(SecondOrder::contact);
     if (why == 0 && stiffness(state, i, h) > constants::stiff_pins) why |= bit(SecondOrder::stiff);
-    if (why == 0 && spins_faster(state, forest.tree(i), fastest)) why |= bit(SecondOrder::fast);
+    if (why == 0 && spins_faster(state, tree, fastest)) why |= bit(SecondOrder::fast);
     reasons_ |= why;
-    if (why == 0) chosen_.push_back(i);
+    if (why != 0) continue;
+    chosen_.push_back(i);
+    bodies_ += std::uint32_t(std::ranges::count_if(tree, [&](const TreeNode& node) { return state.responds(node.body); }));
   }
+}
+
+std::uint32_t FourthOrder::classes(std::uint32_t moving) const {
+  return (bodies_ < moving || bodies_ == 0 ? 1u : 0u) | (bodies_ > 0 ? 1u << octave_count : 0u);
 }
 
 }  // namespace pcphys

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pcphys/step.h"
 #include "plan/forest.h"
 #include "plan/solved_joints.h"
 #include "world/state.h"
@@ -22,17 +23,17 @@ class FourthOrder {
   /// Follows a change of objects; of contacts.
   void forget() { trees_known_ = contacts_known_ = false; }
   void forget_contacts() { contacts_known_ = false; }
-  /// Once for each change of objects. `closing`: rows of joints that stand in no tree.
-  void find_trees(const WorldState& state, const Forest& forest, const SolvedJoints& joints,
-                  std::span<const std::uint32_t> closing);
-  /// For sub-steps of the length h, of which refined islands make 2^highest. `own`: kernels of the host's own act in them.
-  void choose(const WorldState& state, const Forest& forest, double h, std::uint8_t highest, bool own);
-  void choose_none();
+  /// Of a step of `dt`; none where StepSettings::order is 2. `closing`: rows of joints that stand in no tree. `own`: kernels of the
+  /// host's own act in sub-steps.
+  void choose(const WorldState& state, const Forest& forest, const SolvedJoints& joints, std::span<const std::uint32_t> closing,
+              bool own, const StepSettings& settings, double dt);
 
   /// Trees of fourth order, ascending.
   std::span<const std::uint32_t> trees() const { return chosen_; }
   /// Of the others, bits by SecondOrder.
   std::uint32_t reasons() const { return reasons_; }
+  /// As Octaves::used, of octave 0, where `moving` bodies move.
+  std::uint32_t classes(std::uint32_t moving) const;
 
  private:
   /// A pin, how much a force on it turns its two bodies (the larger |r| / trace of the inertia) [1/(kg m)], and the mass that
@@ -41,6 +42,9 @@ class FourthOrder {
     std::uint32_t joint;  // row
     double response, mass;
   };
+  /// Once for each change of objects.
+  void find_trees(const WorldState& state, const Forest& forest, const SolvedJoints& joints,
+                  std::span<const std::uint32_t> closing);
   void find_pins(const WorldState& state, std::span<const TreeNode> tree, const SolvedJoints& joints);
   void find_touched(const WorldState& state);
   double stiffness(const WorldState& state, std::uint32_t tree, double h) const;
@@ -52,7 +56,7 @@ class FourthOrder {
   std::vector<char> touched_;             // by tree
   bool trees_known_ = false, contacts_known_ = false;
   std::vector<std::uint32_t> chosen_;
-  std::uint32_t reasons_ = 0;
+  std::uint32_t bodies_ = 0, reasons_ = 0;  // bodies: of the chosen trees
 };
 
 }  // namespace pcphys

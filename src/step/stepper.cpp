@@ -239,26 +239,9 @@ struct Stepper::Inside {
     fourth.forget_contacts();
   }
 
-  /// The same of a plan without a step: with the contacts that there are.
-  void foresee_order(const WorldState& s, const Schedule& from, double dt, PlanSignature& wanted) const {
-    if (settings.order != 4) return;
-    const TreeSlots& trees = from.trees;
-    FourthOrder order;
-    order.find_trees(s, trees.forest(), trees.solved(), trees.closing());
-    order.choose(s, trees.forest(), substep_length(dt, settings.substeps), highest_octave(settings), !own.ordered().empty());
-    std::uint32_t bodies = 0;
-    for (const std::uint32_t tree : order.trees())
-      for (const TreeNode& node : trees.forest().tree(tree)) bodies += s.responds(node.body);
-    wanted.second_order = order.reasons();
-    wanted.octaves = (bodies < from.moving ? 1u : 0u) | (bodies > 0 ? 1u << octave_count : 0u);
-  }
-
-  /// Which trees move in fourth order in this step.
-  void choose_order(const WorldState& s, double dt) {
-    const TreeSlots& trees = schedule.trees;
-    if (settings.order != 4) return fourth.choose_none();
-    fourth.find_trees(s, trees.forest(), trees.solved(), trees.closing());
-    fourth.choose(s, trees.forest(), substep_length(dt, settings.substeps), highest_octave(settings), !own.ordered().empty());
+  /// Which trees move in fourth order in a step of dt.
+  void choose_order(FourthOrder& order, const WorldState& s, const TreeSlots& trees, double dt) const {
+    order.choose(s, trees.forest(), trees.solved(), trees.closing(), !own.ordered().empty(), settings, dt);
   }
 
   void freeze_leaving(WorldState& s) {
@@ -282,7 +265,7 @@ struct Stepper::Inside {
     if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
     lap(Timer::narrow);
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
-    choose_order(s, dt);
+    choose_order(fourth, s, schedule.trees, dt);
     if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.points > found.contacts, fourth.trees(),
                        settings, dt) ||
         other)
@@ -300,6 +283,7 @@ struct Stepper::Inside {
         (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
+    wanted.placed = found.placed && wanted.free_contacts;
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
@@ -314,6 +298,7 @@ struct Stepper::Inside {
     strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
     if (strayed) return {};
     s.last_substep = h;
+    if (s.settling > 0) s.settling--;
     report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
     report.refined = octaves.refined();
     report.fourth_order = octaves.fourth_order();
@@ -391,7 +376,10 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.tree_contacts = wanted.shapes && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
-  in.foresee_order(world.state(), schedule, dt, wanted);
+  FourthOrder order;
+  in.choose_order(order, world.state(), schedule.trees, dt);
+  wanted.octaves = order.classes(schedule.moving);
+  wanted.second_order = order.reasons();
   return make_plan(wanted, in.own.ordered());
 }
 
