@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "extras.h"
 #include "pcphys/step.h"
 #include "scenes.h"
 #include "world/state.h"
@@ -65,10 +66,21 @@ bool check_one(const NamedDesign& named, SceneKind kind, History history, Refere
   return good & report(same(after, state_of(*design, handles)), what + ": a gather and a scatter change the state");
 }
 
-/// The scene of free flight, made of the bodies' rows, as a world of the library that its own stepper moves.
-bool check_stepper() {
+// What the library's own world takes for the property and the force, counted beside the designs' (tools/architectures_report.py).
+Status add_wind(World& world, Stepper& stepper) {
+  const auto area = world.add_property<Real>("area");  // [property]
+  if (!area) return area.error();
+  std::size_t i = 0;
+  for (const BodyId body : world.bodies())
+    if (Status set = world.set(*area, body, Real(float(flying_body(i++).area))); !set) return set;  // [property]
+  const Vec3 wind{wind_velocity[0], wind_velocity[1], wind_velocity[2]};
+  return stepper.add_kernel(world, {.text = wind_kernel(), .parameters = {{"wind", wind}}});  // [force]
+}
+
+/// Free flight, or flight in wind, as a world of the library that its own stepper moves.
+bool check_stepper(SceneKind kind) {
   const auto design = make_properties(1);
-  const auto handles = build(SceneKind::flight, bodies, History::fresh, *design);
+  const auto handles = build(kind, bodies, History::fresh, *design);
   World world;
   StepSettings settings;
   settings.substeps = 1;
@@ -86,28 +98,33 @@ bool check_stepper() {
     write(flying_body(i), {row_of(Buffer::motion, row), row_of(Buffer::pose, row), row_of(Buffer::mass, row),
                            row_of(Buffer::force, row), row_of(Buffer::material, row)});
   }
+  if (kind == SceneKind::wind)
+    if (const Status added = add_wind(world, stepper); !added) return report(false, added.error().message);
   const Steps with;
   for (int i = 0; i < steps; i++) {
     if (const StepReport& made = stepper.step(world, substep); !made) return report(false, made.error.message);
-    with.step(SceneKind::flight, *design);
+    with.step(kind, *design);
   }
   State state(handles.size() * state_reals);
   for (std::size_t i = 0; i < handles.size(); i++)
     read_state(row_of(Buffer::pose, i + 1), row_of(Buffer::motion, i + 1), state.data() + i * state_reals);
-  return report(same(state, state_of(*design, handles)), "properties, flight: beside the library's stepper");
+  return report(same(state, state_of(*design, handles)), std::string(name(kind)) + " beside the library's stepper");
 }
 
 }  // namespace
 
 bool check() {
   bool good = true;
-  for (const SceneKind kind : {SceneKind::flight, SceneKind::chains, SceneKind::pairs, SceneKind::extras}) {
+  constexpr SceneKind kinds[] = {SceneKind::flight, SceneKind::chains, SceneKind::pairs, SceneKind::wind, SceneKind::ropes};
+  for (const SceneKind kind : kinds) {
     Reference reference;
     for (const NamedDesign& named : designs())
       for (const History history : {History::fresh, History::churned}) good &= check_one(named, kind, history, reference);
   }
-  good &= check_stepper();
-  if (good) std::printf("%zu designs, 4 scenes, 2 histories: the same bits after %d steps\n", designs().size(), steps);
+  good &= check_stepper(SceneKind::flight) & check_stepper(SceneKind::wind);
+  if (good)
+    std::printf("%zu designs, %zu scenes, 2 histories: the same bits after %d steps\n", designs().size(), std::size(kinds),
+                steps);
   return good;
 }
 

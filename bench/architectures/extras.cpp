@@ -5,10 +5,10 @@
 namespace pcphys::architectures {
 namespace {
 
-PCPHYS_KERNEL(wind_force, (PC_IN(Vec3) displacement_rate, PC_IN(Real) area, PC_OUT(Vec3) force, PC_PARAM(Vec3) wind), {
+PCPHYS_KERNEL(wind_force, (PC_IN(Vec3) displacement_rate, PC_IN(Real) area, PC_INOUT(Vec3) force, PC_PARAM(Vec3) wind), {
   Vec3 past = pc_sub(wind, displacement_rate);
   Real push = area * pc_length(past);
-  force = pc_scale(past, push);
+  force = pc_madd(force, past, push);
 })
 
 // What stops the two from being further apart than the rope's length by the end of the sub-step; a rope only pulls.
@@ -32,7 +32,7 @@ void store(kernel_f32::Vec3 v, float* p) { p[0] = v.x, p[1] = v.y, p[2] = v.z; }
 }  // namespace
 
 void wind_drag(const float velocity[3], float area, float force[3], const float wind[3]) {
-  kernel_f32::Vec3 pushes;
+  kernel_f32::Vec3 pushes(0, 0, 0);
   wind_force::f32::run(load(velocity), area, pushes, load(wind));
   store(pushes, force);
 }

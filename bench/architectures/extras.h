@@ -9,7 +9,7 @@ namespace pcphys::architectures {
 
 /// Force of the wind on a body: along the relative speed, with its square.
 void wind_drag(const float velocity[3], float area, float force[3], const float wind[3]);
-/// The same as a kernel of the library's own kind: displacement_rate, area, force, wind.
+/// The same text as Stepper::add_kernel takes it.
 KernelText wind_kernel();
 
 /// Two bodies' centres come no further apart than `length`; their velocities change along the line between them, in inverse proportion

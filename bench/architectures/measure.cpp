@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 constexpr double enough_time = 0.05;  // of steps [s]
-constexpr std::size_t least_repeats = 3, most_repeats = 1000, warm_up = 2;
+constexpr std::size_t least_repeats = 3, most_repeats = 1000, warm_up = 1;
 
 /// What another process answers; null if it answers nothing.
 Json in_another_process(const std::function<Json()>& work) {

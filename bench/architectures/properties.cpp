@@ -86,10 +86,8 @@ class PropertyWorld final : public Design {
   }
   // [force]
   void run_wind(const float wind[3]) override {
-    std::byte* const columns[] = {bytes(Buffer::motion), bytes(area_), bytes(Buffer::force),
-                                  reinterpret_cast<std::byte*>(const_cast<float*>(wind))};
-    const std::size_t strides[] = {tables_.row_bytes(Buffer::motion), sizeof(float), tables_.row_bytes(Buffer::force), 0};
-    wind_kernel().f32({columns, strides, nullptr, 1, tables_.rows(Table::body)});
+    for (const std::uint32_t row : bodies_)
+      wind_drag(find(Buffer::motion, row), *find(area_, row), find(Buffer::force, row), wind);
   }
   // [constraint]
   void run_ropes(float inverse_h) override {
@@ -132,7 +130,6 @@ class PropertyWorld final : public Design {
   float* find(Buffer buffer, std::uint32_t row) {
     return tables_.data<float>(buffer) + row * (tables_.row_bytes(buffer) / sizeof(float));
   }
-  std::byte* bytes(Buffer buffer) { return tables_.bytes(buffer).data(); }
   std::span<const std::byte> column(Buffer buffer) const { return {tables_.bytes(buffer).data(), tables_.bytes(buffer).size()}; }
   std::size_t longest(std::size_t first, std::size_t count) const {
     std::size_t most = 0;

@@ -13,7 +13,6 @@ namespace pcphys::architectures {
 namespace {
 
 constexpr std::size_t chain_links = 10;
-constexpr float wind[3] = {5, 0, 1};
 
 /// Numbers in [0, 1) that depend on the body alone.
 class Numbers {
@@ -53,7 +52,7 @@ namespace {
 
 std::size_t group_size(SceneKind kind) {
   if (kind == SceneKind::chains) return chain_links;
-  return kind == SceneKind::flight ? 1 : 2;
+  return kind == SceneKind::pairs || kind == SceneKind::ropes ? 2 : 1;
 }
 
 /// Links along x from the chain's place at the ground.
@@ -91,18 +90,18 @@ void build_pair(SceneKind kind, std::size_t pair, Design& design, Handle* made) 
 }
 
 void build_group(SceneKind kind, std::size_t group, Design& design, Handle* made) {
-  if (kind == SceneKind::flight)
-    *made = design.create_body(flying_body(group));
-  else if (kind == SceneKind::chains)
+  if (kind == SceneKind::chains)
     build_chain(group, design, made);
-  else
+  else if (group_size(kind) == 2)
     build_pair(kind, group, design, made);
+  else
+    *made = design.create_body(flying_body(group));
 }
 
 }  // namespace
 
 std::string_view name(SceneKind kind) {
-  constexpr std::string_view names[] = {"flight", "chains", "pairs", "extras"};
+  constexpr std::string_view names[] = {"flight", "chains", "pairs", "wind", "ropes"};
   return names[std::size_t(kind)];
 }
 std::string_view name(History history) { return history == History::fresh ? "fresh" : "churned"; }
@@ -136,7 +135,7 @@ Steps::Steps() { fill_infos(InfoInputs(StepSettings{}, {0, -9.81, 0}, substep, s
 void Steps::step(SceneKind kind, Design& design, StageTimes* times) const {
   using Clock = std::chrono::steady_clock;
   const FlushSubnormals flush;
-  const bool joints = kind == SceneKind::chains, contacts = kind == SceneKind::pairs, extras = kind == SceneKind::extras;
+  const bool joints = kind == SceneKind::chains, contacts = kind == SceneKind::pairs, ropes = kind == SceneKind::ropes;
   Clock::time_point before = Clock::now();
   const auto run = [&](Kernel kernel, Phase phase) {
     design.run(kernel, infos_[std::size_t(phase)]);
@@ -144,13 +143,13 @@ void Steps::step(SceneKind kind, Design& design, StageTimes* times) const {
     const Clock::time_point after = Clock::now();
     (*times)[std::size_t(schema(kernel).stage)] += std::chrono::duration<double>(after - std::exchange(before, after)).count();
   };
-  if (extras) design.run_wind(wind);
+  if (ropes || kind == SceneKind::wind) design.run_wind(wind_velocity);
   run(Kernel::begin_drag, Phase::first);
   if (joints || contacts) run(Kernel::inertia, Phase::biased);
   if (contacts) run(Kernel::contact_prepare, Phase::first);
   run(Kernel::remember, Phase::biased);
   run(Kernel::integrate_drag, Phase::biased);
-  if (extras) design.run_ropes(float(1 / substep));
+  if (ropes) design.run_ropes(float(1 / substep));
   if (joints) run(Kernel::joint_prepare, Phase::first);
   if (joints) run(Kernel::joint_warm, Phase::biased);
   if (contacts) run(Kernel::contact_warm, Phase::biased);

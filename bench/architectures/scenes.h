@@ -10,8 +10,8 @@
 namespace pcphys::architectures {
 
 /// flight: free bodies with drag. chains: of ten links that hang from the ground, with cones and twists. pairs: two balls that forces
-/// press together. extras: what was added to the designs, wind and a rope between two bodies.
-enum class SceneKind : std::uint8_t { flight, chains, pairs, extras };
+/// press together. wind, ropes: what was added to the designs; flight in wind, and the same of bodies on a rope two by two.
+enum class SceneKind : std::uint8_t { flight, chains, pairs, wind, ropes };
 inline constexpr SceneKind measured_scenes[] = {SceneKind::flight, SceneKind::chains, SceneKind::pairs};
 std::string_view name(SceneKind kind);
 
@@ -37,6 +37,7 @@ class Steps {
  private:
   InfoOf<float> infos_[phase_count];
 };
-inline constexpr double substep = 1.0 / 240;  // [s]
+inline constexpr double substep = 1.0 / 240;          // [s]
+inline constexpr float wind_velocity[3] = {5, 0, 1};  // [m/s]
 
 }  // namespace pcphys::architectures
