@@ -70,6 +70,7 @@ void write(const JointInit& init, float* joint_solved);
 void write(const ContactInit& init, float* contact);
 
 constexpr std::size_t packed_reals = 8;  // position, mass, velocity, 0
+// [gather]
 inline void pack(const float* pose, const float* mass, const float* motion, float* packed) {
   for (int i = 0; i < 3; i++) packed[i] = pose[i], packed[4 + i] = motion[i];
   packed[3] = mass[3], packed[7] = 0;
@@ -77,6 +78,7 @@ inline void pack(const float* pose, const float* mass, const float* motion, floa
 inline void unpack(const float* packed, float* pose, float* motion) {
   for (int i = 0; i < 3; i++) pose[i] = packed[i], motion[i] = packed[4 + i];
 }
+// [end]
 
 constexpr std::size_t state_reals = 13;  // position, orientation, velocity, angular momentum
 inline void read_state(const float* pose, const float* motion, float* state) {

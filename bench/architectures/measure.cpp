@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -18,10 +17,8 @@
 namespace pcphys::architectures {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
-constexpr double enough_time = 0.05;  // of steps [s]
+constexpr double enough_time = 0.05;        // of steps [s]
+constexpr std::size_t long_steps = 10'000;  // bodies, from which on a step is long enough to be interrupted
 constexpr std::size_t least_repeats = 3, most_repeats = 1000, warm_up = 1;
 
 /// What another process answers; null if it answers nothing.
@@ -57,19 +54,20 @@ double median(std::vector<double> values) {
 
 /// Calls of `action` until they have taken enough time in all; it adds its times itself.
 void repeat(const std::function<void()>& action) {
-  const auto begin = Clock::now();
-  for (std::size_t i = 0; i < most_repeats && (i < least_repeats || since(begin) < enough_time); i++) action();
+  const double begin = wall_time();
+  for (std::size_t i = 0; i < most_repeats && (i < least_repeats || wall_time() - begin < enough_time); i++) action();
 }
 
 Json measure_here(const Case& of) {
+  const Clock clock = of.bodies < long_steps ? wall_time : processor_time;
   const std::size_t before = heap_bytes();
-  const auto begin = Clock::now();
+  const double begin = clock();
   const auto design = of.design->make();
   const auto handles = build(of.scene, of.bodies, of.history, *design);
-  const double build_time = since(begin);
+  const double build_time = clock() - begin;
   const std::size_t bytes = heap_bytes() - before - handles.capacity() * sizeof(Handle);
 
-  const Steps with;
+  const Steps with(clock);
   std::vector<float> packed(handles.size() * packed_reals);
   for (std::size_t i = 0; i < warm_up; i++) with.step(of.scene, *design);
   std::vector<double> stages[stage_count], gathers, scatters;
@@ -77,12 +75,11 @@ Json measure_here(const Case& of) {
     StageTimes times{};
     with.step(of.scene, *design, &times);
     for (std::size_t s = 0; s < stage_count; s++) stages[s].push_back(times[s]);
-    auto start = Clock::now();
+    const double start = clock();
     design->gather(packed.data());
-    gathers.push_back(since(start));
-    start = Clock::now();
+    const double between = clock();
     design->scatter(packed.data());
-    scatters.push_back(since(start));
+    gathers.push_back(between - start), scatters.push_back(clock() - between);
   });
   return {{"bodies", handles.size()},
           {"integrate", median(stages[std::size_t(Stage::integrate)])},
@@ -106,10 +103,10 @@ Json time_transfers(std::span<const std::size_t> sizes, std::uint64_t limit) {
   const auto time = [&](void (GlBuffer::*copy)() const) {
     std::vector<double> times;
     repeat([&] {
-      const auto start = Clock::now();
+      const double start = wall_time();
       for (const GlBuffer& buffer : buffers) (buffer.*copy)();
       glFinish();
-      times.push_back(since(start));
+      times.push_back(wall_time() - start);
     });
     return median(times);
   };

@@ -27,14 +27,20 @@ std::vector<Handle> build(SceneKind kind, std::size_t count, History history, De
 
 using StageTimes = std::array<double, stage_count>;  // [s]
 
+using Clock = double (*)();  // [s]
+double wall_time();
+/// Of this thread: what else the machine does is not in it. It costs more to read, so it is for long steps.
+double processor_time();
+
 /// Steps of one sub-step of 1/240 s, as the plan of such a world has them.
 class Steps {
  public:
-  Steps();
+  explicit Steps(Clock clock = wall_time);
   /// `times`, if given, grows by what each stage takes.
   void step(SceneKind kind, Design& design, StageTimes* times = nullptr) const;
 
  private:
+  Clock clock_;
   InfoOf<float> infos_[phase_count];
 };
 inline constexpr double substep = 1.0 / 240;          // [s]
