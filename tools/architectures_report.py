@@ -33,7 +33,8 @@ CACHE = ["--cache-sim=yes", "--I1=32768,8,64", "--D1=32768,8,64", "--LL=1048576,
 SOFTWARE_STEPS = 240  # of `pcphys tables` where the CPU plays the GPU
 SOURCES = {"hierarchy": ["hierarchy.cpp"], "hybrid": ["hybrid.cpp"], "entities": ["entities.inl"], "properties": ["properties.cpp"],
            "the library's own world": ["check.cpp"]}
-ADDED = ("property", "force", "constraint")
+COUNTED = ("property", "force", "constraint", "gather")
+NOT_COUNTED = {"constraint": "a change of the library", "gather": "0: the plan uploads"}  # of the library's own world
 
 
 # ---- measuring -------------------------------------------------------------------------------------
@@ -79,7 +80,7 @@ def measure(build, quick):
         print(f"architectures_report: the machine is busy (load {load[0]:.1f}); what shares its caches shows in the times", file=sys.stderr)
     figures = run_json([program] + (["--sizes", "100,1000,10000", "--rounds", "1"] if quick else []))
     load.append(os.getloadavg()[0])
-    figures.update(load=load, date=datetime.date.today().isoformat(), cache=measure_cache(program, figures["rows"]))
+    figures.update(load=load, cores=os.cpu_count(), date=datetime.date.today().isoformat(), cache=measure_cache(program, figures["rows"]))
     gl = [t for t in figures["transfers"] if "problem" not in t]
     figures["tables"] = [run_json([pcphys, "tables", "--warmup", "10"])]
     if gl:
@@ -93,6 +94,7 @@ class Figures:
     def __init__(self, data):
         self.data = data
         self.designs = list(dict.fromkeys(r["design"] for r in data["rows"]))
+        self.one_by_one = [d for d in self.designs if "lanes" not in d]  # lanes change no memory and no gather
         self.sizes = sorted({r["bodies"] for r in data["rows"]})
         self.rows = {}
         for r in data["rows"]:
@@ -107,7 +109,7 @@ class Figures:
 
 
 def short(value):
-    return f"{value:.0f}" if value >= 100 else f"{value:.2g}" if value < 10 else f"{value:.1f}"
+    return f"{value:,.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
 
 
 def table(head, rows):
@@ -135,7 +137,7 @@ def winners(f):
         for history in ("fresh", "churned"):
             cells = []
             for n in f.sizes:
-                times = {d: f.per_element(d, scene, history, n) for d in f.designs if "lanes" not in d}
+                times = {d: f.per_element(d, scene, history, n) for d in f.one_by_one}
                 best, worst = min(times, key=times.get), max(times, key=times.get)
                 cells.append(f"{best} ({worst} {times[worst] / times[best]:.1f})")
             rows.append([scene, history, *cells])
@@ -152,7 +154,7 @@ def transfer_table(f):
     lines = [f"OpenGL: {device['device']} ({where}). Microseconds; churned heap.", ""]
     rows = []
     for t in f.data["transfers"]:
-        for design in f.designs:
+        for design in f.one_by_one:
             gather, scatter = (f.value(k, design, "flight", "churned", t["bodies"]) * 1e6 for k in ("gather", "scatter"))
             up, down = t["packed"]["upload"] * 1e6, t["packed"]["download"] * 1e6
             rows.append([f"{t['bodies']:,}", design, *map(short, (gather, up, gather + up, down, scatter, down + scatter))])
@@ -164,7 +166,7 @@ def transfer_table(f):
 def memory_table(f):
     n = f.sizes[-1]
     rows = [[d, *(f"{f.value('bytes', d, scene, 'fresh', n) / n:.0f}" for scene in STAGES),
-             *(f"{f.value('build', d, scene, 'churned', n) / n * 1e9:.0f}" for scene in STAGES)] for d in f.designs]
+             *(f"{f.value('build', d, scene, 'churned', n) / n * 1e9:.0f}" for scene in STAGES)] for d in f.one_by_one]
     return [f"Bytes in use on the heap, {n:,} bodies made in order; ns to make a body with what belongs to it, churned.", ""] + table(
         ["design", *(f"bytes, {s}" for s in STAGES), *(f"ns, {s}" for s in STAGES)], rows)
 
@@ -200,7 +202,7 @@ def lines_table():
     rows = []
     for design, files in SOURCES.items():
         lines, places = count_marked(files)
-        cells = [f"{lines[k]} in {places[k]}" if k in lines else "-" for k in ADDED + ("gather",)]
+        cells = [f"{lines[k]} in {places[k]}" if k in lines else NOT_COUNTED[k] for k in COUNTED]
         rows.append([design, *cells])
     shared = count_marked(["design.h"])[0]["gather"]
     return table(["lines, and in how many places, for", "a property", "a force", "a constraint", "gather and scatter"], rows), shared
@@ -243,10 +245,11 @@ def finish(plt, figure, axes, path):
         panel.set_xscale("log")
         panel.set_yscale("log")
         panel.grid(True, linewidth=0.3)
-        panel.set_xlabel("bodies")
+        panel.set_xlabel("bodies", fontsize=7, labelpad=1)
+        panel.tick_params(labelsize=7)
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=4, fontsize=7, frameon=False)
-    figure.tight_layout(rect=(0, 0.14, 1, 1))
+    figure.tight_layout(rect=(0, 0.1, 1, 1))
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, metadata={"Date": None})
     plt.close(figure)
@@ -270,7 +273,7 @@ def draw_transfers(plt, f, path):
     figure, axes = plt.subplots(1, 2, figsize=(8, 3.6))
     sizes = [t["bodies"] for t in transfers]
     for panel, (before, after, title) in zip(axes, (("gather", "upload", "gather and upload"), ("scatter", "download", "download and scatter"))):
-        for design, colour in zip(f.designs, COLOURS):
+        for design, colour in zip(f.one_by_one, COLOURS):
             times = [(f.value(before, design, "flight", "churned", t["bodies"]) + t["packed"][after]) / t["bodies"] * 1e9 for t in transfers]
             panel.plot(sizes, times, color=colour, marker="o", markersize=3, linewidth=1, label=design)
         panel.plot(sizes, [t["blocks"][after] / t["bodies"] * 1e9 for t in transfers], "k:", marker="s", markersize=3,
@@ -283,8 +286,8 @@ def draw_transfers(plt, f, path):
 def generated_part(f):
     data = f.data
     added, shared = lines_table()
-    lines = [BEGIN, f"Of {data['date']}, {data['processor']}; load of the machine {data['load'][0]:.1f} before, {data['load'][1]:.1f} after. Medians of the "
-             "steps of a run, and of three runs in turns up to 100,000 bodies; from 10,000 bodies on in time of the thread.", "", "## Update", "", "![update](img/architectures/update.svg)", ""]
+    lines = [BEGIN, f"Of {data['date']}, {data['processor']}, {data['cores']} cores; load of the machine {data['load'][0]:.1f} before, {data['load'][1]:.1f} after. Medians of the "
+             "steps of a run, and of three runs in turns up to 10,000 bodies; from there on in time of the thread.", "", "## Update", "", "![update](img/architectures/update.svg)", ""]
     lines += winners(f) + update_tables(f) + ["## To the GPU and back", "", "![transfers](img/architectures/transfers.svg)", ""] + transfer_table(f)
     lines += ["## Memory", ""] + memory_table(f) + ["## Cache misses", ""] + cache_table(f)
     lines += ["## Lines touched", ""] + added

@@ -23,7 +23,7 @@ struct Options {
 };
 
 // of more bodies a round takes too long to repeat
-constexpr std::size_t most_in_rounds = 100'000;
+constexpr std::size_t most_in_rounds = 10'000;
 
 class Progress {
  public:
@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"The same scenes and kernels in a class hierarchy, the original's hybrid, an entity store and the property world"};
   app.add_option("--sizes", options.sizes, "numbers of bodies")->delimiter(',')->check(CLI::PositiveNumber);
-  app.add_option("--rounds", options.rounds, "runs of each case up to 100,000 bodies; of more there is one")
+  app.add_option("--rounds", options.rounds, "runs of each case up to 10,000 bodies; of more there is one")
       ->check(CLI::PositiveNumber);
   app.add_option("--json", options.json, "where the figures go; - is standard output");
   app.add_flag("--no-gl", options.no_gl, "no transfers through OpenGL");
