@@ -96,7 +96,7 @@ class Design {
   virtual void create_joint(Handle a, Handle b, const JointInit& init) = 0;
   virtual void create_contact(Handle a, Handle b, const ContactInit& init) = 0;
   virtual void create_rope(Handle a, Handle b, const RopeInit& init) = 0;
-  /// Once, when all objects are made.
+  /// When objects have been made or destroyed, before the next step.
   virtual void settle() {}
 
   /// One kernel over all bodies, joints or contacts. Joints of a chain are visited from its first on.

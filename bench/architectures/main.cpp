@@ -68,7 +68,7 @@ Json measure_all(const Options& options) {
     progress.show(std::to_string(one.bodies) + " bodies, " + one.design->name + ", " + std::string(name(one.scene)));
     if (auto row = measure(one)) rows.push_back(std::move(*row));
   }
-  if (!options.no_gl)
+  for (std::size_t round = 0; round < options.rounds && !options.no_gl; round++)
     for (const std::size_t size : options.sizes) transfers.push_back(measure_transfers(size));
   return {{"processor", processor()}, {"rows", rows}, {"transfers", transfers}};
 }

@@ -70,7 +70,7 @@ Json measure_here(const Case& of) {
   const Steps with(clock);
   std::vector<float> packed(handles.size() * packed_reals);
   for (std::size_t i = 0; i < warm_up; i++) with.step(of.scene, *design);
-  std::vector<double> stages[stage_count], gathers, scatters;
+  std::vector<double> stages[stage_count], gathers, scatters, settles;
   repeat([&] {
     StageTimes times{};
     with.step(of.scene, *design, &times);
@@ -81,6 +81,11 @@ Json measure_here(const Case& of) {
     design->scatter(packed.data());
     gathers.push_back(between - start), scatters.push_back(clock() - between);
   });
+  repeat([&] {
+    const double start = clock();
+    design->settle();
+    settles.push_back(clock() - start);
+  });
   return {{"bodies", handles.size()},
           {"integrate", median(stages[std::size_t(Stage::integrate)])},
           {"joints", median(stages[std::size_t(Stage::joints)])},
@@ -88,6 +93,7 @@ Json measure_here(const Case& of) {
           {"gather", median(gathers)},
           {"scatter", median(scatters)},
           {"build", build_time},
+          {"settle", median(settles)},
           {"bytes", bytes}};
 }
 
