@@ -138,9 +138,9 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
   if (structure_ != s.structure_version || serial_ != s.serial) rebuild(s);
   if (!possible_) return {};
   if (s.tables.precision() == Precision::f32)
-    bound<float>(s, dt, options, scratch_f_.shapes);
+    bound(s, dt, options, scratch_f_);
   else
-    bound<double>(s, dt, options, scratch_d_.shapes);
+    bound(s, dt, options, scratch_d_);
   pairs_.set_capacity(options.max_pairs);
   const PairReport report = pairs_.update(tight_);
   if (report.overflow)
@@ -165,9 +165,10 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
 
 // Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so that every
 // two shapes that come within the margin of each other have overlapping boxes.
-template <class Scalar>
-void Detector::bound(const WorldState& s, double dt, const Options& options, std::vector<ShapeView<Scalar>>& shapes) {
-  shapes.resize(s.shapes.size());
+template <class Scalar> void Detector::bound(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
+  scratch.shapes.resize(s.shapes.size());
+  scratch.round_rows.resize(s.shapes.size() * round_reals * sizeof(Scalar));
+  Scalar* const round_rows = reinterpret_cast<Scalar*>(scratch.round_rows.data());
   const BodyReader<Scalar> bodies(s.tables);
   const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
   const float fall = float(length(s.gravity) * dt * dt), step = float(dt);
@@ -177,9 +178,10 @@ void Detector::bound(const WorldState& s, double dt, const Options& options, std
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
-    ShapeView<Scalar>& view = shapes[i];
+    ShapeView<Scalar>& view = scratch.shapes[i];
     place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.hull, proxy.centred, bodies.orientation(proxy.body),
                 view);
+    if (goes_in_lanes(proxy.kind)) bodies.write_round(proxy.body, view, round_rows + i * round_reals);
     const Twist& twist = twists_[proxy.body];
     const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
                          std::min(step * twist.turn, largest_turn) * proxy.lever_any;
@@ -253,6 +255,68 @@ Status Detector::find_contacts(WorldState& s, double dt, const Options& options,
                                                 : narrow_all(s, dt, options, scratch<double>(), found);
 }
 
+void Detector::list_near() {
+  const auto pairs = pairs_.pairs();
+  near_.resize(pairs.size());
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < pairs.size(); i++) {  // without a branch, which could not be predicted
+    near_[n] = std::uint32_t(i);
+    n += overlap(tight_[pairs[i].a], tight_[pairs[i].b]);
+  }
+  near_.resize(n);
+}
+
+template <class Scalar> void Detector::sort_out(const Options& options, Scratch<Scalar>& scratch) {
+  PairLanes<Scalar>& lanes = scratch.lanes;
+  lanes.begin(pairs_.pairs().size(), near_.size());
+  marks_.clear(pairs_.pairs().size());
+  auto flight = scratch.flights.begin();
+  for (const std::uint32_t i : near_) {
+    const Pair shapes = in_order(i);
+    const PairKind kind = pair_kind(proxies_[shapes.a].kind, proxies_[shapes.b].kind);
+    const bool flies = flight != scratch.flights.end() && flight->pair == i;
+    if (flies) flight++;
+    if (!flies && kind != PairKind::other && options.narrow == NarrowPhase::native)
+      lanes.add(kind, i, shapes.a, shapes.b, look_margin<Scalar>(shapes));
+    else
+      lanes.leave(i), marks_.set(i);
+  }
+  lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.round_rows.data()), marks_);
+}
+
+template <class Scalar>
+bool Detector::touches(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
+                       Touch<Scalar>& touch) {
+  touch.impact = 0;
+  touch.manifold = scratch.lanes.manifold(pair);
+  const auto [a, b] = in_order(pair);
+  if (touch.manifold) {
+    touch.rows[0] = proxies_[a].body, touch.rows[1] = proxies_[b].body;
+    for (Scalar& x : touch.apart) x = 0;
+    BodyReader<Scalar>(s.tables).shift(touch.rows[0], touch.rows[1], touch.apart);
+  } else {
+    const Sight<Scalar> view = sight(s, scratch, pair);
+    std::copy_n(view.rows, 2, touch.rows);
+    std::copy_n(view.apart, 3, touch.apart);
+    if (scratch.flight < scratch.flights.size() && scratch.flights[scratch.flight].pair == pair) {
+      Flight<Scalar>& f = scratch.flights[scratch.flight++];
+      touch.manifold = &f.manifold;
+      if (!settle(s, dt, options, scratch, view, f)) return false;
+      touch.impact = f.impact;
+      return true;
+    }
+    touch.manifold = &touch.own;
+    find(options, view, scratch.shapes[a], view.there, pair, touch.own);
+  }
+  const float apart[3] = {float(touch.apart[0]), float(touch.apart[1]), float(touch.apart[2])};
+  if (!closes(*touch.manifold, twists_[touch.rows[0]], twists_[touch.rows[1]], apart, margin(a, b), dt,
+              length(s.gravity) * dt * dt, proxies_[a].radius + proxies_[b].radius))
+    return false;
+  to_light_side(*touch.manifold, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
+  if (proxies_[a].jointed || proxies_[b].jointed) touch.impact = -1;
+  return true;
+}
+
 template <class Scalar>
 Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   const auto pairs = pairs_.pairs();
@@ -268,30 +332,16 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   hints_.resize(pairs.size());
   found = {};
   found.pairs = std::uint32_t(pairs.size());
+  list_near();
   look_ahead(s, dt, options, scratch);
-  std::size_t flight = 0;
-  for (std::size_t i = 0; i < pairs.size(); i++) {
+  sort_out(options, scratch);
+  scratch.flight = 0;
+  Touch<Scalar> touch;
+  marks_.each([&](std::uint32_t i) {
+    if (!touches(s, dt, options, scratch, i, touch)) return;
     const auto [a, b] = pairs[i];
-    if (!overlap(tight_[a], tight_[b])) continue;
-    double impact = 0;
-    Manifold<Scalar> manifold;
-    const Sight<Scalar> view = sight(s, scratch, std::uint32_t(i));
-    const std::uint32_t row_a = view.rows[0], row_b = view.rows[1];
-    if (flight < scratch.flights.size() && scratch.flights[flight].pair == i) {
-      Flight<Scalar>& f = scratch.flights[flight++];
-      if (!settle(s, dt, options, scratch, view, f)) continue;
-      manifold = f.manifold;
-      impact = f.impact;
-    } else {
-      find(options, view, scratch.shapes[view.shapes[0]], view.there, std::uint32_t(i), manifold);
-      const float apart[3] = {float(view.apart[0]), float(view.apart[1]), float(view.apart[2])};
-      if (!closes(manifold, twists_[row_a], twists_[row_b], apart, margin(a, b), dt, fall,
-                  proxies_[a].radius + proxies_[b].radius))
-        continue;
-      to_light_side(manifold, share_of<Scalar>(s.tables, row_a, row_b));
-      if (proxies_[a].jointed || proxies_[b].jointed) impact = -1;
-    }
-
+    const auto [row_a, row_b] = touch.rows;
+    const Manifold<Scalar>& manifold = *touch.manifold;
     const ContactKey key{a, b};
     const std::uint32_t row = std::uint32_t(next_.keys.size());
     next_.keys.push_back(key);
@@ -301,7 +351,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
     const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
     write_contact(manifold, of_a, of_b, out, next_.features[row].data());
-    out[31] = Scalar(impact);
+    out[31] = Scalar(touch.impact);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
     if (old < before_rows && s.contacts.keys[old] == key)
       remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out,
@@ -309,10 +359,10 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts = found.impacts || impact > 0 ||
-                    (impact == 0 && out[30] > 0 &&
-                     fastest(manifold, twists_[row_a], twists_[row_b], view.apart) + fall / dt >= options.least_bounce);
-  }
+    found.impacts = found.impacts || touch.impact > 0 ||
+                    (touch.impact == 0 && out[30] > 0 &&
+                     fastest(manifold, twists_[row_a], twists_[row_b], touch.apart) + fall / dt >= options.least_bounce);
+  });
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));

@@ -15,6 +15,7 @@
 #include "collision/narrow.h"
 #include "collision/pair_cache.h"
 #include "collision/pair_filter.h"
+#include "collision/pair_lanes.h"
 #include "collision/twist.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
@@ -30,6 +31,7 @@ class Detector {
     double contact_margin = 0;  // [m]; 0: by the sizes of the shapes
     double least_bounce = 0;    // slower approaches do not bounce [m/s]
     std::size_t max_pairs = 0;
+    std::uint32_t lanes = 0;  // of the narrow phase; 0: the widest that the processor has
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
@@ -72,18 +74,40 @@ class Detector {
 
   template <class Scalar> struct Scratch {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
-    AlignedBytes contacts;                  // the table of the next step
-    std::vector<Flight<Scalar>> flights;    // in the order of the pairs
+    AlignedBytes round_rows;                // of spheres and capsules, by shape: narrow_rows.inl
+    PairLanes<Scalar> lanes;
+    AlignedBytes contacts;                // the table of the next step
+    std::vector<Flight<Scalar>> flights;  // in the order of the pairs
+    std::size_t flight = 0;               // the next of them
+  };
+
+  /// A pair of which a contact comes.
+  template <class Scalar> struct Touch {
+    std::uint32_t rows[2];  // in the order of the contact's bodies
+    Scalar apart[3];        // the second body's centre as seen from the first's
+    double impact = 0;      // impact_time of the contact [s]
+    Manifold<Scalar>* manifold;
+    Manifold<Scalar> own;  // where nothing else holds it
   };
 
   static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
   void rebuild(const WorldState& state);
   template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
   template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
-  template <class Scalar>
-  void bound(const WorldState& state, double dt, const Options& options, std::vector<ShapeView<Scalar>>& shapes);
+  template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  /// The pairs whose tight boxes overlap, into `near_`.
+  void list_near();
+  /// Finds the manifolds of pairs that go in lanes, and marks all pairs that may have one.
+  template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
+  /// The manifold of a marked pair. False where no contact comes of it.
+  template <class Scalar>
+  bool touches(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
+               Touch<Scalar>& touch);
+  /// The shapes of a pair in the order of the contact's bodies.
+  Pair in_order(std::uint32_t pair) const;
+  template <class Scalar> Scalar look_margin(Pair shapes) const;
   template <class Scalar> Sight<Scalar> sight(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair) const;
   template <class Scalar>
   void find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
@@ -118,6 +142,8 @@ class Detector {
   std::vector<float> went_;  // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;      // some body has
   PairCache pairs_;
+  std::vector<std::uint32_t> near_;  // numbers of pairs
+  Marks marks_;
   std::vector<std::uint32_t> hints_, next_hints_;
   ContactColumns next_;  // of the next step, or of the last one
   bool replaced_ = false;
@@ -125,15 +151,23 @@ class Detector {
   Scratch<double> scratch_d_;
 };
 
+inline Pair Detector::in_order(std::uint32_t pair) const {
+  const auto [a, b] = pairs_.pairs()[pair];
+  return proxies_[a].responds ? Pair{a, b} : Pair{b, a};  // as WorldState::ends_of
+}
+
+/// No gap beyond it matters in this step.
+template <class Scalar> inline Scalar Detector::look_margin(Pair s) const {
+  return Scalar(margin(s.a, s.b)) + Scalar(reach_[s.a] + reach_[s.b]);
+}
+
 template <class Scalar>
 inline Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair) const {
-  auto [a, b] = pairs_.pairs()[pair];
-  if (!proxies_[a].responds) std::swap(a, b);  // as WorldState::ends_of
-  const std::uint32_t row_a = proxies_[a].body, row_b = proxies_[b].body;
-  Sight<Scalar> view = {{a, b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[b], 0};
+  const Pair shapes = in_order(pair);
+  const std::uint32_t row_a = proxies_[shapes.a].body, row_b = proxies_[shapes.b].body;
+  Sight<Scalar> view = {{shapes.a, shapes.b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[shapes.b], look_margin<Scalar>(shapes)};
   BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
   for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
-  view.margin = Scalar(margin(a, b)) + Scalar(reach_[a] + reach_[b]);
   return view;
 }
 

@@ -81,7 +81,7 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
   const auto pairs = pairs_.pairs();
   // what comes no further in the step than `slow` approaches too slowly to bounce
   const float slow = float(options.least_bounce * dt), certain = std::min(slow, 0.5f * thinnest_);
-  for (std::uint32_t i = 0; i < pairs.size(); i++) {
+  for (const std::uint32_t i : near_) {
     const auto [a, b] = pairs[i];
     const float way = reach_[a] + reach_[b];
     if (way <= certain) continue;
@@ -89,7 +89,7 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     if (x.jointed || y.jointed) continue;
     constexpr std::size_t stride = reals_of(Buffer::material);
     const float thick = thickness(a, b);
-    if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
+    if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick)) continue;
     const bool flies = way > 0.5f * thick || materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
     if (!flies && !(is_round(x.kind) && is_round(y.kind) && untouched(x.body) && untouched(y.body))) continue;
     if (scratch.flights.empty()) begin_strikes(s, dt);

@@ -23,6 +23,14 @@ template <class Scalar> class BodyReader {
     const Scalar* p = pose_ + row * stride;
     return {double(p[0]) + double(p[8]), double(p[1]) + double(p[9]), double(p[2]) + double(p[10])};
   }
+  /// The row of a round shape of the body (narrow_rows.inl).
+  void write_round(std::uint32_t row, const ShapeView<Scalar>& shape, Scalar* out) const {
+    const Scalar* body = pose_ + row * stride;
+    for (int k = 0; k < 3; k++) out[k] = shape.p[k], out[8 + k] = body[k], out[12 + k] = body[8 + k];
+    for (int k = 0; k < 4; k++) out[4 + k] = shape.q[k];
+    out[3] = shape.size[0];
+    out[11] = shape.size[1];
+  }
   /// Adds b's centre as seen from a's.
   void shift(std::uint32_t a, std::uint32_t b, Scalar* p) const {
     const Scalar *x = pose_ + a * stride, *y = pose_ + b * stride;

@@ -110,7 +110,9 @@ PC_FN_LARGE void pc_capsule_box(NarrowShape a, NarrowShape b, Real margin, PC_IN
     Real lean1 = pc_component(u, pc_next(i)); Real lean2 = pc_component(u, pc_next(pc_next(i)));
     SegmentPair o; o.s = t; o.t = PC_REAL(0.0);
     precise Real lean = lean1 * lean1 + lean2 * lean2; o.sine_squared = lean; o.cosine = pc_component(u, i); o.along = pc_dot(u, pc_sub(w, c));
-    pc_parallel_points(a.p, along, h, r, centre, pc_axis(axes, i), pc_component(hb, i), PC_REAL(0.0), o, margin, 32u + i * 2u, m);
+    Round capsule; capsule.p = a.p; capsule.r = r; capsule.u = along; capsule.h = h;
+    Round edge; edge.p = centre; edge.r = PC_REAL(0.0); edge.u = pc_axis(axes, i); edge.h = pc_component(hb, i);
+    pc_parallel_points(capsule, edge, o, margin, 32u + i * 2u, m);
   }
   // the closest point itself, where nothing else holds it
   precise Real deepest = separation + (r + h) * PC_HELD_SLOP;

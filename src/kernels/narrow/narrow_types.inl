@@ -14,11 +14,6 @@ const uint PC_CYLINDER = 3u;
 const uint PC_HULL = 4u;
 const uint PC_PLANE = 5u;
 
-// squared sine of 1.5 and 3 degrees: between them two lines pass from parallel (two points) to crossing (one)
-#define PC_PARALLEL_FULL PC_REAL(0.000685237)
-#define PC_PARALLEL_NONE PC_REAL(0.00273905)
-// below this squared sine two directions have no usable cross product
-#define PC_PARALLEL_EXACT PC_REAL(1e-8)
 // cores closer than this times their size have no usable difference vector
 #define PC_CORE_TOUCH PC_REAL(1e-4)
 // the closest point is added where no other point is as deep to this times the smaller core's size
@@ -45,12 +40,6 @@ PC_FN Vec3 pc_axis_x(Quaternion q) {
   precise Real x = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.y * q.v.y + q.v.z * q.v.z);
   precise Real y = PC_REAL(2.0) * (q.v.x * q.v.y + q.w * q.v.z);
   precise Real z = PC_REAL(2.0) * (q.v.x * q.v.z - q.w * q.v.y);
-  return Vec3(x, y, z);
-}
-PC_FN Vec3 pc_axis_y(Quaternion q) {
-  precise Real x = PC_REAL(2.0) * (q.v.x * q.v.y - q.w * q.v.z);
-  precise Real y = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.z * q.v.z);
-  precise Real z = PC_REAL(2.0) * (q.v.y * q.v.z + q.w * q.v.x);
   return Vec3(x, y, z);
 }
 PC_FN Vec3 pc_axis_z(Quaternion q) {
@@ -89,14 +78,6 @@ PC_FN uint pc_least_component(Vec3 v) {
 PC_FN Vec3 pc_edge_middle(Vec3 h, uint i, Vec3 n) {
   Vec3 c = Vec3(n.x < PC_REAL(0.0) ? -h.x : h.x, n.y < PC_REAL(0.0) ? -h.y : h.y, n.z < PC_REAL(0.0) ? -h.z : h.z);
   return Vec3(i == 0u ? PC_REAL(0.0) : c.x, i == 1u ? PC_REAL(0.0) : c.y, i == 2u ? PC_REAL(0.0) : c.z);
-}
-// A length whose square is safely a number above zero.
-PC_FN bool pc_has_length(Real squared) { precise Real least = PC_TINY * PC_TINY; return squared > least; }
-// Any unit vector perpendicular to the unit vector u, always the same one.
-PC_FN Vec3 pc_perpendicular(Vec3 u) {
-  bool steep = pc_abs(u.x) < PC_REAL(0.57);
-  Vec3 e = steep ? Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)) : Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
-  return pc_unit_or_zero(pc_madd(e, u, -pc_dot(e, u)));
 }
 
 PC_FN void pc_push(PC_INOUT(NarrowManifold) m, Vec3 p, Real separation, uint feature) {

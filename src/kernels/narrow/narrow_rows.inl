@@ -1,0 +1,13 @@
+// Round shapes from rows of four quads: (place against the body's centre, radius), (orientation), (the body's position, half the
+// length), (low part of the position, -). Needs narrow_lines.inl.
+const uint quads_round = 4u;
+struct RoundPair { Round a; Round b; };
+
+// Seen from a's body.
+PC_FN RoundPair pc_round_pair(Row a, Row b) {
+  Quad place_a = pc_row_quad(a, 0u); Quad turned_a = pc_row_quad(a, 1u); Quad centre_a = pc_row_quad(a, 2u); Quad low_a = pc_row_quad(a, 3u);
+  Quad place_b = pc_row_quad(b, 0u); Quad turned_b = pc_row_quad(b, 1u); Quad centre_b = pc_row_quad(b, 2u); Quad low_b = pc_row_quad(b, 3u);
+  RoundPair r; r.a.p = place_a.v; r.a.r = place_a.s; r.a.u = pc_axis_y(pc_quaternion(turned_a.v, turned_a.s)); r.a.h = centre_a.s;
+  Vec3 apart = pc_add(pc_sub(centre_b.v, centre_a.v), pc_sub(low_b.v, low_a.v));
+  r.b.p = pc_add(place_b.v, apart); r.b.r = place_b.s; r.b.u = pc_axis_y(pc_quaternion(turned_b.v, turned_b.s)); r.b.h = centre_b.s; return r;
+}
