@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "collision/flights.h"
@@ -81,6 +82,9 @@ float inner_radius(const ShapeDef& d) {
   return float(d.kind == ShapeKind::cylinder ? std::min(d.size.x, d.size.y) : d.size.x);
 }
 
+constexpr float infinite = std::numeric_limits<float>::infinity();
+constexpr Aabb everywhere = {{-infinite, -infinite, -infinite}, {infinite, infinite, infinite}};
+
 }  // namespace
 
 void Detector::rebuild(const WorldState& s) {
@@ -90,10 +94,20 @@ void Detector::rebuild(const WorldState& s) {
   pairs_.set_margin(float(constants::broad_margin), 0.125f);
   filter_->rebuild(s);
   pairs_.set_filter(may_touch, filter_.get());
+  constexpr std::size_t lanes = 8;
+  const std::size_t room = (s.shapes.size() + lanes - 1) / lanes * lanes;
   proxies_.assign(s.shapes.size(), {});
-  tight_.assign(s.shapes.size(), {});
+  tight_.assign(room, {});
   margins_.assign(s.shapes.size(), 0);
-  reach_.assign(s.shapes.size(), 0);
+  reach_.assign(room, 0);
+  bodies_.assign(room, 0);
+  odd_.clear();
+  moving_.clear();
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++)
+    if (!s.stands(row)) moving_.push_back(row);
+  movers_ = std::uint32_t(moving_.size());
+  moving_.resize((moving_.size() + lanes - 1) / lanes * lanes, 0);
+  listed_margin_ = -1;
   hints_.clear();
   standing_.clear();
   bool some_dynamic = false;
@@ -117,7 +131,11 @@ void Detector::rebuild(const WorldState& s) {
                    bounding_radius(shape.def),
                    s.responds(row) ? inner_radius(shape.def) : 0.0f,
                    jointed[row],
+                   !s.stands(row),
+                   shape.def.size,
                    shape.def.convex.data()};
+    bodies_[i] = row;
+    if (shape.def.kind == ShapeKind::plane || shape.def.kind == ShapeKind::hull) odd_.push_back(i);
     if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
     if (!s.responds(row)) standing_.push_back(i);
     pairs_.add(i, !s.stands(row));
@@ -163,31 +181,83 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
   return {};
 }
 
-// Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so that every
-// two shapes that come within the margin of each other have overlapping boxes.
-template <class Scalar> void Detector::bound(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
-  scratch.shapes.resize(s.shapes.size());
-  scratch.round_rows.resize(s.shapes.size() * round_reals * sizeof(Scalar));
-  Scalar* const round_rows = reinterpret_cast<Scalar*>(scratch.round_rows.data());
-  const BodyReader<Scalar> bodies(s.tables);
-  const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
-  const float fall = float(length(s.gravity) * dt * dt), step = float(dt);
-  twists_.resize(s.bodies.size());
-  for (std::uint32_t row = 0; row < s.bodies.size(); row++)
-    twists_[row] = s.stands(row) ? Twist() : twist_of<Scalar>(s.tables, row);
+void Detector::list_columns(const WorldState& s, const Options& options) {
+  listed_margin_ = options.contact_margin;
+  const std::size_t stride = bodies_.size();
+  twists_.assign(s.bodies.size(), {});
+  columns_.resize(0);  // zeros
+  columns_.resize(stride * bound_columns * sizeof(float));
+  float* const columns = reinterpret_cast<float*>(columns_.data());
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
-    ShapeView<Scalar>& view = scratch.shapes[i];
-    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.hull, proxy.centred, bodies.orientation(proxy.body),
-                view);
-    if (goes_in_lanes(proxy.kind)) bodies.write_round(proxy.body, view, round_rows + i * round_reals);
-    const Twist& twist = twists_[proxy.body];
-    const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
-                         std::min(step * twist.turn, largest_turn) * proxy.lever_any;
-    reach_[i] = s.stands(proxy.body) ? 0.0f : std::max(step * twist.speed, strays_ ? went_[proxy.body] : 0.0f) + turned + fall;
     margins_[i] = options.contact_margin > 0 ? options.contact_margin : constants::margin_share * proxy.radius;
-    tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + (proxy.responds ? float(margins_[i]) : 0.0f));
+    const bool box = proxy.kind == ShapeKind::box, ball = proxy.kind == ShapeKind::sphere;
+    const Vec3 half = box ? proxy.size : Vec3{0, ball ? 0 : proxy.size.y, 0};  // a cylinder's box is within its capsule's
+    const float of[bound_columns] = {proxy.lever_across,
+                                     proxy.lever_any,
+                                     proxy.moves ? 1.0f : 0.0f,
+                                     float(half.x),
+                                     float(half.y),
+                                     float(half.z),
+                                     box ? 0.0f : float(proxy.size.x),
+                                     proxy.responds ? float(margins_[i]) : 0.0f,
+                                     0.0f};
+    for (std::size_t k = 0; k < bound_columns; k++) columns[k * stride + i] = of[k];
+  }
+}
+
+// In both precisions in float: nothing but which contacts are listed comes of it.
+template <class Scalar> void Detector::find_twists(const WorldState& s, const Options& options) {
+  const auto table = [&](Buffer buffer, AlignedBytes& rounded) {
+    const Scalar* of = s.tables.data<Scalar>(buffer);
+    if constexpr (std::is_same_v<Scalar, float>) {
+      return of;
+    } else {
+      const std::size_t reals = s.bodies.size() * reals_of(buffer);
+      rounded.resize(reals * sizeof(float));
+      float* out = reinterpret_cast<float*>(rounded.data());
+      std::transform(of, of + reals, out, [](Scalar x) { return float(x); });
+      return static_cast<const float*>(out);
+    }
+  };
+  narrow_lanes<float>(options.lanes)
+      .twists({table(Buffer::motion, rounded_[0]), table(Buffer::mass, rounded_[1]), table(Buffer::pose, rounded_[2]),
+               moving_.data(), movers_, twists_.data()->v});
+}
+
+// Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so that every
+// two shapes that come within the margin of each other have overlapping boxes.
+template <class Scalar> void Detector::bound(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
+  constexpr bool rounds = !std::is_same_v<Scalar, float>;
+  const std::uint32_t count = std::uint32_t(proxies_.size()), stride = std::uint32_t(bodies_.size());
+  if (listed_margin_ != options.contact_margin) list_columns(s, options);
+  find_twists<Scalar>(s, options);
+  scratch.shapes.resize(count);
+  scratch.rows.resize(stride * round_reals * sizeof(Scalar));
+  if (rounds) rows_.resize(stride * round_reals * sizeof(float));
+  const BodyReader<Scalar> bodies(s.tables);
+  Scalar* const rows = reinterpret_cast<Scalar*>(scratch.rows.data());
+  float* const bound_rows = reinterpret_cast<float*>(rounds ? rows_.data() : scratch.rows.data());
+  const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
+  for (std::uint32_t i = 0; i < count; i++) {
+    const Proxy& proxy = proxies_[i];
+    if (!proxy.alive) continue;
+    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.hull, proxy.centred, bodies.orientation(proxy.body),
+                scratch.shapes[i]);
+    bodies.write_row(proxy.body, scratch.shapes[i], rows + i * round_reals);
+    if constexpr (rounds) round_row(rows + i * round_reals, bound_rows + i * round_reals);
+  }
+  float* const columns = reinterpret_cast<float*>(columns_.data());
+  if (strays_)
+    for (std::uint32_t i = 0; i < count; i++) columns[(bound_columns - 1) * stride + i] = went_[bodies_[i]];
+  narrow_lanes<float>(options.lanes)
+      .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt),
+              float(length(s.gravity) * dt * dt), largest_turn, reach_.data(), tight_.data()});
+  for (const std::uint32_t i : odd_) {
+    const float more = reach_[i] + (proxies_[i].responds ? float(margins_[i]) : 0.0f);
+    const bool plane = proxies_[i].kind == ShapeKind::plane;
+    tight_[i] = plane ? everywhere : box_of_hull(scratch.shapes[i], bodies.position(proxies_[i].body), more);
   }
   for (Twist& twist : twists_) twist.limit_turn(dt);
 }
@@ -238,7 +308,10 @@ template <class Scalar> bool Detector::collect_strays(const WorldState& s, const
   return found;
 }
 
-void Detector::forget_strays() { strays_ = false; }
+void Detector::forget_strays() {
+  if (strays_) listed_margin_ = -1;  // the column of ways
+  strays_ = false;
+}
 
 void Detector::put_back(WorldState& s) {
   if (!replaced_) return;
@@ -281,7 +354,7 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
     else
       lanes.leave(i), marks_.set(i);
   }
-  lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.round_rows.data()), marks_);
+  lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.rows.data()), marks_);
 }
 
 template <class Scalar>

@@ -69,12 +69,15 @@ class Detector {
     double radius = 0;     // of the sphere about its centre that holds it
     float inner = 0;       // half its thickness; 0: its body does not move by forces
     bool jointed = false;  // its body hangs on joints
+    bool moves = false;    // its body does not stand
+    Vec3 size;
     const HullData* hull = nullptr;
   };
 
   template <class Scalar> struct Scratch {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
-    AlignedBytes round_rows;                // of spheres and capsules, by shape: narrow_rows.inl
+    AlignedBytes rows;                      // of shapes: narrow_bounds.inl
+    AlignedBytes twists;                    // of bodies, for flights in double
     PairLanes<Scalar> lanes;
     AlignedBytes contacts;                // the table of the next step
     std::vector<Flight<Scalar>> flights;  // in the order of the pairs
@@ -94,6 +97,9 @@ class Detector {
   void rebuild(const WorldState& state);
   template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
   template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
+  /// What of boxes does not change while the structure and the margin stay.
+  void list_columns(const WorldState& state, const Options& options);
+  template <class Scalar> void find_twists(const WorldState& state, const Options& options);
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
@@ -118,7 +124,8 @@ class Detector {
   float thickness(std::uint32_t a, std::uint32_t b) const;
   /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
   template <class Scalar> void look_ahead(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  void begin_strikes(const WorldState& state, double dt);
+  template <class Scalar>
+  void begin_strikes(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   /// Whether a contact comes of it, once all flights are known.
   template <class Scalar>
   bool settle(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch,
@@ -134,10 +141,17 @@ class Detector {
   std::vector<std::uint32_t> standing_;  // shapes of fixed and kinematic bodies
   float thinnest_ = 0;                   // half the least thickness of what moves by forces [m]
   std::vector<Aabb> tight_;
-  std::vector<double> margins_;  // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]
-  std::vector<float> reach_;     // how far a shape may come this step [m]
-  std::vector<Twist> twists_;    // of bodies, by row
-  std::vector<float> struck_;    // of bodies: when they first meet something in flight; dt: not in this step [s]
+  std::vector<double> margins_;        // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]
+  std::vector<float> reach_;           // how far a shape may come this step [m]
+  std::vector<Twist> twists_;          // of bodies, by row
+  AlignedBytes columns_, rows_;        // of shapes, in float: narrow_bounds.inl
+  AlignedBytes rounded_[3];            // motion, mass and pose of a world in double
+  std::vector<std::uint32_t> odd_;     // shapes with boxes of their own: planes and hulls
+  std::vector<std::uint32_t> moving_;  // rows of bodies that do not stand; whole lanes
+  std::vector<std::uint32_t> bodies_;  // rows, of shapes; whole lanes
+  std::uint32_t movers_ = 0;           // bodies that do not stand
+  double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
+  std::vector<float> struck_;          // of bodies: when they first meet something in flight; dt: not in this step [s]
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;  // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;      // some body has

@@ -1,4 +1,5 @@
-// The narrow phase for many pairs of one kind, in lanes: the text of kernels/narrow, so the bits of `narrow`.
+// What the detector does in lanes: the narrow phase for many pairs of one kind, with the text of kernels/narrow and so the bits
+// of `narrow`; and how bodies move and the boxes of shapes.
 #pragma once
 #include <cstdint>
 
@@ -6,12 +7,14 @@
 
 namespace pcphys {
 
+struct Aabb;
+
 /// Pairs that are done in lanes; others one by one.
 enum class PairKind : std::uint8_t { spheres, capsules, other };
 inline constexpr std::uint32_t lane_kinds = 2;
-inline constexpr std::uint32_t round_reals = 16;  // of a shape's row
+inline constexpr std::uint32_t round_reals = 16, bound_columns = 9;  // of a shape: narrow_bounds.inl
 
-/// Pairs of one kind. Lists are padded to whole lanes, with any pair. A row of a shape: narrow_rows.inl.
+/// Pairs of one kind. Lists are padded to whole lanes, with any pair. A row of a shape: narrow_bounds.inl.
 template <class Scalar> struct PairBatch {
   const Scalar* rows;          // of shapes; 16-byte (double: 32-byte) aligned
   const std::uint32_t *a, *b;  // rows of the pairs' shapes
@@ -24,8 +27,28 @@ template <class Scalar> struct PairBatch {
 template <class Scalar>
 using NarrowBatch = std::uint32_t (*)(const PairBatch<Scalar>&, Manifold<Scalar>* out, std::uint32_t* places);
 
+/// How bodies move, into rows of 12: TwistOf. `rows` is padded to whole lanes with 0, the row of the ground.
+template <class Scalar> struct TwistCall {
+  const Scalar *motion, *mass, *pose;  // tables
+  const std::uint32_t* rows;
+  std::uint32_t count;
+  Scalar* twists;
+};
+
+/// How far shapes may come in the step, and their boxes; all lists are padded to whole lanes.
+struct BoxCall {
+  const float *rows, *columns, *twists;  // narrow_bounds.inl; column k begins at k stride
+  const std::uint32_t* bodies;           // rows
+  std::uint32_t count, stride;
+  float step, fall, largest_turn;  // [s, m, rad]
+  float* reach;                    // [m]
+  Aabb* boxes;
+};
+
 template <class Scalar> struct NarrowLanes {
   std::uint32_t lanes;
+  void (*twists)(const TwistCall<Scalar>&);
+  void (*boxes)(const BoxCall&);        // in float alone, as boxes are in both precisions
   NarrowBatch<Scalar> run[lane_kinds];  // by PairKind
 };
 

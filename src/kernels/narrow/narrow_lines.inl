@@ -12,10 +12,22 @@ struct Round { Vec3 p; Real r; Vec3 u; Real h; };  // centre, radius, axis and h
 struct RoundContact { Mask apart; Vec3 normal; Vec3 p; Real separation; Real feature; Mask two; Vec3 second; Real second_separation; };
 
 PC_FN Mask pc_not(Mask m) { return pc_select(m, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); }
+PC_FN Vec3 pc_axis_x(Quaternion q) {
+  precise Real x = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.y * q.v.y + q.v.z * q.v.z);
+  precise Real y = PC_REAL(2.0) * (q.v.x * q.v.y + q.w * q.v.z);
+  precise Real z = PC_REAL(2.0) * (q.v.x * q.v.z - q.w * q.v.y);
+  return Vec3(x, y, z);
+}
 PC_FN Vec3 pc_axis_y(Quaternion q) {
   precise Real x = PC_REAL(2.0) * (q.v.x * q.v.y - q.w * q.v.z);
   precise Real y = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.z * q.v.z);
   precise Real z = PC_REAL(2.0) * (q.v.y * q.v.z + q.w * q.v.x);
+  return Vec3(x, y, z);
+}
+PC_FN Vec3 pc_axis_z(Quaternion q) {
+  precise Real x = PC_REAL(2.0) * (q.v.x * q.v.z + q.w * q.v.y);
+  precise Real y = PC_REAL(2.0) * (q.v.y * q.v.z - q.w * q.v.x);
+  precise Real z = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.y * q.v.y);
   return Vec3(x, y, z);
 }
 // A length whose square is safely a number above zero.

@@ -1,6 +1,4 @@
-// Round shapes from rows of four quads: (place against the body's centre, radius), (orientation), (the body's position, half the
-// length), (low part of the position, -). Needs narrow_lines.inl.
-const uint quads_round = 4u;
+// Round shapes from their rows (narrow_bounds.inl). Needs narrow_lines.inl.
 struct RoundPair { Round a; Round b; };
 
 // Seen from a's body.

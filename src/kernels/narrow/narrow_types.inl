@@ -36,18 +36,6 @@ struct NarrowShape { uint kind; Vec3 size; Vec3 p; Quaternion q; HullRef hull; }
 struct NarrowPoint { Vec3 p; Real separation; uint feature; };
 struct NarrowManifold { Vec3 normal; uint count; NarrowPoint points[4]; };
 
-PC_FN Vec3 pc_axis_x(Quaternion q) {
-  precise Real x = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.y * q.v.y + q.v.z * q.v.z);
-  precise Real y = PC_REAL(2.0) * (q.v.x * q.v.y + q.w * q.v.z);
-  precise Real z = PC_REAL(2.0) * (q.v.x * q.v.z - q.w * q.v.y);
-  return Vec3(x, y, z);
-}
-PC_FN Vec3 pc_axis_z(Quaternion q) {
-  precise Real x = PC_REAL(2.0) * (q.v.x * q.v.z + q.w * q.v.y);
-  precise Real y = PC_REAL(2.0) * (q.v.y * q.v.z - q.w * q.v.x);
-  precise Real z = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.y * q.v.y);
-  return Vec3(x, y, z);
-}
 PC_FN Axes pc_axes(Quaternion q) { Axes m; m.x = pc_axis_x(q); m.y = pc_axis_y(q); m.z = pc_axis_z(q); return m; }
 PC_FN Vec3 pc_to_local(Axes m, Vec3 v) { return Vec3(pc_dot(m.x, v), pc_dot(m.y, v), pc_dot(m.z, v)); }
 PC_FN Vec3 pc_to_world(Axes m, Vec3 v) { return pc_combine(m.x, v.x, m.y, v.y, m.z, v.z); }
