@@ -32,16 +32,14 @@ std::pair<float, float> levers(const ShapeDef& d) {
   return {0.0f, 0.0f};
 }
 
-/// Whether some point is within the margin, or would close within the step as the bodies move now. A gap between
-/// bodies that slide past each other by more than `extent` before it closes is none: they would meet only if their
-/// contact plane had no end.
+/// Whether a gap between bodies that move as they do now closes within the step. One between bodies that slide past each other by
+/// more than `extent` before it closes does not: they would meet only if their contact plane had no end.
 template <class Scalar>
-bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt, double fall,
-            double extent) {
+bool gaps_close(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt,
+                double fall, double extent) {
   const float n[3] = {float(m.normal[0]), float(m.normal[1]), float(m.normal[2])};
   for (std::uint32_t i = 0; i < m.count; i++) {
     const double gap = double(m.points[i].separation) - margin;
-    if (gap <= 0) return true;
     const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
     const Passing<float> p = passing(a, b, n, r, apart);
     const double closing = std::max(0.0, double(p.closing));
@@ -132,7 +130,6 @@ void Detector::rebuild(const WorldState& s) {
                    s.responds(row) ? inner_radius(shape.def) : 0.0f,
                    jointed[row],
                    !s.stands(row),
-                   shape.def.size,
                    shape.def.convex.data()};
     bodies_[i] = row;
     if (shape.def.kind == ShapeKind::plane || shape.def.kind == ShapeKind::hull) odd_.push_back(i);
@@ -193,14 +190,15 @@ void Detector::list_columns(const WorldState& s, const Options& options) {
     if (!proxy.alive) continue;
     margins_[i] = options.contact_margin > 0 ? options.contact_margin : constants::margin_share * proxy.radius;
     const bool box = proxy.kind == ShapeKind::box, ball = proxy.kind == ShapeKind::sphere;
-    const Vec3 half = box ? proxy.size : Vec3{0, ball ? 0 : proxy.size.y, 0};  // a cylinder's box is within its capsule's
+    const Vec3 size = s.shapes[i].def.size;
+    const Vec3 half = box ? size : Vec3{0, ball ? 0 : size.y, 0};  // a cylinder's box is within its capsule's
     const float of[bound_columns] = {proxy.lever_across,
                                      proxy.lever_any,
                                      proxy.moves ? 1.0f : 0.0f,
                                      float(half.x),
                                      float(half.y),
                                      float(half.z),
-                                     box ? 0.0f : float(proxy.size.x),
+                                     box ? 0.0f : float(size.x),
                                      proxy.responds ? float(margins_[i]) : 0.0f,
                                      0.0f};
     for (std::size_t k = 0; k < bound_columns; k++) columns[k * stride + i] = of[k];
@@ -358,19 +356,29 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
 }
 
 template <class Scalar>
+bool Detector::closes(const WorldState& s, double dt, Pair shapes, const Manifold<Scalar>& manifold) const {
+  const double margin = this->margin(shapes.a, shapes.b);
+  for (std::uint32_t i = 0; i < manifold.count; i++)
+    if (double(manifold.points[i].separation) <= margin) return true;
+  if (manifold.count == 0) return false;
+  const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
+  Scalar d[3] = {0, 0, 0};
+  BodyReader<Scalar>(s.tables).shift(a.body, b.body, d);
+  const float apart[3] = {float(d[0]), float(d[1]), float(d[2])};
+  return gaps_close(manifold, twists_[a.body], twists_[b.body], apart, margin, dt, length(s.gravity) * dt * dt,
+                    a.radius + b.radius);
+}
+
+template <class Scalar>
 bool Detector::touches(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                        Touch<Scalar>& touch) {
-  touch.impact = 0;
+  const Pair shapes = in_order(pair);
+  const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
+  touch.rows[0] = a.body, touch.rows[1] = b.body;
+  touch.impact = a.jointed || b.jointed ? -1 : 0;
   touch.manifold = scratch.lanes.manifold(pair);
-  const auto [a, b] = in_order(pair);
-  if (touch.manifold) {
-    touch.rows[0] = proxies_[a].body, touch.rows[1] = proxies_[b].body;
-    for (Scalar& x : touch.apart) x = 0;
-    BodyReader<Scalar>(s.tables).shift(touch.rows[0], touch.rows[1], touch.apart);
-  } else {
+  if (!touch.manifold) {
     const Sight<Scalar> view = sight(s, scratch, pair);
-    std::copy_n(view.rows, 2, touch.rows);
-    std::copy_n(view.apart, 3, touch.apart);
     if (scratch.flight < scratch.flights.size() && scratch.flights[scratch.flight].pair == pair) {
       Flight<Scalar>& f = scratch.flights[scratch.flight++];
       touch.manifold = &f.manifold;
@@ -379,14 +387,10 @@ bool Detector::touches(const WorldState& s, double dt, const Options& options, S
       return true;
     }
     touch.manifold = &touch.own;
-    find(options, view, scratch.shapes[a], view.there, pair, touch.own);
+    find(options, view, scratch.shapes[shapes.a], view.there, pair, touch.own);
   }
-  const float apart[3] = {float(touch.apart[0]), float(touch.apart[1]), float(touch.apart[2])};
-  if (!closes(*touch.manifold, twists_[touch.rows[0]], twists_[touch.rows[1]], apart, margin(a, b), dt,
-              length(s.gravity) * dt * dt, proxies_[a].radius + proxies_[b].radius))
-    return false;
+  if (!closes(s, dt, shapes, *touch.manifold)) return false;
   to_light_side(*touch.manifold, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
-  if (proxies_[a].jointed || proxies_[b].jointed) touch.impact = -1;
   return true;
 }
 
@@ -409,6 +413,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   look_ahead(s, dt, options, scratch);
   sort_out(options, scratch);
   scratch.flight = 0;
+  const BodyReader<Scalar> bodies(s.tables);
   Touch<Scalar> touch;
   marks_.each([&](std::uint32_t i) {
     if (!touches(s, dt, options, scratch, i, touch)) return;
@@ -432,9 +437,11 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts = found.impacts || touch.impact > 0 ||
-                    (touch.impact == 0 && out[30] > 0 &&
-                     fastest(manifold, twists_[row_a], twists_[row_b], touch.apart) + fall / dt >= options.least_bounce);
+    found.impacts = found.impacts || touch.impact > 0;
+    if (found.impacts || touch.impact < 0 || !(out[30] > 0)) return;
+    Scalar apart[3] = {0, 0, 0};
+    bodies.shift(row_a, row_b, apart);
+    found.impacts = fastest(manifold, twists_[row_a], twists_[row_b], apart) + fall / dt >= options.least_bounce;
   });
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;

@@ -70,7 +70,6 @@ class Detector {
     float inner = 0;       // half its thickness; 0: its body does not move by forces
     bool jointed = false;  // its body hangs on joints
     bool moves = false;    // its body does not stand
-    Vec3 size;
     const HullData* hull = nullptr;
   };
 
@@ -87,7 +86,6 @@ class Detector {
   /// A pair of which a contact comes.
   template <class Scalar> struct Touch {
     std::uint32_t rows[2];  // in the order of the contact's bodies
-    Scalar apart[3];        // the second body's centre as seen from the first's
     double impact = 0;      // impact_time of the contact [s]
     Manifold<Scalar>* manifold;
     Manifold<Scalar> own;  // where nothing else holds it
@@ -111,6 +109,8 @@ class Detector {
   template <class Scalar>
   bool touches(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                Touch<Scalar>& touch);
+  /// Whether some point is within the margin, or would close within the step as the bodies move now.
+  template <class Scalar> bool closes(const WorldState& state, double dt, Pair shapes, const Manifold<Scalar>& manifold) const;
   /// The shapes of a pair in the order of the contact's bodies.
   Pair in_order(std::uint32_t pair) const;
   template <class Scalar> Scalar look_margin(Pair shapes) const;
