@@ -10,8 +10,8 @@ namespace pcphys {
 struct Aabb;
 
 /// Pairs that are done in lanes; others one by one.
-enum class PairKind : std::uint8_t { spheres, capsules, other };
-inline constexpr std::uint32_t lane_kinds = 2;
+enum class PairKind : std::uint8_t { spheres, capsules, sphere_box, capsule_box, other };
+inline constexpr std::uint32_t lane_kinds = 4;
 inline constexpr std::uint32_t round_reals = 16, bound_columns = 9;  // of a shape: narrow_bounds.inl
 
 /// Pairs of one kind. Lists are padded to whole lanes, with any pair. A row of a shape: narrow_bounds.inl.
@@ -23,7 +23,7 @@ template <class Scalar> struct PairBatch {
 };
 
 /// Writes the manifolds of pairs within their margins, as seen from a's body, and their places in the batch, in ascending
-/// order; returns how many. `out` and `places` have room for all pairs.
+/// order; returns how many. One without points: the pair is for `narrow`. `out` and `places` have room for all pairs.
 template <class Scalar>
 using NarrowBatch = std::uint32_t (*)(const PairBatch<Scalar>&, Manifold<Scalar>* out, std::uint32_t* places);
 

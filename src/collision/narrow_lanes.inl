@@ -6,6 +6,7 @@
 namespace pcphys {
 namespace PC_NAMESPACE {
 #include "kernels/narrow/narrow_lines.inl"
+#include "kernels/narrow/narrow_over_box.inl"
 #include "kernels/narrow/narrow_bounds.inl"
 #include "kernels/narrow/narrow_rows.inl"
 
@@ -65,18 +66,19 @@ static void boxes(const BoxCall& call) {
 constexpr void (*boxes)(const BoxCall&) = nullptr;
 #endif
 
-// Of the first `count` lanes, those that are not apart.
+// Of the first `count` lanes, those that are not apart; without points where they are open.
 PC_INLINE uint pc_hand_out(const RoundContact& c, uint first, uint count, Manifold<Scalar>* out, uint* places) {
-  const uint two = pc_mask_bits(c.two), all = count < PC_LANES ? (1u << count) - 1u : (1u << PC_LANES) - 1u;
+  const uint two = pc_mask_bits(c.two), open = pc_mask_bits(c.open), all = count < PC_LANES ? (1u << count) - 1u : (1u << PC_LANES) - 1u;
   uint near = all & ~pc_mask_bits(c.apart), n = 0;
   if (near == 0) return 0;
-  Lanes normal[3], p[3], separation, feature, second[3], second_separation;
+  Lanes normal[3], p[3], separation, feature, second[3], second_separation, second_feature;
   pc_put(normal, c.normal);
   pc_put(p, c.p);
   pc_store(separation.v, c.separation);
   pc_store(feature.v, c.feature);
   pc_put(second, c.second);
   pc_store(second_separation.v, c.second_separation);
+  pc_store(second_feature.v, c.second_feature);
   for (; near != 0; near &= near - 1u) {
     const uint l = uint(__builtin_ctz(near));
     Manifold<Scalar>& m = out[n];
@@ -85,32 +87,35 @@ PC_INLINE uint pc_hand_out(const RoundContact& c, uint first, uint count, Manifo
     for (uint k = 0; k < 3; k++) m.normal[k] = normal[k].v[l], point->p[k] = p[k].v[l];
     point->separation = separation.v[l];
     point->feature = uint(int(feature.v[l]));
-    m.count = 1;
-    if ((two >> l & 1u) == 0) continue;
+    m.count = open >> l & 1u ? 0 : 1;
+    if (m.count == 0 || (two >> l & 1u) == 0) continue;
     m.count = 2;
     point++;
     for (uint k = 0; k < 3; k++) point->p[k] = second[k].v[l];
     point->separation = second_separation.v[l];
-    point->feature = 2;
+    point->feature = uint(int(second_feature.v[l]));
   }
   return n;
 }
 
-#define PC_BATCH(name, pairs)                                                                                  \
-  static uint name(const PairBatch<Scalar>& batch, Manifold<Scalar>* out, uint* places) {                      \
-    uint n = 0;                                                                                                \
-    for (uint i = 0; i < batch.count; i += PC_LANES) {                                                         \
-      const RoundPair pair = pc_round_pair(pc_row(batch.rows, pc_index(batch.a + i), quads_round),             \
-                                           pc_row(batch.rows, pc_index(batch.b + i), quads_round));            \
-      n += pc_hand_out(pairs(pair.a, pair.b, pc_load(batch.margins + i)), i, batch.count - i, out + n, places + n); \
-    }                                                                                                          \
-    return n;                                                                                                  \
+#define PC_BATCH(name, shapes, contact)                                                                                \
+  static uint name(const PairBatch<Scalar>& batch, Manifold<Scalar>* out, uint* places) {                              \
+    uint n = 0;                                                                                                        \
+    for (uint i = 0; i < batch.count; i += PC_LANES) {                                                                 \
+      const Row a = pc_row(batch.rows, pc_index(batch.a + i), quads_round);                                            \
+      const Row b = pc_row(batch.rows, pc_index(batch.b + i), quads_round);                                            \
+      n += pc_hand_out(contact(shapes(a, b), pc_load(batch.margins + i)), i, batch.count - i, out + n, places + n);    \
+    }                                                                                                                  \
+    return n;                                                                                                          \
   }
-PC_BATCH(spheres, pc_spheres)
-PC_BATCH(capsules, pc_capsules)
+PC_BATCH(spheres, pc_round_pair, pc_two_spheres)
+PC_BATCH(capsules, pc_round_pair, pc_two_capsules)
+PC_BATCH(sphere_box, pc_round_on_box, pc_sphere_on_box)
+PC_BATCH(capsule_box, pc_round_on_box, pc_capsule_on_box)
 #undef PC_BATCH
 }  // namespace PC_NAMESPACE
 
-const NarrowLanes<PC_SCALAR> PC_EXPORT = {PC_LANES, PC_NAMESPACE::twists, PC_NAMESPACE::boxes, {PC_NAMESPACE::spheres, PC_NAMESPACE::capsules}};
+const NarrowLanes<PC_SCALAR> PC_EXPORT = {PC_LANES, PC_NAMESPACE::twists, PC_NAMESPACE::boxes, 
+    {PC_NAMESPACE::spheres, PC_NAMESPACE::capsules, PC_NAMESPACE::sphere_box, PC_NAMESPACE::capsule_box}};
 
 }  // namespace pcphys

@@ -12,10 +12,10 @@
 
 namespace pcphys {
 
-inline bool goes_in_lanes(ShapeKind kind) { return kind == ShapeKind::sphere || kind == ShapeKind::capsule; }
+/// In the order of the contact's bodies.
 inline PairKind pair_kind(ShapeKind a, ShapeKind b) {
-  if (a == ShapeKind::sphere && b == ShapeKind::sphere) return PairKind::spheres;
-  if (a == ShapeKind::capsule && b == ShapeKind::capsule) return PairKind::capsules;
+  if (a == ShapeKind::sphere) return b == a ? PairKind::spheres : b == ShapeKind::box ? PairKind::sphere_box : PairKind::other;
+  if (a == ShapeKind::capsule) return b == a ? PairKind::capsules : b == ShapeKind::box ? PairKind::capsule_box : PairKind::other;
   return PairKind::other;
 }
 
@@ -60,7 +60,7 @@ template <class Scalar> class PairLanes {
   }
   /// The pair is done without lanes.
   void leave(std::uint32_t pair) { slots_[pair] = 0; }
-  /// Marks the pairs that have manifolds, and those that were too few to be done.
+  /// Marks the pairs that have manifolds, and those that were too few to be done or are left open.
   void run(const NarrowLanes<Scalar>& lanes, const Scalar* rows, Marks& marks) {
     std::uint32_t all = 0, found = 0;
     for (const List& list : lists_) all += list.count;
@@ -78,8 +78,9 @@ template <class Scalar> class PairLanes {
       for (std::uint32_t i = 0; i < n; i++) {
         const std::uint32_t pair = list.pairs[places_[i]];
         marks.set(pair);
-        slots_[pair] = ++found;
+        slots_[pair] = manifolds_[found + i].count > 0 ? found + i + 1 : 0;
       }
+      found += n;
     }
   }
   /// Of a marked pair; null where it was left.

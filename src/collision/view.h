@@ -32,6 +32,7 @@ template <class Scalar> class BodyReader {
     std::copy_n(at, 4, out + 8);
     out[11] = shape.size[1];
     std::copy_n(at + 8, 4, out + 12);
+    out[15] = shape.size[2];
   }
   /// Adds b's centre as seen from a's.
   void shift(std::uint32_t a, std::uint32_t b, Scalar* p) const {

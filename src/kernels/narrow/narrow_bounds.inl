@@ -1,7 +1,7 @@
 // How bodies move, and the boxes of shapes: what comes before the pairs. Boxes hold their shapes wherever they can come in the step;
 // slack beyond rounding, also to single precision, is in them. Needs narrow_lines.inl.
 
-const uint quads_round = 4u;  // of a shape's row: (place against the body's centre, radius), orientation, (the body's position, half the length), its low part
+const uint quads_round = 4u;  // of a shape's row: (place against the body's centre, first of its sizes), orientation, (the body's position, second size), (its low part, third)
 // Columns of a shape: the lever of turns across its body's y axis and of any; 1 where it may move; half extents, and a radius besides;
 // by how much its box is grown; how far a try of this step sent its body
 const uint BOUND_ACROSS = 0u;

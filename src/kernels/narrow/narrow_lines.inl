@@ -6,10 +6,16 @@
 #define PC_PARALLEL_NONE PC_REAL(0.00273905)
 // below this squared sine two directions have no usable cross product
 #define PC_PARALLEL_EXACT PC_REAL(1e-8)
+// cores closer than this times their size have no usable difference vector
+#define PC_CORE_TOUCH PC_REAL(1e-4)
+// the closest point is added where no other point is as deep to this times the smaller core's size
+#define PC_HELD_SLOP PC_REAL(2e-5)
 
 struct Round { Vec3 p; Real r; Vec3 u; Real h; };  // centre, radius, axis and half its length
 // What two of them give: where they are farther apart than the margin, nothing; else the point p, and where `two` a second one.
-struct RoundContact { Mask apart; Vec3 normal; Vec3 p; Real separation; Real feature; Mask two; Vec3 second; Real second_separation; };
+// (Or where it is `open`, the whole text of the pair must say.)
+struct RoundContact { Mask apart; Mask open; Vec3 normal; Vec3 p; Real separation; Real feature; Mask two; Vec3 second; Real second_separation; Real second_feature; };
+struct Axes { Vec3 x; Vec3 y; Vec3 z; };
 
 PC_FN Mask pc_not(Mask m) { return pc_select(m, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); }
 PC_FN Vec3 pc_axis_x(Quaternion q) {
@@ -30,6 +36,13 @@ PC_FN Vec3 pc_axis_z(Quaternion q) {
   precise Real z = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.y * q.v.y);
   return Vec3(x, y, z);
 }
+PC_FN Axes pc_axes(Quaternion q) { Axes m; m.x = pc_axis_x(q); m.y = pc_axis_y(q); m.z = pc_axis_z(q); return m; }
+PC_FN Vec3 pc_to_local(Axes m, Vec3 v) { return Vec3(pc_dot(m.x, v), pc_dot(m.y, v), pc_dot(m.z, v)); }
+PC_FN Vec3 pc_to_world(Axes m, Vec3 v) { return pc_combine(m.x, v.x, m.y, v.y, m.z, v.z); }
+PC_FN Real pc_sign(Real x) { return pc_select(x < PC_REAL(0.0), PC_REAL(-1.0), PC_REAL(1.0)); }
+PC_FN Vec3 pc_abs3(Vec3 v) { return Vec3(pc_abs(v.x), pc_abs(v.y), pc_abs(v.z)); }
+PC_FN Real pc_smallest(Vec3 v) { return pc_min(v.x, pc_min(v.y, v.z)); }
+PC_FN Real pc_largest(Vec3 v) { return pc_max(v.x, pc_max(v.y, v.z)); }
 // A length whose square is safely a number above zero.
 PC_FN Mask pc_has_length(Real squared) { precise Real least = PC_TINY * PC_TINY; return squared > least; }
 // Any unit vector perpendicular to the unit vector u, always the same one.
@@ -39,7 +52,7 @@ PC_FN Vec3 pc_perpendicular(Vec3 u) {
 }
 PC_FN RoundContact pc_no_contact(Mask apart) {
   Real zero = PC_REAL(0.0); RoundContact c; c.apart = apart; c.normal = pc_zero3(); c.p = c.normal; c.separation = zero; c.feature = zero;
-  c.two = zero > zero; c.second = c.normal; c.second_separation = zero; return c;
+  c.open = zero > zero; c.two = c.open; c.second = c.normal; c.second_separation = zero; c.second_feature = PC_REAL(2.0); return c;
 }
 
 // Two round cores at their closest points; `other` is the normal where the points coincide.

@@ -3,8 +3,8 @@
 PC_FN Round pc_round_of(NarrowShape s) { Round r; r.p = s.p; r.r = s.size.x; r.u = pc_axis_y(s.q); r.h = s.size.y; return r; }
 PC_FN void pc_push_round(RoundContact c, PC_INOUT(NarrowManifold) m) {
   if (c.apart) return;
-  m.normal = c.normal; pc_push(m, c.p, c.separation, c.feature > PC_REAL(1.5) ? 2u : (c.feature > PC_REAL(0.5) ? 1u : 0u));
-  if (c.two) pc_push(m, c.second, c.second_separation, 2u);
+  m.normal = c.normal; pc_push(m, c.p, c.separation, uint(c.feature));
+  if (c.two) pc_push(m, c.second, c.second_separation, uint(c.second_feature));
 }
 PC_FN void pc_sphere_sphere(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
   pc_push_round(pc_round_cores(a.p, a.size.x, b.p, b.size.x, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)), margin), m);
@@ -24,23 +24,13 @@ PC_FN void pc_sphere_capsule(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
 }
 
 PC_FN void pc_sphere_box(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
-  Axes axes = pc_axes(b.q); Vec3 h = b.size;
-  Vec3 c = pc_to_local(axes, pc_sub(a.p, b.p));
-  Vec3 inside = Vec3(pc_clamp(c.x, -h.x, h.x), pc_clamp(c.y, -h.y, h.y), pc_clamp(c.z, -h.z, h.z));
-  Vec3 e = pc_sub(c, inside); Real squared = pc_dot(e, e);
-  precise Real reach = a.size.x + margin; precise Real farthest = reach * reach;
-  if (squared > farthest) return;
-  Vec3 outward; Real distance = pc_sqrt(squared);
-  if (pc_has_length(squared)) {
-    outward = pc_scale(e, pc_div(PC_REAL(1.0), distance));
-  } else {  // the centre is inside: out through the nearest face
-    precise Vec3 room = h - pc_abs3(c);
-    uint i = pc_least_component(room);
-    outward = pc_unit_axis(i, pc_sign(pc_component(c, i)));
-    distance = -pc_component(room, i);
-  }
-  m.normal = pc_negate(pc_to_world(axes, outward));
-  precise Real separation = distance - a.size.x;
+  Axes axes = pc_axes(b.q); RoundContact k = pc_sphere_over_box(a.p, a.size.x, b.p, axes, b.size, margin);
+  if (k.apart || !k.open) { pc_push_round(k, m); return; }
+  // the centre is inside: out through the nearest face
+  Vec3 c = pc_to_local(axes, pc_sub(a.p, b.p)); precise Vec3 room = b.size - pc_abs3(c);
+  uint i = pc_least_component(room);
+  m.normal = pc_negate(pc_to_world(axes, pc_unit_axis(i, pc_sign(pc_component(c, i)))));
+  precise Real separation = -pc_component(room, i) - a.size.x;
   pc_push_from(m, a.p, m.normal, a.size.x, separation, margin, 0u);
 }
 
