@@ -107,6 +107,7 @@ void Detector::rebuild(const WorldState& s) {
   moving_.resize((moving_.size() + lanes - 1) / lanes * lanes, 0);
   listed_margin_ = -1;
   hints_.clear();
+  hinted_ = false;
   standing_.clear();
   bool some_dynamic = false;
   thinnest_ = std::numeric_limits<float>::infinity();
@@ -170,9 +171,10 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
                                             " is not finite; set it anew or destroy the body. The world is as before the step."};
   }
   if (report.changed) {
-    next_hints_.resize(pairs_.pairs().size());
+    next_hints_.assign(pairs_.pairs().size(), 0);
     const auto previous = pairs_.previous_index();
-    for (std::size_t i = 0; i < next_hints_.size(); i++) next_hints_[i] = previous[i] < hints_.size() ? hints_[previous[i]] : 0;
+    for (std::size_t i = 0; hinted_ && i < next_hints_.size(); i++)
+      next_hints_[i] = previous[i] < hints_.size() ? hints_[previous[i]] : 0;
     hints_.swap(next_hints_);
   }
   return {};
@@ -252,6 +254,9 @@ template <class Scalar> void Detector::bound(const WorldState& s, double dt, con
   narrow_lanes<float>(options.lanes)
       .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt),
               float(length(s.gravity) * dt * dt), largest_turn, reach_.data(), tight_.data()});
+  scratch.looks.resize(count);
+  for (std::uint32_t i = 0; i < count; i++)
+    scratch.looks[i] = {Scalar(margins_[i]), reach_[i], proxies_[i].kind, proxies_[i].responds};
   for (const std::uint32_t i : odd_) {
     const float more = reach_[i] + (proxies_[i].responds ? float(margins_[i]) : 0.0f);
     const bool plane = proxies_[i].kind == ShapeKind::plane;
@@ -341,17 +346,25 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
   PairLanes<Scalar>& lanes = scratch.lanes;
   lanes.begin(pairs_.pairs().size(), near_.size());
   marks_.clear(pairs_.pairs().size());
-  auto flight = scratch.flights.begin();
+  std::size_t flight = 0;
+  scratch.flights.push_back({});  // none comes after it
+  scratch.flights.back().pair = 0xffffffffu;
+  const Look<Scalar>* looks = scratch.looks.data();
+  const Pair* pairs = pairs_.pairs().data();
+  const bool native = options.narrow == NarrowPhase::native;
   for (const std::uint32_t i : near_) {
-    const Pair shapes = in_order(i);
-    const PairKind kind = pair_kind(proxies_[shapes.a].kind, proxies_[shapes.b].kind);
-    const bool flies = flight != scratch.flights.end() && flight->pair == i;
-    if (flies) flight++;
-    if (!flies && kind != PairKind::other && options.narrow == NarrowPhase::native)
-      lanes.add(kind, i, shapes.a, shapes.b, look_margin<Scalar>(shapes));
+    auto [a, b] = pairs[i];
+    if (!looks[a].responds) std::swap(a, b);  // as in_order
+    const Look<Scalar>&x = looks[a], &y = looks[b];
+    const PairKind kind = pair_kind(x.kind, y.kind);
+    const bool flies = scratch.flights[flight].pair == i;
+    flight += flies;
+    if (!flies && native && kind != PairKind::other)
+      lanes.add(kind, i, a, b, std::min(x.margin, y.margin) + Scalar(x.reach + y.reach));
     else
       lanes.leave(i), marks_.set(i);
   }
+  scratch.flights.pop_back();
   lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.rows.data()), marks_);
 }
 

@@ -73,9 +73,18 @@ class Detector {
     const HullData* hull = nullptr;
   };
 
+  /// What of a shape chooses how its pairs are looked at.
+  template <class Scalar> struct Look {
+    Scalar margin;
+    float reach;
+    ShapeKind kind;
+    bool responds;
+  };
+
   template <class Scalar> struct Scratch {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
     AlignedBytes rows;                      // of shapes: narrow_bounds.inl
+    std::vector<Look<Scalar>> looks;        // of shapes
     AlignedBytes twists;                    // of bodies, for flights in double
     PairLanes<Scalar> lanes;
     AlignedBytes contacts;                // the table of the next step
@@ -159,6 +168,7 @@ class Detector {
   std::vector<std::uint32_t> near_;  // numbers of pairs
   Marks marks_;
   std::vector<std::uint32_t> hints_, next_hints_;
+  bool hinted_ = false;  // some hint is not 0
   ContactColumns next_;  // of the next step, or of the last one
   bool replaced_ = false;
   Scratch<float> scratch_f_;

@@ -55,7 +55,7 @@ void Detector::find(const Options& options, const Sight<Scalar>& view, const Sha
   if (options.narrow == NarrowPhase::fcl)
     fcl_hook()(a, b, view.margin, manifold);
   else
-    narrow(a, b, view.margin, hints_[pair], manifold);
+    narrow(a, b, view.margin, hints_[pair], manifold), hinted_ |= hints_[pair] != 0;
 }
 
 float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
