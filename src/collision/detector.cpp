@@ -100,6 +100,7 @@ void Detector::rebuild(const WorldState& s) {
   reach_.assign(room, 0);
   bodies_.assign(room, 0);
   odd_.clear();
+  round_ = false;
   moving_.clear();
   for (std::uint32_t row = 1; row < s.bodies.size(); row++)
     if (!s.stands(row)) moving_.push_back(row);
@@ -133,6 +134,7 @@ void Detector::rebuild(const WorldState& s) {
                    !s.stands(row),
                    shape.def.convex.data()};
     bodies_[i] = row;
+    round_ |= shape.def.kind == ShapeKind::sphere || shape.def.kind == ShapeKind::capsule;
     if (shape.def.kind == ShapeKind::plane || shape.def.kind == ShapeKind::hull) odd_.push_back(i);
     if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
     if (!s.responds(row)) standing_.push_back(i);
@@ -389,7 +391,7 @@ bool Detector::touches(const WorldState& s, double dt, const Options& options, S
   const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
   touch.rows[0] = a.body, touch.rows[1] = b.body;
   touch.impact = a.jointed || b.jointed ? -1 : 0;
-  touch.manifold = scratch.lanes.manifold(pair);
+  touch.manifold = round_ ? scratch.lanes.manifold(pair) : nullptr;
   if (!touch.manifold) {
     const Sight<Scalar> view = sight(s, scratch, pair);
     if (scratch.flight < scratch.flights.size() && scratch.flights[scratch.flight].pair == pair) {
@@ -424,11 +426,11 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   found.pairs = std::uint32_t(pairs.size());
   list_near();
   look_ahead(s, dt, options, scratch);
-  sort_out(options, scratch);
+  if (round_) sort_out(options, scratch);
   scratch.flight = 0;
   const BodyReader<Scalar> bodies(s.tables);
   Touch<Scalar> touch;
-  marks_.each([&](std::uint32_t i) {
+  const auto add = [&](std::uint32_t i) {
     if (!touches(s, dt, options, scratch, i, touch)) return;
     const auto [a, b] = pairs[i];
     const auto [row_a, row_b] = touch.rows;
@@ -455,7 +457,11 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     Scalar apart[3] = {0, 0, 0};
     bodies.shift(row_a, row_b, apart);
     found.impacts = fastest(manifold, twists_[row_a], twists_[row_b], apart) + fall / dt >= options.least_bounce;
-  });
+  };
+  if (round_)
+    marks_.each(add);
+  else
+    for (const std::uint32_t i : near_) add(i);
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));

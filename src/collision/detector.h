@@ -166,7 +166,8 @@ class Detector {
   bool strays_ = false;      // some body has
   PairCache pairs_;
   std::vector<std::uint32_t> near_;  // numbers of pairs
-  Marks marks_;
+  Marks marks_;                      // of those that may have a manifold; where some shape is round
+  bool round_ = false;               // some shape is: its pairs go in lanes
   std::vector<std::uint32_t> hints_, next_hints_;
   bool hinted_ = false;  // some hint is not 0
   ContactColumns next_;  // of the next step, or of the last one
