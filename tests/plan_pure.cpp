@@ -1,6 +1,7 @@
 // Pins the plan as data: a pure function of what a world holds and of the settings, with a name and a reason
 // for all that is left out, kept from step to step, and printed whole.
 #include "plan/plan.h"
+#include "pcphys/constants.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -238,7 +239,7 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
 TEST_CASE("the plan is kept: repeated steps run the same one") {
   SceneWorld s = scene_world("stack", 3);
   Stepper stepper;
-  run(s.world, stepper, 5);
+  run(s.world, stepper, constants::settling_steps);
   const StepPlan* first = &stepper.plan();
   const StepPlan copy = *first;
   for (int i = 0; i < 20; i++) {

@@ -118,6 +118,9 @@ inline constexpr double gap_roundings = 1;
 /// How often a sub-step looks for impacts, at most, while there are any: what one hands on, the next body hands on again, as
 /// in Newton's cradle.
 inline constexpr unsigned impact_sweeps = 8;
+/// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet of what
+/// holds it (docs/impulses.md).
+inline constexpr unsigned settling_visits = 8, settling_steps = 16;
 
 /// Proxies of the broad phase are fattened by this, so that most steps change no pair [m].
 inline constexpr double broad_margin = 0.05;

@@ -1,8 +1,10 @@
 #include "collision/detector.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -51,6 +53,12 @@ bool gaps_close(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const
 }
 
 /// The largest speed at which a gap closes [m/s].
+/// Whether some contact is of a body that was just placed and settles still after this step has begun.
+bool some_settles(const Tables& tables, std::span<const std::array<std::uint32_t, 2>> ends) {
+  const auto settles = [&](std::uint32_t row) { return tables.get(Buffer::velocity_parts, row, 15) > 1; };
+  return std::ranges::any_of(ends, [&](const auto& e) { return settles(e[0]) || settles(e[1]); });
+}
+
 template <class Scalar> double fastest(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const Scalar* apart) {
   float n[3], d[3], most = 0;
   for (int k = 0; k < 3; k++) n[k] = float(m.normal[k]), d[k] = float(apart[k]);
@@ -463,6 +471,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   else
     for (const std::uint32_t i : near_) add(i);
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
+  found.placed = s.settling > 0 && some_settles(s.tables, next_.ends);
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));
   s.tables.exchange(Table::contact, Buffer::contact, scratch.contacts, std::uint32_t(next_.keys.size()));

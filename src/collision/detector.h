@@ -38,6 +38,7 @@ class Detector {
     bool restitution = false;  // some contact bounces
     bool impacts = false;      // or is between shapes that meet in flight
     bool rolling = false;      // some contact resists rolling or turning
+    bool placed = false;       // some is of a body that was just placed
     bool changed = false;      // other pairs touch than in the last step
   };
 

@@ -16,15 +16,15 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear_low = PC_GATHER(velocity_parts, i, 2u);
   Quad angular_low = PC_GATHER(velocity_parts, i, 3u);
 
-  Mask dynamic_body = linear.s > PC_REAL(0.0);
+  Mask dynamic_body = linear.s > PC_REAL(0.0); Mask in_phase = pc_and(angular.s < PC_REAL(0.0), dynamic_body);
 #ifdef PC_SEED
-  Mask in_phase = pc_and(angular.s < PC_REAL(0.0), dynamic_body);
   VelocityShift shift; shift.u = pc_shift(PC_PASS in_phase, linear.v, linear_change.v); shift.l = pc_shift(PC_PASS in_phase, angular.v, angular_change.v);
 #else
   VelocityShift shift = pc_velocity_shift(PC_PASS linear, angular, linear_change, angular_change, push, turn);
 #endif
   pc_add_shift(dynamic_body, shift.u, linear.v, linear_low.v); pc_add_shift(dynamic_body, shift.l, angular.v, angular_low.v);
-  angular.s = PC_REAL(0.0);
+  precise Real settling = angular_low.s - PC_REAL(1.0); angular_low.s = pc_max(settling, PC_REAL(0.0));
+  angular.s = pc_select(in_phase, angular.s, PC_REAL(0.0));  // so far, that `synchronise` knows a first sub-step
   PC_SCATTER(motion, i, 0u, linear);
   PC_SCATTER(motion, i, 1u, angular);
   PC_SCATTER(velocity_parts, i, 2u, linear_low);

@@ -7,6 +7,10 @@
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
+#ifdef PC_PLACED
+  Mask acts = pc_max(PC_GATHER(velocity_parts, ia, 3u).s, PC_GATHER(velocity_parts, ib, 3u).s) > PC_REAL(0.0);
+  if (!PC_ANY(acts)) return;  // lint: allow (others keep what they have)
+#endif
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
@@ -14,10 +18,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   // (between bodies that move what a row lets go of is what lets piles rest)
   precise Real both = a.inverse_mass * b.inverse_mass; Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
-  Visit r = pc_visit(PC_PASS m, pc_twist(a, b, arms, n, t1, t2), shift, n, t1, t2, preload);
+  Visit r = pc_visit(PC_PASS m, pc_twist(a, b, arms, n, t1, t2), shift, n, t1, t2, preload PC_ACTS);
+#ifdef PC_PLACED
+  a.inverse_mass = pc_select(acts, a.inverse_mass, PC_REAL(0.0)); b.inverse_mass = pc_select(acts, b.inverse_mass, PC_REAL(0.0));  // not stored
+#endif
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, r.touch), b.phase);
   pc_apply(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple);
 }
 #undef pc_kept
 #undef PC_PRELOAD
+#undef PC_ACTS
+#undef PC_ACTING

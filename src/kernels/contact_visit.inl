@@ -20,6 +20,13 @@ PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loos
 #define pc_kept(i) loose
 #define PC_PRELOAD , Real preload
 #endif
+#ifdef PC_PLACED
+#define PC_ACTS , acts
+#define PC_ACTING , Mask acts
+#else
+#define PC_ACTS
+#define PC_ACTING
+#endif
 PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
   // (open by more than rounding: beyond a millionth of what gravity closes in a sub-step)
   precise Real gap_rate = s * PC_INFO(inverse_h); precise Real told = PC_INFO(least_load) * PC_REAL(1e-4); Mask open = gap_rate > told;
@@ -58,7 +65,7 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
 // Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
 // holds the two. (What has just come is a blow. After it a body may be slow, but it moves.)
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
-PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2 PC_PRELOAD) {
+PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2 PC_PRELOAD PC_ACTING) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
@@ -108,6 +115,11 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }
+#endif
+#ifdef PC_PLACED
+  now.k0 = pc_select(acts, now.k0, l0); now.k1 = pc_select(acts, now.k1, l1); now.k2 = pc_select(acts, now.k2, l2); now.k3 = pc_select(acts, now.k3, l3);
+  now.f.next1 = pc_select(acts, now.f.next1, PC_LD(contact_impulses, m, IMPULSE_T)); now.f.next2 = pc_select(acts, now.f.next2, PC_LD(contact_impulses, m, IMPULSE_T + 1u));
+  now.f.next_twist = pc_select(acts, now.f.next_twist, PC_LD(contact_impulses, m, IMPULSE_T + 2u));
 #endif
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
   PC_ST(contact_impulses, m, 0u, now.k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));

@@ -5,6 +5,7 @@
 #include "contact_warming.inl"
 #include "contact_turned.inl"
 #include "contact_calming.inl"
+#include "contact_low.inl"
 
 // Where an arm has grown since the start of the step, the frozen effective masses are too large, by up to
 // (K + dK) / K with dK <= growth of arm^2 times trace I^-1; fast bodies would overshoot and gain energy.
@@ -30,26 +31,6 @@ PC_FN void pc_go_on(PC_IO Slot m, Real inverse_masses) {
   }
 }
 
-// pc_apply, but where one body stands what rounding drops from the velocity of the other stays in its low part, as of forces: what
-// slides or rests takes up the same share of its speed each sub-step, rounded the same way each time.
-PC_FN void pc_kick(PC_IO Index i, PC_INOUT(BodyState) b, Vec3 impulse, Vec3 torque, Real sign, Mask stands) {
-  precise Real mass = b.inverse_mass * sign; precise Real response = b.response * sign; Mask moves = b.inverse_mass > PC_REAL(0.0);
-  Quad linear_low = PC_GATHER(velocity_parts, i, 2u); Quad angular_low = PC_GATHER(velocity_parts, i, 3u); Vec3 zero = pc_zero3();
-  TwoSum v = pc_two_sum(b.v, pc_madd(pc_select3(stands, linear_low.v, zero), impulse, mass)); TwoSum l = pc_two_sum(b.l, pc_madd(pc_select3(stands, angular_low.v, zero), torque, response));
-  b.v = v.sum; b.l = l.sum; Mask keeps = pc_and(moves, stands);
-  PC_SCATTER_IF(keeps, velocity_parts, i, 2u, pc_quad(pc_snap3(v.low), linear_low.s)); PC_SCATTER_IF(keeps, velocity_parts, i, 3u, pc_quad(pc_snap3(l.low), angular_low.s));
-}
-PC_FN void pc_apply_warm(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple) {
-  Mask moves = pc_max(a.inverse_mass, b.inverse_mass) > PC_REAL(0.0); Mask stands = pc_and(moves, pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY);
-  if (PC_ANY(stands)) {  // lint: allow (others get what pc_apply gives)
-    Vec3 torque_a = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arms.b, impulse));
-    pc_kick(PC_PASS ia, a, impulse, torque_a, PC_REAL(-1.0), stands); pc_kick(PC_PASS ib, b, impulse, torque_b, PC_REAL(1.0), stands);
-    pc_store_states(PC_PASS ia, ib, a, b);
-  } else {
-    pc_apply(PC_PASS ia, ib, a, b, arms, impulse, couple);
-  }
-}
-
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
@@ -66,5 +47,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     w.impulse = pc_scale(w.impulse, share); w.couple = pc_scale(w.couple, share);
     for (uint i = 0u; i < 7u; i++) { precise Real kept = PC_LD(contact_impulses, m, i) * share; PC_ST(contact_impulses, m, i, kept); }
   }
-  pc_apply_warm(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple);
+  pc_apply_low(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple);
 }

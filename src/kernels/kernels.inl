@@ -72,6 +72,7 @@ PC_KERNEL(contact_impact, free_contact, impulses, PC_READ(contact_ends) PC_READ(
 PC_KERNEL(contact_warm, free_contact, impulses, PC_READ(contact_ends) PC_WRITE(velocity_parts) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_rolling, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(material) PC_WRITE(rolling_impulses) PC_WRITE(motion))
 PC_KERNEL(contact_solve, free_contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion))
+PC_KERNEL(contact_solve_placed, free_contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_READ(velocity_parts) PC_WRITE(contact_impulses) PC_WRITE(motion))
 PC_KERNEL(tree_contact_warm, tree_contact, impulses, PC_READ(contact_paths) PC_READ(inertia) PC_READ(delta) PC_READ(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_contact_prepare, tree_contact, impulses, PC_READ(contact_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(contact_reach))
 PC_KERNEL(tree_contact_solve, tree_contact, impulses, PC_READ(contact_paths) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending) PC_WRITE(contact_reach))

@@ -157,6 +157,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_SCATTER_IF(exists, motion, body, 0u, pc_quad(zero, linear.s)); PC_SCATTER_IF(exists, motion, body, 1u, pc_quad(zero, angular.s));
   PC_SCATTER_IF(exists, pose, body, 0u, pc_quad(there.sum, place.s)); PC_SCATTER_IF(exists, pose, body, 1u, next.at.q);
   PC_SCATTER_IF(exists, pose, body, 2u, pc_quad(pc_snap3(there.low), place_low.s)); PC_SCATTER_IF(exists, pose, body, 3u, next.at.low);
-  PC_SCATTER_IF(exists, velocity_parts, body, 0u, pc_quad(pc_snap3(pc_sub(now.u, kick.u)), u_before.s)); PC_SCATTER_IF(exists, velocity_parts, body, 1u, pc_quad(pc_snap3(pc_sub(now.l, kick.l)), l_before.s));
-  PC_SCATTER_IF(exists, velocity_parts, body, 2u, pc_quad(zero, none)); PC_SCATTER_IF(exists, velocity_parts, body, 3u, pc_quad(pc_snap3(low), none));
+  PC_SCATTER_IF(exists, velocity_parts, body, 0u, pc_quad(pc_snap3(pc_sub(now.u, kick.u)), u_before.s)); PC_SCATTER_IF(exists, velocity_parts, body, 1u, pc_quad(pc_snap3(pc_sub(now.l, kick.l)), none));
+  PC_SCATTER_IF(exists, velocity_parts, body, 2u, pc_quad(zero, none)); PC_SCATTER_IF(exists, velocity_parts, body, 3u, pc_quad(pc_snap3(low), l_low.s));
 }

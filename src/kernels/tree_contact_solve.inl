@@ -40,3 +40,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #undef PC_MEAN
 #undef pc_kept
 #undef PC_PRELOAD
+#undef PC_ACTS
+#undef PC_ACTING

@@ -178,6 +178,8 @@ void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uin
 void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   solve_on_trees(b, s, phase, substep);
   if (s.free_contacts) b.kernel(Kernel::contact_solve, phase, substep);
+  for (unsigned visit = 1; s.free_contacts && s.placed && visit < constants::settling_visits; visit++)
+    b.kernel(Kernel::contact_solve_placed, phase, substep);
 }
 
 /// A sub-step; `count`: of how many.

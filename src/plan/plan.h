@@ -31,6 +31,7 @@ struct PlanSignature {
   bool free_contacts = false;               // some do in this step, of bodies that stand in no tree
   bool tree_contacts = false;               // and of bodies that do
   bool restitution = false;                 // some contact bounces
+  bool placed = false;                      // some contact is of a body that was just placed
   bool impacts = false;                     // or is between shapes that meet in flight
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
   bool joints() const { return free_joints || tree_joints; }

@@ -267,6 +267,7 @@ struct Stepper::Inside {
         (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
     wanted.restitution = found.restitution;
+    wanted.placed = found.placed && wanted.free_contacts;
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
     plan = &find_plan(wanted);
@@ -281,6 +282,7 @@ struct Stepper::Inside {
     strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
     if (strayed) return {};
     s.last_substep = h;
+    if (s.settling > 0) s.settling--;
     report.substeps = wanted.substeps << (std::bit_width(octaves.used()) - 1);
     report.refined = octaves.refined();
     report.pairs = found.pairs;

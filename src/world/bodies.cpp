@@ -120,6 +120,7 @@ Result<BodyId> World::create_body(const BodyDef& def) {
     s.tables.set3(Buffer::motion, row, 0, def.velocity);
     s.set_angular_velocity(row, def.angular_velocity);
     s.bring_in_phase(row);
+    s.let_settle(row);
   }
   write_material(s.tables, row, def.material);
   s.tables.set(Buffer::force, row, 3, def.linear_drag);
@@ -199,6 +200,7 @@ Status World::set_pose(BodyId body, const Pose& pose) {
     s.bring_in_phase(row);
     s.set_angular_velocity(row, w);
   }
+  s.let_settle(row);
   return {};
 }
 

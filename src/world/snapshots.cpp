@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "pcphys/constants.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -90,7 +91,7 @@ std::uint64_t hash_world(const WorldState& s) {
 
 // ---- snapshots -----------------------------------------------------------------------------------------
 
-constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '3'};
+constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '4'};
 
 class Writer {
  public:
@@ -229,6 +230,7 @@ Status World::restore(std::span<const std::byte> snapshot) {
     return cut;
 
   s.last_substep = substep;
+  s.settling = constants::settling_steps;
   s.gravity = gravity;
   std::uint32_t index = 0;
   for (std::size_t i = 1; i < s.bodies.size(); i++) {

@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 
+#include "pcphys/constants.h"
+
 namespace pcphys {
 
 namespace {
@@ -79,6 +81,12 @@ void WorldState::bring_in_phase(std::uint32_t row) {
   tables.set3(Buffer::motion, row, 4, l);
   tables.set(Buffer::motion, row, 7, -1);
   for (std::uint32_t part = 0; part < 16; part += 4) tables.set3(Buffer::velocity_parts, row, part, {});
+}
+
+void WorldState::let_settle(std::uint32_t row) {
+  if (bodies[row].kind != BodyKind::dynamic) return;
+  tables.set(Buffer::velocity_parts, row, 15, constants::settling_steps);
+  settling = constants::settling_steps;
 }
 
 void WorldState::set_angular_velocity(std::uint32_t row, Vec3 w) {

@@ -89,6 +89,7 @@ struct WorldState {
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;  // objects, kinds, filters
+  std::uint32_t settling = 0;           // steps for which some body may be settling (Buffer::velocity_parts)
   std::uint64_t removals = 0;           // of properties and tables of the host's own
   std::uint64_t contacts_version = 1;   // contacts that no step made: a snapshot was restored
 
@@ -107,6 +108,8 @@ struct WorldState {
     ids.release(index);
     structure_version++;
   }
+  /// Of a body that was just placed: what holds it is not known yet.
+  void let_settle(std::uint32_t row);
   /// Removes a joint or spring.
   void remove_joint(std::uint32_t row);
   /// Removes the contacts of a body and follows the row of another that took its place.
