@@ -22,6 +22,7 @@ PC_INLINE void pc_put(Lanes* to, Vec3 x) {
   pc_store(to[1].v, x.y);
   pc_store(to[2].v, x.z);
 }
+
 static void twists(const TwistCall<Scalar>& call) {
   for (uint i = 0; i < call.count; i += PC_LANES) {
     const Index row = pc_index(call.rows + i);
@@ -35,7 +36,7 @@ static void twists(const TwistCall<Scalar>& call) {
   }
 }
 
-#ifndef PC_DOUBLE
+#ifndef PC_DOUBLE  // boxes are in float in both precisions
 static void boxes(const BoxCall& call) {
   const Stride stride = {PC_REAL(call.step), PC_REAL(call.fall), PC_REAL(call.largest_turn)};
   for (uint i = 0; i < call.count; i += PC_LANES) {
@@ -61,7 +62,6 @@ static void boxes(const BoxCall& call) {
     }
   }
 }
-
 #else
 constexpr void (*boxes)(const BoxCall&) = nullptr;
 #endif
@@ -115,7 +115,7 @@ PC_BATCH(capsule_box, pc_round_on_box, pc_capsule_on_box)
 #undef PC_BATCH
 }  // namespace PC_NAMESPACE
 
-const NarrowLanes<PC_SCALAR> PC_EXPORT = {PC_LANES, PC_NAMESPACE::twists, PC_NAMESPACE::boxes, 
+const NarrowLanes<PC_SCALAR> PC_EXPORT = {PC_LANES, PC_NAMESPACE::twists, PC_NAMESPACE::boxes,
     {PC_NAMESPACE::spheres, PC_NAMESPACE::capsules, PC_NAMESPACE::sphere_box, PC_NAMESPACE::capsule_box}};
 
 }  // namespace pcphys
