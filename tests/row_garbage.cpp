@@ -24,7 +24,7 @@ class SpoilingBackend final : public Backend {
 
   std::string device() const override { return inner_->device(); }
   std::uint32_t width() const override { return inner_->width(); }
-  std::uint32_t width_for(std::uint32_t count) const override { return inner_->width_for(count); }
+  std::uint32_t width_for(Domain domain, std::uint32_t count) const override { return inner_->width_for(domain, count); }
   Status attach(Buffer buffer, void* host, std::size_t bytes) override { return inner_->attach(buffer, host, bytes); }
   Status reserve(Buffer buffer, std::size_t slots) override {
     AlignedBytes& rows = rows_[buffer];

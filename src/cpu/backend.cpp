@@ -39,7 +39,7 @@ class CpuBackend final : public Backend {
     return kernels_.lanes == 1 ? "cpu, scalar" : "cpu, " + std::to_string(kernels_.lanes) + " lanes";
   }
   std::uint32_t width() const override { return kernels_.lanes; }
-  std::uint32_t width_for(std::uint32_t count) const override {
+  std::uint32_t width_for(Domain, std::uint32_t count) const override {
     for (std::uint32_t lanes = std::max(count, 1u); lanes < width(); lanes++)
       if (of_lanes_[lanes]) return lanes;
     return width();

@@ -17,6 +17,8 @@ namespace pcphys {
 namespace {
 
 constexpr std::uint32_t local_size = 64;
+/// So many trees of one shape, and more, share blocks of `gl_width` lanes.
+constexpr std::uint32_t fewest_alike = 8;
 
 std::string_view label_of(Buffer buffer) { return is_own(buffer) ? "a property of the host's own" : schema(buffer).name; }
 
@@ -32,6 +34,10 @@ class GlBackend final : public Backend {
 
   std::string device() const override { return context_->report().renderer; }
   std::uint32_t width() const override { return gl_width; }
+  /// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
+  std::uint32_t width_for(Domain domain, std::uint32_t count) const override {
+    return domain == Domain::tree && count < fewest_alike ? 1 : gl_width;
+  }
   Status attach(Buffer buffer, void* host, std::size_t bytes) override;
   Status reserve(Buffer buffer, std::size_t slots) override;
   Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
@@ -56,7 +62,8 @@ class GlBackend final : public Backend {
   Status bind(const KernelRun& run);
   Status bind_buffers(std::span<const Access> accesses, std::string_view kernel, std::size_t info);
   Status bind_own(const OwnKernel& kernel, std::size_t info);
-  std::int32_t range_of(const KernelRun& run) const;
+  KernelProgram& program_of(const KernelRun& run) { return programs_[run.lanes == 1][std::size_t(run.kernel)]; }
+  std::int32_t range_of(const KernelRun& run);
   void dispatch_all(const KernelRun& run);
   void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end);
 
@@ -65,7 +72,7 @@ class GlBackend final : public Backend {
   SourceOptions options_;
   std::vector<GlBuffer> buffers_ = std::vector<GlBuffer>(buffer_count);  // by Buffer
   std::unordered_map<std::uint64_t, OwnProgram> own_programs_;           // by serial
-  std::array<KernelProgram, kernel_count> programs_{};
+  std::array<std::array<KernelProgram, kernel_count>, 2> programs_{};    // of `gl_width` lanes, and of one
   std::uint32_t info_buffer_ = 0;
   std::size_t info_bytes_ = 0, info_stride_ = 0, info_count_ = 0, info_capacity_ = 0;
   std::vector<char> info_staging_;
@@ -96,8 +103,9 @@ GlBackend::~GlBackend() {
     GlScope scope(*context_);
     if (scope.status()) {  // else a host's context went first, and took everything along
       for (GlBuffer& buffer : buffers_) buffer.release();
-      for (const KernelProgram& program : programs_)
-        if (program.id != 0) glDeleteProgram(program.id);
+      for (const auto& programs : programs_)
+        for (const KernelProgram& program : programs)
+          if (program.id != 0) glDeleteProgram(program.id);
       for (const auto& [serial, program] : own_programs_) glDeleteProgram(program.id);
       glDeleteBuffers(1, &info_buffer_);
     }
@@ -189,9 +197,11 @@ Status GlBackend::bind_buffers(std::span<const Access> accesses, std::string_vie
 
 Status GlBackend::bind(const KernelRun& run) {
   if (run.own) return bind_own(*run.own, run.info);
-  KernelProgram& program = programs_[std::size_t(run.kernel)];
+  KernelProgram& program = program_of(run);
   if (program.id == 0) {
-    const Result<KernelProgram> loaded = load_kernel(run.kernel, options_, cache_);
+    SourceOptions options = options_;
+    options.lanes = run.lanes;
+    const Result<KernelProgram> loaded = load_kernel(run.kernel, options, cache_);
     if (!loaded) return loaded.error();
     program = *loaded;
   }
@@ -238,8 +248,8 @@ Status GlBackend::bind_own(const OwnKernel& kernel, std::size_t info) {
   return {};
 }
 
-std::int32_t GlBackend::range_of(const KernelRun& run) const {
-  return run.own ? own_programs_.at(run.own->serial).range : programs_[std::size_t(run.kernel)].range;
+std::int32_t GlBackend::range_of(const KernelRun& run) {
+  return run.own ? own_programs_.at(run.own->serial).range : program_of(run).range;
 }
 
 /// Long ranges go in pieces of as many work groups as the device takes; pieces need no barrier.
@@ -253,7 +263,7 @@ void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::
 }
 
 void GlBackend::dispatch_all(const KernelRun& run) {
-  const std::uint32_t lanes = run.own || schema(run.kernel).domain == Domain::body ? 1 : gl_width;
+  const std::uint32_t lanes = run.own || schema(run.kernel).domain == Domain::body ? 1 : run.lanes;
   for (const Range& range : run.ranges) {
     if (range.begin >= range.end) continue;
     if (barrier_due_) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);

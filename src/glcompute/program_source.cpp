@@ -118,7 +118,7 @@ const char* form_suffix(RoundingForm form) { return form == RoundingForm::none ?
 std::string head(const SourceOptions& options) {
   std::string text = "#version 430\n";
   if (options.precision == Precision::f64) text += "#define PC_DOUBLE\n";
-  text += "#define PC_W " + number(gl_width) + "u\n";
+  text += "#define PC_W " + number(options.lanes) + "u\n";
   text += std::string("#define pc_div pc_div_") + form_suffix(options.division) + "\n";
   text += std::string("#define pc_sqrt pc_sqrt_") + form_suffix(options.square_root) + "\n";
   return text;

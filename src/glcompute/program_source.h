@@ -21,6 +21,7 @@ struct SourceOptions {
   RoundingForm division = RoundingForm::builtin;
   RoundingForm square_root = RoundingForm::builtin;
   std::uint32_t local_size = 64;
+  std::uint32_t lanes = gl_width;  // of a block
 };
 
 struct ProgramSource {

@@ -60,7 +60,7 @@ PC_KERNEL(tree_solve_driven, tree, joints, PC_READ(tree_blocks) PC_READ(tree_par
 PC_KERNEL(tree_again, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse))
 PC_KERNEL(tree_relax, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_keep, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_WRITE(joint_impulse))
-PC_KERNEL(smooth_prepare, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(mass) PC_READ(force) PC_READ(joint_solved) PC_WRITE(tree_rows))
+PC_KERNEL(smooth_prepare, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(mass) PC_READ(force) PC_READ(joint_solved) PC_WRITE(velocity_parts) PC_WRITE(tree_rows))
 PC_KERNEL(smooth_step, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_WRITE(tree_rows) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(motion) PC_WRITE(joint_impulse))
 PC_KERNEL(pivot_turn, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_READ(joint_pivot) PC_READ(force) PC_WRITE(pose) PC_WRITE(velocity_parts) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(pivot_settle, tree, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(tree_rows) PC_WRITE(motion) PC_WRITE(delta) PC_WRITE(joint_impulse))

@@ -23,7 +23,7 @@ PC_FN void pc_smooth_spin(PC_IO Slot n, Quaternion q) {
 // Of a node that faces q: inertia, and the angular velocity that its momentum gives it.
 PC_FN void pc_smooth_face(PC_IO Slot n, Quaternion q) {
   pc_st3_tree(PC_PASS n, TREE_FACING, q.v); PC_ST(tree_rows, n, TREE_FACING + 3u, q.w);
-  Sym3 inertia = pc_world_inertia(q, pc_ld3_tree(PC_PASS n, SMOOTH_MOMENTS)); pc_sts_tree(PC_PASS n, TREE_BODY, inertia); pc_sts_tree(PC_PASS n, TREE_INERTIA, inertia);
+  Sym3 inertia = pc_world_inertia(q, pc_ld3_tree(PC_PASS n, SMOOTH_MOMENTS)); pc_sts_tree(PC_PASS n, TREE_INERTIA, inertia);
   pc_smooth_spin(PC_PASS n, q);
 }
 PC_FN void pc_smooth_arms(PC_IO Slot n, Slot up) {
@@ -80,7 +80,7 @@ PC_FN void pc_smooth_onto_pins(PC_IO Slot m, Tree t) {
     }
     pc_tree_sweep(PC_PASS m, t, TREE_C, SMOOTH_V_SUM, PC_REAL(0.0));
     for (uint k = 0u; k < t.count; k++) {
-      Slot n = PC_NODE(m, t.first + k); Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
+      Slot n = PC_NODE(m, t.first + k); Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
       pc_smooth_add(PC_PASS n, SMOOTH_V, SMOOTH_V_LOW, pc_ld3_tree(PC_PASS n, TREE_X)); pc_smooth_add(PC_PASS n, SMOOTH_L, SMOOTH_L_LOW, pc_scale(spun, PC_LD(tree_rows, n, TREE_TOTAL)));
       pc_st3_tree(PC_PASS n, SMOOTH_W, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
     }
@@ -105,7 +105,7 @@ PC_FN void pc_smooth_open(PC_IO Slot n, Slot up) {
 // After a stage's sweep: its share of the sums, and with `next` of time the state of the stage after it.
 PC_FN void pc_smooth_gain(PC_IO Slot n, Real weight, Real way_weight, Real next) {
   Vec3 w = pc_ld3_tree(PC_PASS n, SMOOTH_W); Vec3 turn = pc_ld3_tree(PC_PASS n, SMOOTH_TURN); Vec3 answer = pc_ld3_tree(PC_PASS n, TREE_X);
-  Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
+  Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
   precise Vec3 l_rate = spun * PC_LD(tree_rows, n, TREE_TOTAL) + pc_cross(w, pc_ld3_tree(PC_PASS n, SMOOTH_L));
   Vec3 across = pc_cross(turn, w); precise Vec3 turn_rate = w - across * PC_REAL(0.5) + pc_cross(turn, across) * PC_REAL(0.083333333333333333);
   pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), l_rate, weight)); pc_st3_tree(PC_PASS n, SMOOTH_TURN_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_TURN_SUM), turn_rate, weight));
@@ -182,7 +182,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   for (uint stage = 0u; stage < 4u; stage++) {
     if (stage > 0u) for (uint k = from; k < t.count; k++) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
     for (uint k = 1u; k < t.count; k++) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-    pc_factor(PC_PASS m, t);
+    pc_factor(PC_PASS m, t, true);
     if (stage == 0u) pc_smooth_onto_pins(PC_PASS m, t);
     for (uint k = from; k < t.count; k++) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
     for (uint k = 1u; k < t.count; k++) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));

@@ -42,8 +42,8 @@ class Backend {
   virtual std::string device() const = 0;
   /// The most slots side by side in arrays of structures of arrays.
   virtual std::uint32_t width() const = 0;
-  /// How many it puts side by side where there are no more than `count`.
-  virtual std::uint32_t width_for(std::uint32_t count) const { return (void)count, width(); }
+  /// How many it puts side by side of a domain of which no more than `count` can.
+  virtual std::uint32_t width_for(Domain domain, std::uint32_t count) const { return (void)domain, (void)count, width(); }
 
   /// Where the host keeps a buffer (world tables, index lists) and how long it is. Called again when either
   /// changed. The CPU works in place; the GPU sizes its copy (growing by half, keeping nothing).

@@ -236,7 +236,7 @@ Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& r
 }
 
 std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule) {
-  return at(place).backend->width_for(side_by_side(domain, schedule));
+  return at(place).backend->width_for(domain, side_by_side(domain, schedule));
 }
 
 /// Empty ranges are left out, and those that need not follow one another are joined.
