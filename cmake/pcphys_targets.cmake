@@ -30,7 +30,7 @@ endfunction()
 # Lanes of 4 and 8 exist on x86-64 only; elsewhere the scalar instantiations remain.
 macro(pcphys_drop_foreign_lanes sources)
   if(NOT PCPHYS_X86)
-    list(FILTER ${sources} EXCLUDE REGEX "/src/cpu/kernels_[fd](4|8)\\.cpp$")
+    list(FILTER ${sources} EXCLUDE REGEX "/src/(cpu/kernels|collision/narrow)_[fd](4|8)\\.cpp$")
   endif()
 endmacro()
 
@@ -47,7 +47,8 @@ function(pcphys_set_lane_flags)
     if(NOT name MATCHES "1$")
       list(APPEND flags -fno-sanitize=all)  # sanitizers watch the same text in f1 and d1; here it compiles for minutes
     endif()
-    set_source_files_properties(${PROJECT_SOURCE_DIR}/src/cpu/kernels_${name}.cpp PROPERTIES COMPILE_OPTIONS "${flags}")
+    set_source_files_properties(${PROJECT_SOURCE_DIR}/src/cpu/kernels_${name}.cpp
+      ${PROJECT_SOURCE_DIR}/src/collision/narrow_${name}.cpp PROPERTIES COMPILE_OPTIONS "${flags}")
   endforeach()
   set(flags ${PCPHYS_KERNEL_FLAGS} $<$<NOT:$<CONFIG:Debug>>:-O3>)
   foreach(name narrow_f narrow_d)

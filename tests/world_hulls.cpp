@@ -246,7 +246,7 @@ TEST_CASE("hull: the broad phase's box holds every vertex and is tight") {
     const narrow_test::Shape view = random.random_hull();
     const Vec3 centre = random.ball(100);
     const float more = 0.01f;
-    for (const Aabb& box : {box_of(view, centre, more), box_of(narrow_test::to_float(view), centre, more)}) {
+    for (const Aabb& box : {box_of_hull(view, centre, more), box_of_hull(narrow_test::to_float(view), centre, more)}) {
       double low[3] = {1e30, 1e30, 1e30}, high[3] = {-1e30, -1e30, -1e30};
       for (const Vec3& v : view.hull->vertices) {
         const Vec3 p = centre + rotate(narrow_test::turn(view), v);

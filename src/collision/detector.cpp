@@ -1,14 +1,11 @@
 #include "collision/detector.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <string>
 #include <utility>
 
-#include "collision/flights.h"
 #include "collision/hook.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
@@ -31,43 +28,6 @@ std::pair<float, float> levers(const ShapeDef& d) {
     case ShapeKind::plane: break;
   }
   return {0.0f, 0.0f};
-}
-
-/// Whether some point is within the margin, or would close within the step as the bodies move now. A gap between
-/// bodies that slide past each other by more than `extent` before it closes is none: they would meet only if their
-/// contact plane had no end.
-template <class Scalar>
-bool closes(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt, double fall,
-            double extent) {
-  const float n[3] = {float(m.normal[0]), float(m.normal[1]), float(m.normal[2])};
-  for (std::uint32_t i = 0; i < m.count; i++) {
-    const double gap = double(m.points[i].separation) - margin;
-    if (gap <= 0) return true;
-    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    const Passing<float> p = passing(a, b, n, r, apart);
-    const double closing = std::max(0.0, double(p.closing));
-    if (gap > fall + closing * dt) continue;
-    const double until = closing * dt > gap ? gap / closing : dt;
-    if (double(p.sliding) * until <= extent) return true;
-  }
-  return false;
-}
-
-/// The largest speed at which a gap closes [m/s].
-/// Whether some contact is of a body that was just placed and settles still after this step has begun.
-bool some_settles(const Tables& tables, std::span<const std::array<std::uint32_t, 2>> ends) {
-  const auto settles = [&](std::uint32_t row) { return tables.get(Buffer::velocity_parts, row, 15) > 1; };
-  return std::ranges::any_of(ends, [&](const auto& e) { return settles(e[0]) || settles(e[1]); });
-}
-
-template <class Scalar> double fastest(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const Scalar* apart) {
-  float n[3], d[3], most = 0;
-  for (int k = 0; k < 3; k++) n[k] = float(m.normal[k]), d[k] = float(apart[k]);
-  for (std::uint32_t i = 0; i < m.count; i++) {
-    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    most = std::max(most, passing(a, b, n, r, d).closing);
-  }
-  return double(most);
 }
 
 /// Of the sphere about the shape's centre that holds it [m].
@@ -98,11 +58,23 @@ void Detector::rebuild(const WorldState& s) {
   pairs_.set_margin(float(constants::broad_margin), 0.125f);
   filter_->rebuild(s);
   pairs_.set_filter(may_touch, filter_.get());
+  constexpr std::size_t lanes = 8;
+  const std::size_t room = (s.shapes.size() + lanes - 1) / lanes * lanes;
   proxies_.assign(s.shapes.size(), {});
-  tight_.assign(s.shapes.size(), {});
+  tight_.assign(room, {});
   margins_.assign(s.shapes.size(), 0);
-  reach_.assign(s.shapes.size(), 0);
+  reach_.assign(room, 0);
+  bodies_.assign(room, 0);
+  odd_.clear();
+  round_ = false;
+  moving_.clear();
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++)
+    if (!s.stands(row)) moving_.push_back(row);
+  movers_ = std::uint32_t(moving_.size());
+  moving_.resize((moving_.size() + lanes - 1) / lanes * lanes, 0);
+  listed_margin_ = -1;
   hints_.clear();
+  hinted_ = false;
   standing_.clear();
   bool some_dynamic = false;
   thinnest_ = std::numeric_limits<float>::infinity();
@@ -125,7 +97,11 @@ void Detector::rebuild(const WorldState& s) {
                    bounding_radius(shape.def),
                    s.responds(row) ? inner_radius(shape.def) : 0.0f,
                    jointed[row],
+                   !s.stands(row),
                    shape.def.convex.data()};
+    bodies_[i] = row;
+    round_ |= shape.def.kind == ShapeKind::sphere || shape.def.kind == ShapeKind::capsule;
+    if (shape.def.kind == ShapeKind::plane || shape.def.kind == ShapeKind::hull) odd_.push_back(i);
     if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
     if (!s.responds(row)) standing_.push_back(i);
     pairs_.add(i, !s.stands(row));
@@ -146,9 +122,9 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
   if (structure_ != s.structure_version || serial_ != s.serial) rebuild(s);
   if (!possible_) return {};
   if (s.tables.precision() == Precision::f32)
-    bound<float>(s, dt, options, scratch_f_.shapes);
+    bound(s, dt, options, scratch_f_);
   else
-    bound<double>(s, dt, options, scratch_d_.shapes);
+    bound(s, dt, options, scratch_d_);
   pairs_.set_capacity(options.max_pairs);
   const PairReport report = pairs_.update(tight_);
   if (report.overflow)
@@ -163,39 +139,13 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
                                             " is not finite; set it anew or destroy the body. The world is as before the step."};
   }
   if (report.changed) {
-    next_hints_.resize(pairs_.pairs().size());
+    next_hints_.assign(pairs_.pairs().size(), 0);
     const auto previous = pairs_.previous_index();
-    for (std::size_t i = 0; i < next_hints_.size(); i++) next_hints_[i] = previous[i] < hints_.size() ? hints_[previous[i]] : 0;
+    for (std::size_t i = 0; hinted_ && i < next_hints_.size(); i++)
+      next_hints_[i] = previous[i] < hints_.size() ? hints_[previous[i]] : 0;
     hints_.swap(next_hints_);
   }
   return {};
-}
-
-// Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so that every
-// two shapes that come within the margin of each other have overlapping boxes.
-template <class Scalar>
-void Detector::bound(const WorldState& s, double dt, const Options& options, std::vector<ShapeView<Scalar>>& shapes) {
-  shapes.resize(s.shapes.size());
-  const BodyReader<Scalar> bodies(s.tables);
-  const Scalar* table = s.tables.data<Scalar>(Buffer::shape);
-  const float fall = float(length(s.gravity) * dt * dt), step = float(dt);
-  twists_.resize(s.bodies.size());
-  for (std::uint32_t row = 0; row < s.bodies.size(); row++)
-    twists_[row] = s.stands(row) ? Twist() : twist_of<Scalar>(s.tables, row);
-  for (std::uint32_t i = 0; i < proxies_.size(); i++) {
-    const Proxy& proxy = proxies_[i];
-    if (!proxy.alive) continue;
-    ShapeView<Scalar>& view = shapes[i];
-    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.hull, proxy.centred, bodies.orientation(proxy.body),
-                view);
-    const Twist& twist = twists_[proxy.body];
-    const float turned = std::min(step * twist.across, largest_turn) * proxy.lever_across +
-                         std::min(step * twist.turn, largest_turn) * proxy.lever_any;
-    reach_[i] = s.stands(proxy.body) ? 0.0f : std::max(step * twist.speed, strays_ ? went_[proxy.body] : 0.0f) + turned + fall;
-    margins_[i] = options.contact_margin > 0 ? options.contact_margin : constants::margin_share * proxy.radius;
-    tight_[i] = box_of(view, bodies.position(proxy.body), reach_[i] + (proxy.responds ? float(margins_[i]) : 0.0f));
-  }
-  for (Twist& twist : twists_) twist.limit_turn(dt);
 }
 
 template <> Detector::Scratch<float>& Detector::scratch() { return scratch_f_; }
@@ -244,7 +194,10 @@ template <class Scalar> bool Detector::collect_strays(const WorldState& s, const
   return found;
 }
 
-void Detector::forget_strays() { strays_ = false; }
+void Detector::forget_strays() {
+  if (strays_) listed_margin_ = -1;  // the column of ways
+  strays_ = false;
+}
 
 void Detector::put_back(WorldState& s) {
   if (!replaced_) return;
@@ -259,76 +212,6 @@ Status Detector::find_contacts(WorldState& s, double dt, const Options& options,
   if (!possible_ && s.contact_rows() == 1) return {};
   return s.tables.precision() == Precision::f32 ? narrow_all(s, dt, options, scratch<float>(), found)
                                                 : narrow_all(s, dt, options, scratch<double>(), found);
-}
-
-template <class Scalar>
-Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
-  const auto pairs = pairs_.pairs();
-  const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
-  const Scalar* before = s.tables.data<Scalar>(Buffer::contact);
-  const std::uint32_t before_rows = s.contact_rows();
-  const std::size_t reals = schema(Buffer::contact).reals;
-  next_.keys.resize(1);
-  next_.ends.resize(1);
-  next_.features.resize(1);
-  const double fall = length(s.gravity) * dt * dt;
-  std::uint32_t old = 1;
-  hints_.resize(pairs.size());
-  found = {};
-  found.pairs = std::uint32_t(pairs.size());
-  look_ahead(s, dt, options, scratch);
-  std::size_t flight = 0;
-  for (std::size_t i = 0; i < pairs.size(); i++) {
-    const auto [a, b] = pairs[i];
-    if (!overlap(tight_[a], tight_[b])) continue;
-    double impact = 0;
-    Manifold<Scalar> manifold;
-    const Sight<Scalar> view = sight(s, scratch, std::uint32_t(i));
-    const std::uint32_t row_a = view.rows[0], row_b = view.rows[1];
-    if (flight < scratch.flights.size() && scratch.flights[flight].pair == i) {
-      Flight<Scalar>& f = scratch.flights[flight++];
-      if (!settle(s, dt, options, scratch, view, f)) continue;
-      manifold = f.manifold;
-      impact = f.impact;
-    } else {
-      find(options, view, scratch.shapes[view.shapes[0]], view.there, std::uint32_t(i), manifold);
-      const float apart[3] = {float(view.apart[0]), float(view.apart[1]), float(view.apart[2])};
-      if (!closes(manifold, twists_[row_a], twists_[row_b], apart, margin(a, b), dt, fall,
-                  proxies_[a].radius + proxies_[b].radius))
-        continue;
-      to_light_side(manifold, share_of<Scalar>(s.tables, row_a, row_b));
-      if (proxies_[a].jointed || proxies_[b].jointed) impact = -1;
-    }
-
-    const ContactKey key{a, b};
-    const std::uint32_t row = std::uint32_t(next_.keys.size());
-    next_.keys.push_back(key);
-    next_.ends.push_back({row_a, row_b});
-    next_.features.push_back({});
-    if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
-    Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
-    const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
-    write_contact(manifold, of_a, of_b, out, next_.features[row].data());
-    out[31] = Scalar(impact);
-    while (old < before_rows && s.contacts.keys[old] < key) old++;
-    if (old < before_rows && s.contacts.keys[old] == key)
-      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out,
-                        next_.features[row].data());
-    found.points += manifold.count;
-    found.restitution |= out[30] > 0;
-    found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts = found.impacts || impact > 0 ||
-                    (impact == 0 && out[30] > 0 &&
-                     fastest(manifold, twists_[row_a], twists_[row_b], view.apart) + fall / dt >= options.least_bounce);
-  }
-  found.contacts = std::uint32_t(next_.keys.size()) - 1;
-  found.placed = s.settling > 0 && some_settles(s.tables, next_.ends);
-  found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
-  scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));
-  s.tables.exchange(Table::contact, Buffer::contact, scratch.contacts, std::uint32_t(next_.keys.size()));
-  std::swap(s.contacts, next_);
-  replaced_ = true;
-  return {};
 }
 
 }  // namespace pcphys

@@ -15,6 +15,7 @@
 #include "collision/narrow.h"
 #include "collision/pair_cache.h"
 #include "collision/pair_filter.h"
+#include "collision/pair_lanes.h"
 #include "collision/twist.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
@@ -30,6 +31,7 @@ class Detector {
     double contact_margin = 0;  // [m]; 0: by the sizes of the shapes
     double least_bounce = 0;    // slower approaches do not bounce [m/s]
     std::size_t max_pairs = 0;
+    std::uint32_t lanes = 0;  // of the narrow phase; 0: the widest that the processor has
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
@@ -68,23 +70,60 @@ class Detector {
     double radius = 0;     // of the sphere about its centre that holds it
     float inner = 0;       // half its thickness; 0: its body does not move by forces
     bool jointed = false;  // its body hangs on joints
+    bool moves = false;    // its body does not stand
     const HullData* hull = nullptr;
+  };
+
+  /// What of a shape chooses how its pairs are looked at.
+  template <class Scalar> struct Look {
+    Scalar margin;
+    float reach;
+    ShapeKind kind;
+    bool responds;
   };
 
   template <class Scalar> struct Scratch {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
-    AlignedBytes contacts;                  // the table of the next step
-    std::vector<Flight<Scalar>> flights;    // in the order of the pairs
+    AlignedBytes rows;                      // of shapes: narrow_bounds.inl
+    std::vector<Look<Scalar>> looks;        // of shapes
+    AlignedBytes twists;                    // of bodies, for flights in double
+    PairLanes<Scalar> lanes;
+    AlignedBytes contacts;                // the table of the next step
+    std::vector<Flight<Scalar>> flights;  // in the order of the pairs
+    std::size_t flight = 0;               // the next of them
+  };
+
+  /// A pair of which a contact comes.
+  template <class Scalar> struct Touch {
+    std::uint32_t rows[2];  // in the order of the contact's bodies
+    double impact = 0;      // impact_time of the contact [s]
+    Manifold<Scalar>* manifold;
+    Manifold<Scalar> own;  // where nothing else holds it
   };
 
   static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
   void rebuild(const WorldState& state);
   template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
   template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
-  template <class Scalar>
-  void bound(const WorldState& state, double dt, const Options& options, std::vector<ShapeView<Scalar>>& shapes);
+  /// What of boxes does not change while the structure and the margin stay.
+  void list_columns(const WorldState& state, const Options& options);
+  template <class Scalar> void find_twists(const WorldState& state, const Options& options);
+  template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  /// The pairs whose tight boxes overlap, into `near_`.
+  void list_near();
+  /// Finds the manifolds of pairs that go in lanes, and marks all pairs that may have one.
+  template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
+  /// The manifold of a marked pair. False where no contact comes of it.
+  template <class Scalar>
+  bool touches(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
+               Touch<Scalar>& touch);
+  /// Whether some point is within the margin, or would close within the step as the bodies move now.
+  template <class Scalar> bool closes(const WorldState& state, double dt, Pair shapes, const Manifold<Scalar>& manifold) const;
+  /// The shapes of a pair in the order of the contact's bodies.
+  Pair in_order(std::uint32_t pair) const;
+  template <class Scalar> Scalar look_margin(Pair shapes) const;
   template <class Scalar> Sight<Scalar> sight(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair) const;
   template <class Scalar>
   void find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
@@ -95,7 +134,8 @@ class Detector {
   float thickness(std::uint32_t a, std::uint32_t b) const;
   /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
   template <class Scalar> void look_ahead(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  void begin_strikes(const WorldState& state, double dt);
+  template <class Scalar>
+  void begin_strikes(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   /// Whether a contact comes of it, once all flights are known.
   template <class Scalar>
   bool settle(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch,
@@ -111,30 +151,49 @@ class Detector {
   std::vector<std::uint32_t> standing_;  // shapes of fixed and kinematic bodies
   float thinnest_ = 0;                   // half the least thickness of what moves by forces [m]
   std::vector<Aabb> tight_;
-  std::vector<double> margins_;  // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]
-  std::vector<float> reach_;     // how far a shape may come this step [m]
-  std::vector<Twist> twists_;    // of bodies, by row
-  std::vector<float> struck_;    // of bodies: when they first meet something in flight; dt: not in this step [s]
+  std::vector<double> margins_;        // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]
+  std::vector<float> reach_;           // how far a shape may come this step [m]
+  std::vector<Twist> twists_;          // of bodies, by row
+  AlignedBytes columns_, rows_;        // of shapes, in float: narrow_bounds.inl
+  AlignedBytes rounded_[3];            // motion, mass and pose of a world in double
+  std::vector<std::uint32_t> odd_;     // shapes with boxes of their own: planes and hulls
+  std::vector<std::uint32_t> moving_;  // rows of bodies that do not stand; whole lanes
+  std::vector<std::uint32_t> bodies_;  // rows, of shapes; whole lanes
+  std::uint32_t movers_ = 0;           // bodies that do not stand
+  double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
+  std::vector<float> struck_;          // of bodies: when they first meet something in flight; dt: not in this step [s]
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;  // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;      // some body has
   PairCache pairs_;
+  std::vector<std::uint32_t> near_;  // numbers of pairs
+  Marks marks_;                      // of those that may have a manifold; where some shape is round
+  bool round_ = false;               // some shape is: its pairs go in lanes
   std::vector<std::uint32_t> hints_, next_hints_;
+  bool hinted_ = false;  // some hint is not 0
   ContactColumns next_;  // of the next step, or of the last one
   bool replaced_ = false;
   Scratch<float> scratch_f_;
   Scratch<double> scratch_d_;
 };
 
+inline Pair Detector::in_order(std::uint32_t pair) const {
+  const auto [a, b] = pairs_.pairs()[pair];
+  return proxies_[a].responds ? Pair{a, b} : Pair{b, a};  // as WorldState::ends_of
+}
+
+/// No gap beyond it matters in this step.
+template <class Scalar> inline Scalar Detector::look_margin(Pair s) const {
+  return Scalar(margin(s.a, s.b)) + Scalar(reach_[s.a] + reach_[s.b]);
+}
+
 template <class Scalar>
 inline Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair) const {
-  auto [a, b] = pairs_.pairs()[pair];
-  if (!proxies_[a].responds) std::swap(a, b);  // as WorldState::ends_of
-  const std::uint32_t row_a = proxies_[a].body, row_b = proxies_[b].body;
-  Sight<Scalar> view = {{a, b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[b], 0};
+  const Pair shapes = in_order(pair);
+  const std::uint32_t row_a = proxies_[shapes.a].body, row_b = proxies_[shapes.b].body;
+  Sight<Scalar> view = {{shapes.a, shapes.b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[shapes.b], look_margin<Scalar>(shapes)};
   BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
   for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
-  view.margin = Scalar(margin(a, b)) + Scalar(reach_[a] + reach_[b]);
   return view;
 }
 

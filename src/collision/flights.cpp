@@ -55,7 +55,7 @@ void Detector::find(const Options& options, const Sight<Scalar>& view, const Sha
   if (options.narrow == NarrowPhase::fcl)
     fcl_hook()(a, b, view.margin, manifold);
   else
-    narrow(a, b, view.margin, hints_[pair], manifold);
+    narrow(a, b, view.margin, hints_[pair], manifold), hinted_ |= hints_[pair] != 0;
 }
 
 float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
@@ -63,12 +63,21 @@ float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
   return x == 0 ? y : y == 0 ? x : std::min(x, y);
 }
 
-// What strays goes another way from the start, for all that is known.
-void Detector::begin_strikes(const WorldState& s, double dt) {
+template <class Scalar>
+void Detector::begin_strikes(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
   struck_.assign(s.bodies.size(), float(dt));
-  if (!strays_) return;
-  for (std::uint32_t row = 0; row < s.bodies.size(); row++)
-    if (went_[row] > 0) struck_[row] = 0;
+  if (strays_)  // what strays goes another way from the start, for all that is known
+    for (std::uint32_t row = 0; row < s.bodies.size(); row++)
+      if (went_[row] > 0) struck_[row] = 0;
+  if constexpr (!std::is_same_v<Scalar, float>) {
+    const auto data = [&](Buffer buffer) { return s.tables.data<Scalar>(buffer); };
+    scratch.twists.resize(0);
+    scratch.twists.resize(s.bodies.size() * sizeof(TwistOf<Scalar>));
+    auto* twists = reinterpret_cast<TwistOf<Scalar>*>(scratch.twists.data());
+    narrow_lanes<Scalar>(options.lanes)
+        .twists({data(Buffer::motion), data(Buffer::mass), data(Buffer::pose), moving_.data(), movers_, twists->v});
+    for (std::size_t row = 0; row < s.bodies.size(); row++) twists[row].limit_turn(dt);
+  }
 }
 
 // Bodies on joints are left out: their impulses are not theirs alone.
@@ -80,8 +89,9 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
   const auto untouched = [phases](std::uint32_t row) { return phases[row * reals_of(Buffer::motion)] <= 0; };
   const auto pairs = pairs_.pairs();
   // what comes no further in the step than `slow` approaches too slowly to bounce
+  bool begun = false;
   const float slow = float(options.least_bounce * dt), certain = std::min(slow, 0.5f * thinnest_);
-  for (std::uint32_t i = 0; i < pairs.size(); i++) {
+  for (const std::uint32_t i : near_) {
     const auto [a, b] = pairs[i];
     const float way = reach_[a] + reach_[b];
     if (way <= certain) continue;
@@ -89,10 +99,11 @@ void Detector::look_ahead(const WorldState& s, double dt, const Options& options
     if (x.jointed || y.jointed) continue;
     constexpr std::size_t stride = reals_of(Buffer::material);
     const float thick = thickness(a, b);
-    if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick) || !overlap(tight_[a], tight_[b])) continue;
+    if (way <= 0.001f * thick || (way <= slow && way <= 0.5f * thick)) continue;
     const bool flies = way > 0.5f * thick || materials[x.body * stride + 2] + materials[y.body * stride + 2] > 0;
     if (!flies && !(is_round(x.kind) && is_round(y.kind) && untouched(x.body) && untouched(y.body))) continue;
-    if (scratch.flights.empty()) begin_strikes(s, dt);
+    if (!begun) begin_strikes(s, dt, options, scratch);
+    begun = true;
     Flight<Scalar>& f = scratch.flights.emplace_back();
     f.pair = i;
     const Sight<Scalar> view = sight(s, scratch, i);
@@ -112,12 +123,10 @@ void Detector::fly(const WorldState& s, double dt, const Options& options, const
   const auto mover = [&](int side) {
     const Proxy& p = proxies_[view.shapes[side]];
     const Twist& t = twists_[view.rows[side]];
-    TwistOf<Scalar> own;
-    if constexpr (std::is_same_v<Scalar, float>)
-      own = t;
-    else if (!s.stands(view.rows[side]))
-      own = twist_of<Scalar, Scalar>(s.tables, view.rows[side]), own.limit_turn(dt);
-    return Mover<Scalar>{&scratch.shapes[view.shapes[side]], own, t.across * p.lever_across + t.turn * p.lever_any, p.centred};
+    const float spin = t.across * p.lever_across + t.turn * p.lever_any;
+    const auto* twists = reinterpret_cast<const TwistOf<Scalar>*>(
+        std::is_same_v<Scalar, float> ? static_cast<const void*>(twists_.data()) : scratch.twists.data());
+    return Mover<Scalar>{&scratch.shapes[view.shapes[side]], twists[view.rows[side]], spin, p.centred};
   };
   const Mover<Scalar> a = mover(0), b = mover(1);
   f.counts = f.stray = f.turned = false;

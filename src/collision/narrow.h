@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 
+#include "collision/manifold.h"
 #include "pcphys/types.h"
 
 namespace pcphys {
@@ -15,18 +16,6 @@ template <class Scalar> struct ShapeView {
   Scalar p[3];     // centre of the shape
   Scalar q[4];     // x y z w, shape to world axes, unit
   const HullData* hull = nullptr;
-};
-
-template <class Scalar> struct ManifoldPoint {
-  Scalar p[3];            // midway between the surfaces
-  Scalar separation;      // along the normal, negative when the shapes overlap
-  std::uint32_t feature;  // which corner, edge or side: the same from step to step while the shapes move a little
-};
-
-template <class Scalar> struct Manifold {
-  Scalar normal[3];  // unit, from a to b
-  std::uint32_t count = 0;
-  ManifoldPoint<Scalar> points[4];
 };
 
 /// Points whose separation is at most `margin` [m]; none when the shapes are farther apart (then the normal means nothing).

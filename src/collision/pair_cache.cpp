@@ -169,11 +169,6 @@ void PairCache::sort_found() {
     found_.swap(found_scratch_);
 }
 
-bool PairCache::keeps(const Pair& pair) const {
-  constexpr unsigned untouched = entered | still;
-  return (state_[pair.a] & state_[pair.b] & untouched) == untouched;
-}
-
 // Old pairs and found ones are both in order. Of an old pair with a moved proxy only the memory is used.
 void PairCache::merge(PairReport& report) {
   const std::size_t old_count = pairs_.size(), most = old_count + found_.size();

@@ -88,7 +88,10 @@ class PairCache {
   void merge(PairReport& report);
   void settle();
   void set_identity();
-  bool keeps(const Pair& pair) const;
+  bool keeps(const Pair& pair) const {
+    constexpr unsigned untouched = entered | still;
+    return (state_[pair.a] & state_[pair.b] & untouched) == untouched;
+  }
   std::uint64_t key(const Pair& pair) const { return std::uint64_t{pair.a} << index_bits_ | pair.b; }
 
   Filter filter_ = nullptr;

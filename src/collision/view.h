@@ -23,6 +23,17 @@ template <class Scalar> class BodyReader {
     const Scalar* p = pose_ + row * stride;
     return {double(p[0]) + double(p[8]), double(p[1]) + double(p[9]), double(p[2]) + double(p[10])};
   }
+  /// A shape's row (narrow_bounds.inl).
+  void write_row(std::uint32_t body, const ShapeView<Scalar>& shape, Scalar* out) const {
+    const Scalar* at = pose_ + body * stride;
+    std::copy_n(shape.p, 3, out);
+    out[3] = shape.size[0];
+    std::copy_n(shape.q, 4, out + 4);
+    std::copy_n(at, 4, out + 8);
+    out[11] = shape.size[1];
+    std::copy_n(at + 8, 4, out + 12);
+    out[15] = shape.size[2];
+  }
   /// Adds b's centre as seen from a's.
   void shift(std::uint32_t a, std::uint32_t b, Scalar* p) const {
     const Scalar *x = pose_ + a * stride, *y = pose_ + b * stride;
@@ -32,6 +43,13 @@ template <class Scalar> class BodyReader {
  private:
   const Scalar* pose_;
 };
+
+/// A shape's row in float, what rounding drops of the position in its low part.
+inline void round_row(const double* row, float* out) {
+  for (int k = 0; k < 12; k++) out[k] = float(row[k]);
+  for (int k = 0; k < 3; k++) out[12 + k] = float((row[8 + k] - double(out[8 + k])) + row[12 + k]);
+  out[15] = 0;
+}
 
 template <class Scalar> void rotate_by(const Scalar* q, const Scalar* v, Scalar* out) {
   const Scalar tx = 2 * (q[1] * v[2] - q[2] * v[1]), ty = 2 * (q[2] * v[0] - q[0] * v[2]), tz = 2 * (q[0] * v[1] - q[1] * v[0]);
@@ -58,7 +76,7 @@ void place_shape(const Scalar* row, ShapeKind kind, const HullData* hull, bool c
   view.q[3] = q[3] * l[3] - q[0] * l[0] - q[1] * l[1] - q[2] * l[2];
 }
 
-/// The same box of a hull, by its vertices.
+/// A hull's box about `centre` (of its body), by its vertices, grown by `more`. Boxes of other shapes: narrow_bounds.inl.
 template <class Scalar> Aabb box_of_hull(const ShapeView<Scalar>& view, Vec3 centre, float more) {
   const float x = float(view.q[0]), y = float(view.q[1]), z = float(view.q[2]), w = float(view.q[3]);
   const float r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
@@ -78,34 +96,6 @@ template <class Scalar> Aabb box_of_hull(const ShapeView<Scalar>& view, Vec3 cen
     }
     box.min[k] = round_down(c[k] + double(low) - slack);
     box.max[k] = round_up(c[k] + double(high) + slack);
-  }
-  return box;
-}
-
-/// The shape's box about `centre` (of its body), grown by `more`.
-template <class Scalar> Aabb box_of(const ShapeView<Scalar>& view, Vec3 centre, float more) {
-  constexpr float infinite = std::numeric_limits<float>::infinity();
-  if (view.kind == ShapeKind::plane) return {{-infinite, -infinite, -infinite}, {infinite, infinite, infinite}};
-  float extent[3];
-  const float qx = float(view.q[0]), qy = float(view.q[1]), qz = float(view.q[2]), qw = float(view.q[3]);
-  const float sx = float(view.size[0]), sy = float(view.size[1]), sz = float(view.size[2]);
-  const float y[3] = {2 * (qx * qy - qw * qz), 1 - 2 * (qx * qx + qz * qz), 2 * (qy * qz + qw * qx)};
-  if (view.kind == ShapeKind::hull) return box_of_hull(view, centre, more);
-  if (view.kind == ShapeKind::sphere) {
-    for (float& e : extent) e = sx;
-  } else if (view.kind == ShapeKind::box) {
-    const float x[3] = {1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy + qw * qz), 2 * (qx * qz - qw * qy)};
-    const float z[3] = {2 * (qx * qz + qw * qy), 2 * (qy * qz - qw * qx), 1 - 2 * (qx * qx + qy * qy)};
-    for (int k = 0; k < 3; k++) extent[k] = std::fabs(x[k]) * sx + std::fabs(y[k]) * sy + std::fabs(z[k]) * sz;
-  } else {  // a cylinder's box is within its capsule's
-    for (int k = 0; k < 3; k++) extent[k] = std::fabs(y[k]) * sy + sx;
-  }
-  Aabb box;
-  const double c[3] = {centre.x + double(view.p[0]), centre.y + double(view.p[1]), centre.z + double(view.p[2])};
-  for (int k = 0; k < 3; k++) {
-    const double e = double(extent[k]) * 1.00001 + double(more);  // beyond the rounding of the terms above
-    box.min[k] = round_down(c[k] - e);
-    box.max[k] = round_up(c[k] + e);
   }
   return box;
 }

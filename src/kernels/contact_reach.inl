@@ -1,20 +1,31 @@
-// Fills contact_reach, and sums up answers. Needs tree_reach.inl, node_operator.inl. `turns`: 1 for couples, 0 for impulses.
+// Fills contact_reach, and sums up answers (`turns`: 1 for couples, 0 for impulses). Needs tree_reach.inl, node_operator.inl.
 PC_FN Six pc_reach_joint(PC_IO Slot s, uint row, Link n, Six x) {
   Vec3 t = pc_on_joint(n, x); pc_st3_reach(PC_PASS s, row * 3u, pc_lower_tmul(n.factor, t)); return pc_up(n, x, t);
 }
 PC_FN void pc_reach_root(PC_IO Slot first, Slot second, uint row, Sym6 factor, Six x) {
   Six z = pc_lower6_tmul(factor, x); pc_st3_reach(PC_PASS first, row * 3u, z.l); pc_st3_reach(PC_PASS second, row * 3u, z.a);
 }
-// Of the three rows, as impulses x, y, z on the side's body.
-PC_FN void pc_reach(PC_IO Way w, Slot m, uint side, uint turns, Six x, Six y, Six z) {
+// Three rows, as impulses on the side's body.
+struct Three { Six x; Six y; Six z; };
+PC_FN Three pc_three(Six x, Six y, Six z) { Three r; r.x = x; r.y = y; r.z = z; return r; }
+PC_FN Three pc_reach_level(PC_IO Slot s, Link n, Three f) {
+  return pc_three(pc_reach_joint(PC_PASS s, 0u, n, f.x), pc_reach_joint(PC_PASS s, 1u, n, f.y), pc_reach_joint(PC_PASS s, 2u, n, f.z));
+}
+PC_FN void pc_reach_roots(PC_IO Slot first, Slot second, Sym6 factor, Three f) {
+  pc_reach_root(PC_PASS first, second, 0u, factor, f.x); pc_reach_root(PC_PASS first, second, 1u, factor, f.y); pc_reach_root(PC_PASS first, second, 2u, factor, f.z);
+}
+// Of a side's impulses, and where `turns` its couples.
+PC_FN void pc_reach(PC_IO Way w, Slot m, uint side, bool turns, Three impulses, Three couples) {
   if (pc_any_in_tree(w, side) == 0u) return;  // lint: allow (the same for all lanes)
-  uint depth = pc_depth(w, side); uint levels = pc_levels(w, side); uint first = pc_reach_first(w, side, turns);
+  uint depth = pc_depth(w, side); uint levels = pc_levels(w, side); uint first = pc_reach_first(w, side, 0u); uint turning = pc_reach_all(w); Three f = impulses; Three c = couples;
   for (uint i = 0u; i < depth; i++) {
-    uint k = depth - 1u - i; Link link = pc_link(PC_PASS PC_WAY_EACH(m, pc_entry(w, levels + k))); Slot s = PC_NODE(m, first + 2u + k);
-    x = pc_reach_joint(PC_PASS s, 0u, link, x); y = pc_reach_joint(PC_PASS s, 1u, link, y); z = pc_reach_joint(PC_PASS s, 2u, link, z);
+    uint k = depth - 1u - i; Link link = pc_link(PC_PASS PC_WAY_EACH(m, pc_entry(w, levels + k)));
+    f = pc_reach_level(PC_PASS PC_NODE(m, first + 2u + k), link, f);
+    if (turns) c = pc_reach_level(PC_PASS PC_NODE(m, first + turning + 2u + k), link, c);  // lint: allow (others have no use for it)
   }
-  Sym6 factor = pc_root_factor(PC_PASS PC_WAY_EACH(m, pc_entry(w, PATH_ROOT + side))); Slot half_a = PC_NODE(m, first); Slot half_b = PC_NODE(m, first + 1u);
-  pc_reach_root(PC_PASS half_a, half_b, 0u, factor, x); pc_reach_root(PC_PASS half_a, half_b, 1u, factor, y); pc_reach_root(PC_PASS half_a, half_b, 2u, factor, z);
+  Sym6 factor = pc_root_factor(PC_PASS PC_WAY_EACH(m, pc_entry(w, PATH_ROOT + side)));
+  pc_reach_roots(PC_PASS PC_NODE(m, first), PC_NODE(m, first + 1u), factor, f);
+  if (turns) pc_reach_roots(PC_PASS PC_NODE(m, first + turning), PC_NODE(m, first + turning + 1u), factor, c);  // lint: allow (as above)
 }
 // The products of the rows of slot s with those of slot q.
 PC_FN Mat3 pc_slot_products(PC_IO Slot s, Slot q) {

@@ -101,6 +101,8 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   precise Real rate_c = pc_dot(c, inverse) - im;
   precise Real half_h = h * PC_REAL(0.5);
   Spin start; start.turn.q = pc_quaternion(pc_zero3(), PC_REAL(1.0)); start.turn.fall = PC_REAL(0.0); start.pi = pc_rotate(pc_conjugate(q), l);
+  precise Real world_time = im * h; Turn world = pc_turn(pc_scale(l, world_time));
+  if (!PC_ANY(pc_abs(rate_a) > PC_REAL(0.0))) return pc_change(world, q, pc_body_turn(start, c, rate_c, h).turn);  // lint: allow (what the rest makes of it)
   // how far the two turns go, squared (twice the energy bounds each momentum: Pi_c^2 <= 2 E I_c)
   precise Real twice = pc_dot(start.pi, pc_times(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
   Real inverse_a = pc_dot(a, inverse); Real inverse_c = pc_dot(c, inverse);
@@ -113,6 +115,5 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
     precise Real a2 = square_a * pc_inverse_or_zero(inverse_a); precise Real c2 = square_c * pc_inverse_or_zero(inverse_c); Real angle = pc_sqrt(pc_max(a2, c2));
     s = pc_spin_select(fast, pc_fast_turn(start, a, c, rate_a, rate_c, angle, inverse, h), s);
   }
-  precise Real world_time = im * h;
-  return pc_change(pc_turn(pc_scale(l, world_time)), q, s.turn);
+  return pc_change(world, q, s.turn);
 }

@@ -35,12 +35,8 @@ PC_FN Mask pc_idles(PC_IO Slot m, Meeting now) {
 
 PC_FN void pc_fill_reach(PC_IO Way w, Slot m, bool turns, Arms arms, Vec3 n, Vec3 t1, Vec3 t2) {
   Vec3 f1 = pc_negate(t1); Vec3 f2 = pc_negate(t2); Vec3 fn = pc_negate(n); Vec3 zero = pc_zero3();
-  pc_reach(PC_PASS w, m, 0u, 0u, pc_six(f1, pc_cross(arms.a, f1)), pc_six(f2, pc_cross(arms.a, f2)), pc_six(fn, pc_cross(arms.a, fn)));
-  pc_reach(PC_PASS w, m, 1u, 0u, pc_six(t1, pc_cross(arms.b, t1)), pc_six(t2, pc_cross(arms.b, t2)), pc_six(n, pc_cross(arms.b, n)));
-  if (turns) {  // lint: allow (others have no use for it)
-    pc_reach(PC_PASS w, m, 0u, 1u, pc_six(zero, f1), pc_six(zero, f2), pc_six(zero, fn));
-    pc_reach(PC_PASS w, m, 1u, 1u, pc_six(zero, t1), pc_six(zero, t2), pc_six(zero, n));
-  }
+  pc_reach(PC_PASS w, m, 0u, turns, pc_three(pc_six(f1, pc_cross(arms.a, f1)), pc_six(f2, pc_cross(arms.a, f2)), pc_six(fn, pc_cross(arms.a, fn))), pc_three(pc_six(zero, f1), pc_six(zero, f2), pc_six(zero, fn)));
+  pc_reach(PC_PASS w, m, 1u, turns, pc_three(pc_six(t1, pc_cross(arms.b, t1)), pc_six(t2, pc_cross(arms.b, t2)), pc_six(n, pc_cross(arms.b, n))), pc_three(pc_six(zero, t1), pc_six(zero, t2), pc_six(zero, n)));
 }
 // Of both sides: what bodies of trees answer, on top of free ones.
 PC_FN Responses pc_tree_responses(PC_IO Way w, Slot m, bool turns, Responses free) {

@@ -1,4 +1,9 @@
-// The factor of a tree, leaves to root (see tree_sweep.inl).
+// The factor of a tree, leaves to root (see tree_sweep.inl). Where an active set has changed, it is made anew of the joints that changed and of those
+// between them and the root.
+
+// while tree_solve lasts, in places that are free by then
+const uint TREE_REST = TREE_PUSH;         // the angular part of TREE_A, 6
+const uint TREE_STALE = TREE_PUSH_SPEED;  // 1 where the factor must be made anew
 
 // Inverse of a joint's freedom with the springs of its angle rows: each as stiff as the joint's own inertia about its
 // axis, many times. The limit of a hinge, whose other angles are locked, is as stiff as they are: a stop. Limits of joints with
@@ -19,9 +24,16 @@ PC_FN Real pc_least_moment(PC_IO Slot n) {
   Vec3 inverse = pc_ld3_tree(PC_PASS n, TREE_MOMENTS); precise Real light = pc_max(inverse.x, pc_max(inverse.y, inverse.z)) * PC_LD(tree_rows, n, TREE_TOTAL);
   return pc_inverse_or_zero(light);
 }
+// What of a node's inertia its parent carries, at the parent's place.
+PC_FN void pc_carry(PC_IO Slot n, Slot up, uint parent, Sym6 rest) {
+  Mask free = PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0);
+  if (parent == 0u && !PC_ANY(free)) return;  // lint: allow (of a fixed root it is not used)
+  Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), pc_ld3_tree(PC_PASS n, TREE_RC));
+  pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
+}
 PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   Real fast = pc_max(PC_LD(tree_rows, n, TREE_FAST), PC_LD(tree_rows, up, TREE_FAST));
-  Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
+  Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
   Mat3 ct = pc_transpose(h.c);
   // U = H S
   Vec3 u0 = pc_add(h.c.a, pc_cross(pc_row0(h.l), rc)); Vec3 u1 = pc_add(h.c.b, pc_cross(pc_row1(h.l), rc)); Vec3 u2 = pc_add(h.c.c, pc_cross(pc_row2(h.l), rc));
@@ -53,18 +65,29 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   // H - W U^T, and what of it the parent carries
   Sym6 rest; rest.l = pc_sym_sub(h.l, pc_products(w0, w1, w2, u0, u1, u2)); rest.a = pc_sym_sub(h.a, pc_products(w3, w4, w5, u3, u4, u5));
   rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(w0, u3), pc_dot(w0, u4), pc_dot(w0, u5))), pc_sub(h.c.b, Vec3(pc_dot(w1, u3), pc_dot(w1, u4), pc_dot(w1, u5))), pc_sub(h.c.c, Vec3(pc_dot(w2, u3), pc_dot(w2, u4), pc_dot(w2, u5))));
-  pc_sts_tree(PC_PASS n, TREE_A, rest.l); pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c);
-  Mask free = PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0);
-  if (parent == 0u && !PC_ANY(free)) return;  // lint: allow (of a fixed root it is not used)
-  pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
+  pc_sts_tree(PC_PASS n, TREE_A, rest.l); pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c); pc_sts_tree(PC_PASS n, TREE_REST, rest.a);
+  pc_carry(PC_PASS n, up, parent, rest);
 }
-PC_FN void pc_factor(PC_IO Slot m, Tree t) {
+PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > PC_REAL(0.5); }
+// `all`: of every node; else of those that are stale, and what others hand to them.
+PC_FN void pc_factor(PC_IO Slot m, Tree t, bool all) {
   Vec3 z = pc_zero3();
   for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Sym6 h; h.l = pc_diagonal(PC_LD(tree_rows, n, TREE_MASS)); h.c = pc_mat3(z, z, z); h.a = pc_lds_tree(PC_PASS n, TREE_INERTIA);
-    pc_sth_tree(PC_PASS n, TREE_H, h);
+    Slot n = PC_NODE(m, t.first + k);
+    if (all || PC_ANY(pc_is_stale(PC_PASS n))) {  // lint: allow (others keep what they have)
+      Sym6 h; h.l = pc_diagonal(PC_LD(tree_rows, n, TREE_MASS)); h.c = pc_mat3(z, z, z); h.a = pc_lds_tree(PC_PASS n, TREE_INERTIA);
+      pc_sth_tree(PC_PASS n, TREE_H, h);
+    }
   }
-  for (uint i = 1u; i < t.count; i++) { uint k = t.count - i; uint parent = pc_parent(PC_PASS t, k); pc_factor_node(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + parent), parent); }
+  for (uint i = 1u; i < t.count; i++) {
+    uint k = t.count - i; uint parent = pc_parent(PC_PASS t, k); Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + parent);
+    if (all || PC_ANY(pc_is_stale(PC_PASS n))) {  // lint: allow (others keep what they have)
+      pc_factor_node(PC_PASS n, up, parent);
+    } else if (PC_ANY(pc_is_stale(PC_PASS up))) {  // lint: allow (others keep what they have)
+      Sym6 rest; rest.l = pc_lds_tree(PC_PASS n, TREE_A); rest.c = pc_ldm_tree(PC_PASS n, TREE_A + 6u); rest.a = pc_lds_tree(PC_PASS n, TREE_REST);
+      pc_carry(PC_PASS n, up, parent, rest);
+    }
+  }
   // a fixed root answers nothing
   Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
   Sym6 r; Sym3 none = pc_diagonal(PC_REAL(0.0)); r.l = none; r.c = pc_mat3(z, z, z); r.a = none;

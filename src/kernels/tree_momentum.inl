@@ -6,20 +6,13 @@
 PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
   Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
   if (!PC_ANY(free)) return;  // lint: allow (what it would do to trees with a fixed root is nothing)
-  Real mass = PC_REAL(0.0); Vec3 centre = pc_zero3(); Vec3 push = pc_negate(given_push); Vec3 turn = pc_negate(given_turn);
+  Vec3 push = pc_negate(given_push); Vec3 turn = pc_negate(given_turn);
   for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Real own = PC_LD(tree_rows, n, TREE_MASS); Vec3 r = pc_ld3_tree(PC_PASS n, TREE_PLACE); Vec3 p = pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), own);
-    precise Real sum = mass + own; mass = sum; centre = pc_madd(centre, r, own); push = pc_add(push, p);
-    precise Vec3 all = turn + pc_ld3_tree(PC_PASS n, TREE_CHANGE) + pc_cross(r, p); turn = all;
+    Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_ld3_tree(PC_PASS n, TREE_PLACE); Vec3 p = pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), PC_LD(tree_rows, n, TREE_MASS));
+    push = pc_add(push, p); precise Vec3 all = turn + pc_ld3_tree(PC_PASS n, TREE_CHANGE) + pc_cross(r, p); turn = all;
   }
-  Real share = pc_select(free, pc_inverse_or_zero(mass), PC_REAL(0.0)); centre = pc_scale(centre, share); Vec3 drift = pc_scale(push, share);
-  Sym3 inertia = pc_diagonal(PC_REAL(0.0));
-  for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre); Real own = PC_LD(tree_rows, n, TREE_MASS);
-    precise Real far = pc_dot(r, r) * own; precise Real less = -own;
-    inertia = pc_sym_add(inertia, pc_sym_outer(pc_sym_add(pc_lds_tree(PC_PASS n, TREE_BODY), pc_diagonal(far)), r, less));
-  }
-  Vec3 excess = pc_sym_mul(pc_sym_inverse(inertia), pc_sub(turn, pc_cross(centre, push))); Vec3 w = pc_select3(free, excess, pc_zero3());
+  Vec3 centre = pc_ld3_tree(PC_PASS root, TREE_CENTRE); Vec3 drift = pc_scale(push, PC_LD(tree_rows, root, TREE_ALL));
+  Vec3 excess = pc_sym_mul(pc_lds_tree(PC_PASS root, TREE_RIGID), pc_sub(turn, pc_cross(centre, push))); Vec3 w = pc_select3(free, excess, pc_zero3());
   for (uint k = 0u; k < t.count; k++) {
     Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre);
     precise Vec3 v = pc_ld3_tree(PC_PASS n, TREE_X) - drift - pc_cross(w, r); precise Vec3 l = pc_ld3_tree(PC_PASS n, TREE_CHANGE) - pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w);

@@ -4,6 +4,7 @@
 #include "tree_rows.inl"
 #include "tree_store.inl"
 #include "tree_stiffness.inl"
+#include "tree_whole.inl"
 
 // What is read of a body, once for its own joint and those of its children. In places that the factor fills later: position and its low part,
 // principal moments.
@@ -85,7 +86,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_facing(PC_PASS n), pc_scale(pc_ld3_tree(PC_PASS n, TREE_PRINCIPAL), share)));
     PC_ST(tree_rows, n, TREE_MASS, own); PC_ST(tree_rows, n, TREE_TOUCH, PC_REAL(0.0)); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   }
-  pc_tree_stiffness(PC_PASS m, t);
+  pc_tree_stiffness(PC_PASS m, t); pc_tree_whole(PC_PASS m, t);
   Real pivot = pc_select(PC_IS(pc_is_pivot(PC_PASS t)), PC_REAL(1.0), PC_REAL(0.0));
   for (uint k = 1u; k < t.count; k++) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_PIVOT, pivot);
 }

@@ -2,6 +2,7 @@
 // never held it. Both momenta are kept at the places of now.
 #include "tree_rows.inl"
 #include "tree_store.inl"
+#include "tree_whole.inl"
 #include "tree_momentum.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -14,6 +15,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     fastest = pc_max(fastest, pc_largest(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED)));
     pc_st3_tree(PC_PASS n, TREE_X, pc_negate(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED))); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_negate(pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
   }
+  pc_tree_whole(PC_PASS m, t);
   if (!PC_ANY(fastest > PC_REAL(0.0))) return;  // lint: allow (a push of nothing changes nothing)
   pc_tree_add_changes(PC_PASS m, t, pc_zero3(), pc_zero3());
 }

@@ -38,6 +38,10 @@ const uint TREE_TOUCH = 154u;   // largest load of a contact on the body in this
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
 const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
+// of a free root, whose joint has no rows: the tree as one rigid body (tree_whole.inl)
+const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
+const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
+const uint TREE_RIGID = TREE_SLACK;    // inverse inertia about the centre, 6
 // from tree_respond on, in places that are free by then: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
 const uint TREE_FACTOR = TREE_INERTIA;
 const uint TREE_ROOT_FACTOR = TREE_A;  // 21

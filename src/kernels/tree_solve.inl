@@ -89,14 +89,21 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #endif
   pc_tree_damping(PC_PASS m, t, load > PC_REAL(0.0));
   for (uint round = 0u; round < 4u; round++) {
-    pc_factor(PC_PASS m, t);
+    pc_factor(PC_PASS m, t, round == 0u);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
-    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one);
-    for (uint k = 1u; k < t.count; k++) changed = pc_max(changed, pc_tree_revise(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), may_enter));
+    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one); PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
+    for (uint k = 1u; k < t.count; k++) {
+      Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Real here = pc_tree_revise(PC_PASS n, up, may_enter);
 #ifdef PC_DRIVES
-    for (uint k = 1u; k < t.count; k++) changed = pc_max(changed, pc_drive_revise(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), may_enter));
+      here = pc_max(here, pc_drive_revise(PC_PASS n, up, may_enter));
 #endif
+      PC_ST(tree_rows, n, TREE_STALE, here); changed = pc_max(changed, here);
+    }
     if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
+    for (uint i = 1u; i < t.count; i++) {
+      uint k = t.count - i; Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+      PC_ST(tree_rows, up, TREE_STALE, pc_max(PC_LD(tree_rows, up, TREE_STALE), PC_LD(tree_rows, n, TREE_STALE)));
+    }
   }
   for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
   pc_tree_apply(PC_PASS m, t, push, turn);

@@ -75,7 +75,7 @@ struct Stepper::Inside {
   }
 
   Detector::Options detection() const {
-    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs};
+    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs, settings.lanes};
   }
 
   /// What the objects of `schedule` need; contacts are for the caller to say.

@@ -1,4 +1,6 @@
 // The narrow phase: two shapes in, a manifold out. A pure function of shapes and margin.
+#include "narrow_lines.inl"
+#include "narrow_over_box.inl"
 #include "narrow_types.inl"
 #include "narrow_round.inl"
 #include "narrow_clip.inl"

@@ -238,7 +238,9 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
     Line la = pc_core_line(a, k.n); Line lb = pc_core_line(b, pc_negate(k.n));
     SegmentPair s = pc_closest_segments(la.c, la.u, la.h, lb.c, lb.u, lb.h);
     bool along = pc_abs(pc_dot(la.u, k.n)) < PC_REAL(0.02) && pc_abs(pc_dot(lb.u, k.n)) < PC_REAL(0.02);
-    if (along) pc_parallel_points(la.c, la.u, la.h, a.radius, lb.c, lb.u, lb.h, b.radius, s, margin, 0x3000001u, m);
+    Round core_a; core_a.p = la.c; core_a.r = a.radius; core_a.u = la.u; core_a.h = la.h;
+    Round core_b; core_b.p = lb.c; core_b.r = b.radius; core_b.u = lb.u; core_b.h = lb.h;
+    if (along) pc_parallel_points(core_a, core_b, s, margin, 0x3000001u, m);
   }
   // the closest point itself, where nothing else holds it: instead of the shallowest of four. Over a face it is
   // what stands out farthest, which does not depend on how the search went

@@ -1,19 +1,16 @@
 // Pairs of points and segments with a radius, and everything closed-form against a plane.
 
-// Two round cores at their closest points; `other` is the normal where the points coincide.
-PC_FN void pc_round_cores(Vec3 xa, Real ra, Vec3 xb, Real rb, Vec3 other, Real margin, uint feature, PC_INOUT(NarrowManifold) m) {
-  Vec3 d = pc_sub(xb, xa); Real squared = pc_dot(d, d);
-  precise Real radii = ra + rb; precise Real reach = radii + margin; precise Real farthest = reach * reach;
-  if (squared > farthest) return;
-  Real distance = pc_sqrt(squared);
-  m.normal = pc_has_length(squared) ? pc_scale(d, pc_div(PC_REAL(1.0), distance)) : other;
-  precise Real separation = distance - radii;
-  precise Real half_way = ra + separation * PC_REAL(0.5);
-  pc_push(m, pc_madd(xa, m.normal, half_way), separation, feature);
+PC_FN Round pc_round_of(NarrowShape s) { Round r; r.p = s.p; r.r = s.size.x; r.u = pc_axis_y(s.q); r.h = s.size.y; return r; }
+PC_FN void pc_push_round(RoundContact c, PC_INOUT(NarrowManifold) m) {
+  if (c.apart) return;
+  m.normal = c.normal; pc_push(m, c.p, c.separation, uint(c.feature));
+  if (c.two) pc_push(m, c.second, c.second_separation, uint(c.second_feature));
 }
-
 PC_FN void pc_sphere_sphere(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
-  pc_round_cores(a.p, a.size.x, b.p, b.size.x, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)), margin, 0u, m);
+  pc_push_round(pc_round_cores(a.p, a.size.x, b.p, b.size.x, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)), margin), m);
+}
+PC_FN void pc_capsule_capsule(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
+  pc_push_round(pc_capsules(pc_round_of(a), pc_round_of(b), margin), m);
 }
 
 PC_FN void pc_sphere_capsule(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
@@ -23,27 +20,17 @@ PC_FN void pc_sphere_capsule(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
   Vec3 d = pc_sub(x, a.p);
   Vec3 other = Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   if (!pc_has_length(pc_dot(d, d))) other = pc_perpendicular(u);
-  pc_round_cores(a.p, a.size.x, x, b.size.x, other, margin, 0u, m);
+  pc_push_round(pc_round_cores(a.p, a.size.x, x, b.size.x, other, margin), m);
 }
 
 PC_FN void pc_sphere_box(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
-  Axes axes = pc_axes(b.q); Vec3 h = b.size;
-  Vec3 c = pc_to_local(axes, pc_sub(a.p, b.p));
-  Vec3 inside = Vec3(pc_clamp(c.x, -h.x, h.x), pc_clamp(c.y, -h.y, h.y), pc_clamp(c.z, -h.z, h.z));
-  Vec3 e = pc_sub(c, inside); Real squared = pc_dot(e, e);
-  precise Real reach = a.size.x + margin; precise Real farthest = reach * reach;
-  if (squared > farthest) return;
-  Vec3 outward; Real distance = pc_sqrt(squared);
-  if (pc_has_length(squared)) {
-    outward = pc_scale(e, pc_div(PC_REAL(1.0), distance));
-  } else {  // the centre is inside: out through the nearest face
-    precise Vec3 room = h - pc_abs3(c);
-    uint i = pc_least_component(room);
-    outward = pc_unit_axis(i, pc_sign(pc_component(c, i)));
-    distance = -pc_component(room, i);
-  }
-  m.normal = pc_negate(pc_to_world(axes, outward));
-  precise Real separation = distance - a.size.x;
+  Axes axes = pc_axes(b.q); RoundContact k = pc_sphere_over_box(a.p, a.size.x, b.p, axes, b.size, margin);
+  if (k.apart || !k.open) { pc_push_round(k, m); return; }
+  // the centre is inside: out through the nearest face
+  Vec3 c = pc_to_local(axes, pc_sub(a.p, b.p)); precise Vec3 room = b.size - pc_abs3(c);
+  uint i = pc_least_component(room);
+  m.normal = pc_negate(pc_to_world(axes, pc_unit_axis(i, pc_sign(pc_component(c, i)))));
+  precise Real separation = -pc_component(room, i) - a.size.x;
   pc_push_from(m, a.p, m.normal, a.size.x, separation, margin, 0u);
 }
 
@@ -70,74 +57,14 @@ PC_FN void pc_sphere_cylinder(NarrowShape a, NarrowShape b, Real margin, PC_INOU
   pc_push_from(m, a.p, m.normal, a.size.x, separation, margin, 0u);
 }
 
-// ---- two segments ---------------------------------------------------------------------------------------
-struct SegmentPair { Real s; Real t; Real along; Real cosine; Real sine_squared; };  // closest at xa + ua s, xb + ub t
-// Segments xa + ua [-ha, ha] and xb + ub [-hb, hb]. Where they are parallel the middle of the overlap is taken.
-PC_FN SegmentPair pc_closest_segments(Vec3 xa, Vec3 ua, Real ha, Vec3 xb, Vec3 ub, Real hb) {
-  SegmentPair o;
-  Vec3 w = pc_sub(xb, xa); Vec3 c = pc_cross(ua, ub);
-  Real b = pc_dot(ua, ub); Real wa = pc_dot(ua, w); Real wb = pc_dot(ub, w);
-  o.along = wa; o.cosine = b; o.sine_squared = pc_dot(c, c);
-  if (o.sine_squared > PC_PARALLEL_EXACT) {
-    precise Real numerator = wa - b * wb;
-    o.s = pc_clamp(pc_div(numerator, o.sine_squared), -ha, ha);
-  } else {
-    precise Real low = wa - hb; precise Real high = wa + hb;
-    precise Real middle = (pc_max(low, -ha) + pc_min(high, ha)) * PC_REAL(0.5);
-    o.s = pc_clamp(middle, -ha, ha);
-  }
-  precise Real t = b * o.s - wb; o.t = pc_clamp(t, -hb, hb);
-  precise Real s = wa + b * o.t; o.s = pc_clamp(s, -ha, ha);
-  return o;
-}
-
-// 1 for parallel lines, falling to 0 at three degrees.
-PC_FN Real pc_parallel_share(Real sine_squared) {
-  precise Real left = (PC_PARALLEL_NONE - sine_squared) * PC_REAL(486.895);  // 1 / (none - full)
-  return pc_clamp(left, PC_REAL(0.0), PC_REAL(1.0));
-}
-
-// Two points over the common stretch of two nearly parallel segments; they close in on the closest point as
-// the angle grows, so that nothing jumps where one point takes over. Returns whether it did.
-PC_FN bool pc_parallel_points(Vec3 xa, Vec3 ua, Real ha, Real ra, Vec3 xb, Vec3 ub, Real hb, Real rb, SegmentPair o, Real margin, uint feature, PC_INOUT(NarrowManifold) m) {
+// Those of the ends of a common stretch that are within the margin. Returns whether there is a point then.
+PC_FN bool pc_parallel_points(Round a, Round b, SegmentPair o, Real margin, uint feature, PC_INOUT(NarrowManifold) m) {
   if (o.sine_squared >= PC_PARALLEL_NONE) return false;
-  precise Real reach = pc_abs(o.cosine) * hb; precise Real from = o.along - reach; precise Real to = o.along + reach;
-  Real low = pc_max(from, -ha); Real high = pc_min(to, ha);
-  precise Real shortest = pc_min(ha, hb) * PC_REAL(0.01); precise Real overlap = high - low;
-  if (!(overlap > shortest)) return false;
-  Real share = pc_parallel_share(o.sine_squared); Real inverse = pc_div(PC_REAL(1.0), o.cosine);
-  precise Real radii = ra + rb; precise Real shift = (ra - rb) * PC_REAL(0.5);
-  for (uint k = 0u; k < 2u; k++) {
-    precise Real off = (k == 0u ? low : high) - o.s; precise Real s = o.s + off * share;
-    precise Real t = (s - o.along) * inverse;
-    Vec3 pa = pc_madd(xa, ua, s); Vec3 pb = pc_madd(xb, ub, pc_clamp(t, -hb, hb));
-    Vec3 d = pc_sub(pb, pa);
-    precise Real separation = pc_dot(d, m.normal) - radii;
-    precise Vec3 middle = pa + d * PC_REAL(0.5) + m.normal * shift;
-    if (separation <= margin) pc_push(m, middle, separation, feature + k);
-  }
+  Stretch s = pc_stretch(a, b, o, m.normal);
+  if (!s.exists) return false;
+  if (s.first_separation <= margin) pc_push(m, s.first, s.first_separation, feature);
+  if (s.second_separation <= margin) pc_push(m, s.second, s.second_separation, feature + 1u);
   return m.count > 0u;
-}
-
-PC_FN void pc_capsule_capsule(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
-  Vec3 ua = pc_axis_y(a.q); Vec3 ub = pc_axis_y(b.q);
-  Real ha = a.size.y; Real hb = b.size.y; Real ra = a.size.x; Real rb = b.size.x;
-  SegmentPair o = pc_closest_segments(a.p, ua, ha, b.p, ub, hb);
-  Vec3 pa = pc_madd(a.p, ua, o.s); Vec3 pb = pc_madd(b.p, ub, o.t);
-  Vec3 d = pc_sub(pb, pa); Real squared = pc_dot(d, d);
-  precise Real radii = ra + rb; precise Real reach = radii + margin; precise Real farthest = reach * reach;
-  if (squared > farthest) return;
-  Real distance = pc_sqrt(squared);
-  precise Real least = radii * PC_REAL(1e-6);
-  if (distance > least && pc_has_length(squared)) {
-    m.normal = pc_scale(d, pc_div(PC_REAL(1.0), distance));
-  } else {  // the axes cross: out along their common perpendicular
-    m.normal = o.sine_squared > PC_PARALLEL_EXACT ? pc_unit_or_zero(pc_cross(ua, ub)) : pc_perpendicular(ua);
-    if (pc_dot(m.normal, pc_sub(b.p, a.p)) < PC_REAL(0.0)) m.normal = pc_negate(m.normal);
-  }
-  if (pc_parallel_points(a.p, ua, ha, ra, b.p, ub, hb, rb, o, margin, 1u, m)) return;
-  precise Real separation = distance - radii; precise Real half_way = ra + separation * PC_REAL(0.5);
-  pc_push(m, pc_madd(pa, m.normal, half_way), separation, 0u);
 }
 
 // ---- against a plane ------------------------------------------------------------------------------------

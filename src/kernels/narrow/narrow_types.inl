@@ -14,15 +14,6 @@ const uint PC_CYLINDER = 3u;
 const uint PC_HULL = 4u;
 const uint PC_PLANE = 5u;
 
-// squared sine of 1.5 and 3 degrees: between them two lines pass from parallel (two points) to crossing (one)
-#define PC_PARALLEL_FULL PC_REAL(0.000685237)
-#define PC_PARALLEL_NONE PC_REAL(0.00273905)
-// below this squared sine two directions have no usable cross product
-#define PC_PARALLEL_EXACT PC_REAL(1e-8)
-// cores closer than this times their size have no usable difference vector
-#define PC_CORE_TOUCH PC_REAL(1e-4)
-// the closest point is added where no other point is as deep to this times the smaller core's size
-#define PC_HELD_SLOP PC_REAL(2e-5)
 // an edge pair must beat the best face by this times the smallest half extent: faces carry four points
 #define PC_EDGE_SLOP PC_REAL(4e-3)
 // the second face must beat the larger face by this times the smallest half extent
@@ -36,32 +27,9 @@ const uint PC_PLANE = 5u;
 #define PC_FLAT_SLOP PC_REAL(1e-3)
 #define PC_WIDER_SLOP PC_REAL(1.01)
 
-struct Axes { Vec3 x; Vec3 y; Vec3 z; };
 struct NarrowShape { uint kind; Vec3 size; Vec3 p; Quaternion q; HullRef hull; };
 struct NarrowPoint { Vec3 p; Real separation; uint feature; };
 struct NarrowManifold { Vec3 normal; uint count; NarrowPoint points[4]; };
-
-PC_FN Vec3 pc_axis_x(Quaternion q) {
-  precise Real x = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.y * q.v.y + q.v.z * q.v.z);
-  precise Real y = PC_REAL(2.0) * (q.v.x * q.v.y + q.w * q.v.z);
-  precise Real z = PC_REAL(2.0) * (q.v.x * q.v.z - q.w * q.v.y);
-  return Vec3(x, y, z);
-}
-PC_FN Vec3 pc_axis_y(Quaternion q) {
-  precise Real x = PC_REAL(2.0) * (q.v.x * q.v.y - q.w * q.v.z);
-  precise Real y = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.z * q.v.z);
-  precise Real z = PC_REAL(2.0) * (q.v.y * q.v.z + q.w * q.v.x);
-  return Vec3(x, y, z);
-}
-PC_FN Vec3 pc_axis_z(Quaternion q) {
-  precise Real x = PC_REAL(2.0) * (q.v.x * q.v.z + q.w * q.v.y);
-  precise Real y = PC_REAL(2.0) * (q.v.y * q.v.z - q.w * q.v.x);
-  precise Real z = PC_REAL(1.0) - PC_REAL(2.0) * (q.v.x * q.v.x + q.v.y * q.v.y);
-  return Vec3(x, y, z);
-}
-PC_FN Axes pc_axes(Quaternion q) { Axes m; m.x = pc_axis_x(q); m.y = pc_axis_y(q); m.z = pc_axis_z(q); return m; }
-PC_FN Vec3 pc_to_local(Axes m, Vec3 v) { return Vec3(pc_dot(m.x, v), pc_dot(m.y, v), pc_dot(m.z, v)); }
-PC_FN Vec3 pc_to_world(Axes m, Vec3 v) { return pc_combine(m.x, v.x, m.y, v.y, m.z, v.z); }
 
 PC_FN Real pc_component(Vec3 v, uint i) { return i == 0u ? v.x : (i == 1u ? v.y : v.z); }
 PC_FN Vec3 pc_axis(Axes m, uint i) {
@@ -73,10 +41,6 @@ PC_FN Vec3 pc_unit_axis(uint i, Real s) {
   return Vec3(i == 0u ? s : PC_REAL(0.0), i == 1u ? s : PC_REAL(0.0), i == 2u ? s : PC_REAL(0.0));
 }
 PC_FN uint pc_next(uint i) { return i == 2u ? 0u : i + 1u; }
-PC_FN Real pc_sign(Real x) { return x < PC_REAL(0.0) ? PC_REAL(-1.0) : PC_REAL(1.0); }
-PC_FN Vec3 pc_abs3(Vec3 v) { return Vec3(pc_abs(v.x), pc_abs(v.y), pc_abs(v.z)); }
-PC_FN Real pc_smallest(Vec3 v) { return pc_min(v.x, pc_min(v.y, v.z)); }
-PC_FN Real pc_largest(Vec3 v) { return pc_max(v.x, pc_max(v.y, v.z)); }
 PC_FN uint pc_greatest_component(Vec3 v) {
   uint i = v.y > v.x ? 1u : 0u;
   return v.z > pc_component(v, i) ? 2u : i;
@@ -89,14 +53,6 @@ PC_FN uint pc_least_component(Vec3 v) {
 PC_FN Vec3 pc_edge_middle(Vec3 h, uint i, Vec3 n) {
   Vec3 c = Vec3(n.x < PC_REAL(0.0) ? -h.x : h.x, n.y < PC_REAL(0.0) ? -h.y : h.y, n.z < PC_REAL(0.0) ? -h.z : h.z);
   return Vec3(i == 0u ? PC_REAL(0.0) : c.x, i == 1u ? PC_REAL(0.0) : c.y, i == 2u ? PC_REAL(0.0) : c.z);
-}
-// A length whose square is safely a number above zero.
-PC_FN bool pc_has_length(Real squared) { precise Real least = PC_TINY * PC_TINY; return squared > least; }
-// Any unit vector perpendicular to the unit vector u, always the same one.
-PC_FN Vec3 pc_perpendicular(Vec3 u) {
-  bool steep = pc_abs(u.x) < PC_REAL(0.57);
-  Vec3 e = steep ? Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)) : Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
-  return pc_unit_or_zero(pc_madd(e, u, -pc_dot(e, u)));
 }
 
 PC_FN void pc_push(PC_INOUT(NarrowManifold) m, Vec3 p, Real separation, uint feature) {
