@@ -105,7 +105,8 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
     row.must = finding.must;
     row.target = finding.target;
     // NaN fails too
-    row.pass = row.failure.empty() && gl != "differs" && (row.must ? row.error <= *row.must : std::isfinite(row.error));
+    row.pass =
+        row.failure.empty() && (gl.empty() || gl == "equal") && (row.must ? row.error <= *row.must : std::isfinite(row.error));
     rows.push_back(row);
   }
   return rows;
@@ -130,7 +131,7 @@ void drop_error(Row& row) {
   row.error = std::numeric_limits<double>::quiet_NaN();
   row.must = row.target = std::nullopt;
   row.lost = false;
-  row.pass = row.gl != "differs";
+  row.pass = row.gl.empty() || row.gl == "equal";
 }
 
 std::vector<Row> run_trial(const Selection& selection, const Case& c, const Variant& variant, const Setting& setting,
@@ -138,14 +139,17 @@ std::vector<Row> run_trial(const Selection& selection, const Case& c, const Vari
   const long limit = selection.first ? hashed_steps : std::numeric_limits<long>::max();
   const auto trial = make_trial(engine, variant, setting, limit, selection.repeats > 1 ? selection.repeats : 0);
   const double seconds = time_of(*trial, selection.repeats);
-  std::string equal;
+  std::string equal, refused;
   if (gl && engine.peer().empty()) {
     const auto there = make_trial(*gl, variant, setting, hashed_steps);
-    equal = there->meter().error.code == ErrorCode::none && there->meter().hash == trial->meter().hash ? "equal" : "differs";
+    refused = there->meter().error.message;  // too large for the device, say
+    equal = !refused.empty() ? "refused" : there->meter().hash == trial->meter().hash ? "equal" : "differs";
   }
   auto rows = rows_of(*trial, c, variant, setting, engine, seconds, equal);
-  if (selection.first)
-    for (Row& row : rows) drop_error(row);
+  for (Row& row : rows) {
+    if (selection.first) drop_error(row);
+    if (row.failure.empty()) row.failure = refused;
+  }
   return rows;
 }
 

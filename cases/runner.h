@@ -26,7 +26,7 @@ struct Row {
   std::string peer;
 
   std::optional<double> order;  // of the metric over the step lengths of its variant
-  std::string gl;               // hash beside the cpu's: "equal", "differs", or empty when it was not asked for
+  std::string gl;               // hash beside the cpu's: "equal", "differs", "refused" (see failure), or empty when it was not asked for
   std::string failure;          // why a step was refused
 };
 
