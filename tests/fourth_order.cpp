@@ -126,7 +126,6 @@ TEST_CASE("order 4: energy and gaps over 100 s, momenta of a free chain") {
 }
 
 TEST_CASE("order 4: equal hashes in lanes, threads, on GL and in all mixes") {
-  require_gl();
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     INFO((precision == Precision::f32 ? "float" : "double"));
     const auto hashes_of = [&](StepSettings settings, int steps) {
@@ -146,17 +145,7 @@ TEST_CASE("order 4: equal hashes in lanes, threads, on GL and in all mixes") {
       CHECK(stepper.step(world, frame).fourth_order > 20);
       return all;
     };
-    const auto wanted = hashes_of(lanes(1), 40);
-    CHECK(hashes_of(lanes(4), 40) == wanted);
-    CHECK(hashes_of(lanes(0), 40) == wanted);
-    StepSettings threads = lanes(1);
-    threads.threads = 3;
-    CHECK(hashes_of(threads, 40) == wanted);
-    const std::vector<std::uint64_t> first(wanted.begin(), wanted.begin() + 8);
-    for (const Mix& mix : mixes()) {
-      INFO(mix.text());
-      CHECK(hashes_of(mix.settings(), 8) == first);
-    }
+    check_same_bits(hashes_of, 40, 8);
   }
 }
 

@@ -115,7 +115,6 @@ TEST_CASE("octaves: islands do not feel each other's, by a bit") {
 }
 
 TEST_CASE("octaves: equal hashes in lanes, threads, on GL and in all mixes") {
-  require_gl();
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     INFO((precision == Precision::f32 ? "float" : "double"));
     const auto hashes_of = [&](const StepSettings& settings, int steps) {
@@ -128,17 +127,7 @@ TEST_CASE("octaves: equal hashes in lanes, threads, on GL and in all mixes") {
       }
       return all;
     };
-    const auto wanted = hashes_of(lanes(1), 60);
-    CHECK(hashes_of(lanes(4), 60) == wanted);
-    CHECK(hashes_of(lanes(0), 60) == wanted);
-    StepSettings threads = lanes(1);
-    threads.threads = 3;
-    CHECK(hashes_of(threads, 60) == wanted);
-    const std::vector<std::uint64_t> first(wanted.begin(), wanted.begin() + 8);
-    for (const Mix& mix : mixes()) {
-      INFO(mix.text());
-      CHECK(hashes_of(mix.settings(), 8) == first);
-    }
+    check_same_bits(hashes_of, 60, 8);
   }
 }
 

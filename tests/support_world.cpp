@@ -47,6 +47,21 @@ StepSettings lanes(std::uint32_t lanes) {
   return s;
 }
 
+void check_same_bits(const HashesOf& hashes_of, int steps, int steps_on_gl) {
+  require_gl();
+  const auto wanted = hashes_of(lanes(1), steps);
+  CHECK(hashes_of(lanes(4), steps) == wanted);
+  CHECK(hashes_of(lanes(0), steps) == wanted);
+  StepSettings threads = lanes(1);
+  threads.threads = 3;
+  CHECK(hashes_of(threads, steps) == wanted);
+  const std::vector<std::uint64_t> first(wanted.begin(), wanted.begin() + steps_on_gl);
+  for (const Mix& mix : mixes()) {
+    INFO(mix.text());
+    CHECK(hashes_of(mix.settings(), steps_on_gl) == first);
+  }
+}
+
 void run(World& world, Stepper& stepper, int steps, double dt) {
   for (int i = 0; i < steps; i++) {
     const StepReport& report = stepper.step(world, dt);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +34,11 @@ struct Mix {
 std::vector<Mix> mixes();
 
 StepSettings lanes(std::uint32_t lanes);
+
+/// Hashes after each of so many steps of a world made for these settings.
+using HashesOf = std::function<std::vector<std::uint64_t>(const StepSettings& settings, int steps)>;
+/// Checks that they are the same in all lanes and in threads, and the first few of them on GL and in all mixes.
+void check_same_bits(const HashesOf& hashes_of, int steps, int steps_on_gl);
 
 /// Takes the steps; a refused one fails the test with its sentence.
 void run(World& world, Stepper& stepper, int steps, double dt = frame);

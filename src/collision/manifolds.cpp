@@ -31,9 +31,8 @@ bool gaps_close(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const
 }
 
 /// Whether some contact is of a body that was just placed and settles still after this step has begun.
-bool some_settles(const Tables& tables, std::span<const std::array<std::uint32_t, 2>> ends) {
-  const auto settles = [&](std::uint32_t row) { return tables.get(Buffer::velocity_parts, row, 15) > 1; };
-  return std::ranges::any_of(ends, [&](const auto& e) { return settles(e[0]) || settles(e[1]); });
+bool some_settles(const WorldState& s, std::span<const std::array<std::uint32_t, 2>> ends) {
+  return std::ranges::any_of(ends, [&](const auto& e) { return s.settles(e[0]) || s.settles(e[1]); });
 }
 
 /// The largest speed at which a gap closes [m/s].
@@ -179,7 +178,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   else
     for (const std::uint32_t i : near_) add(i);
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
-  found.placed = s.settling > 0 && some_settles(s.tables, next_.ends);
+  found.placed = s.settling > 0 && some_settles(s, next_.ends);
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));
   s.tables.exchange(Table::contact, Buffer::contact, scratch.contacts, std::uint32_t(next_.keys.size()));

@@ -17,6 +17,7 @@
 #include "plan/island_class.h"
 #include "plan/octaves.h"
 #include "plan/plan.h"
+#include "plan/step_infos.h"
 #include "step/check_settings.h"
 #include "step/own_work.h"
 #include "step/processor_state.h"
@@ -57,11 +58,7 @@ struct Stepper::Inside {
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   bool other = false;                                 // than those of the last step
-  InfoInputs infos_from;                              // of the next four
-  Precision infos_precision = Precision::f32;
-  std::uint32_t infos_of = 0;  // octaves, as bits
-  InfoOf<float> infos_f[octave_count][phase_count];
-  InfoOf<double> infos_d[octave_count][phase_count];
+  StepInfos infos;
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
   int tries = 0;                                // of this step
@@ -129,24 +126,8 @@ struct Stepper::Inside {
     return runner.check(place, kernel);
   }
 
-  template <class Scalar> void fill_octaves(InfoOf<Scalar> (&infos)[octave_count][phase_count]) {
-    const std::uint32_t used = octaves_of(octaves.used());
-    for (unsigned octave = 0; octave < octave_count; octave++)
-      if ((used & ~infos_of) >> octave & 1) fill_infos(infos_from, infos[octave], octave);
-    infos_of |= used;
-  }
-
   const void* fill(const WorldState& s, double h) {
-    const Precision precision = s.tables.precision();
-    const InfoInputs from(settings, s.gravity, h, s.last_substep);
-    if (precision != infos_precision || !(from == infos_from)) {
-      infos_of = 0;
-      infos_from = from;
-      infos_precision = precision;
-    }
-    const bool single = precision == Precision::f32;
-    if (octaves_of(octaves.used()) & ~infos_of) single ? fill_octaves(infos_f) : fill_octaves(infos_d);
-    return single ? static_cast<const void*>(infos_f) : infos_d;
+    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep), octaves_of(octaves.used()));
   }
 
   /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.

@@ -67,6 +67,8 @@ void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointD
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 
+inline constexpr std::uint32_t settling_at = 15;  // of a body, in its row of Buffer::velocity_parts
+
 struct WorldState {
   explicit WorldState(const WorldDef& def);
 
@@ -110,6 +112,8 @@ struct WorldState {
   }
   /// Of a body that was just placed: what holds it is not known yet.
   void let_settle(std::uint32_t row);
+  /// Whether it will still once the next step has begun.
+  bool settles(std::uint32_t row) const { return tables.get(Buffer::velocity_parts, row, settling_at) > 1; }
   /// Removes a joint or spring.
   void remove_joint(std::uint32_t row);
   /// Removes the contacts of a body and follows the row of another that took its place.
