@@ -197,7 +197,10 @@ Status check(const Selection& selection) {
     if (selected(one).empty())
       return Error{ErrorCode::unknown_name, "There is no case '" + name + "' here; choose of " + known + "."};
   }
-  return {};
+  for (const Case* c : selected(selection))
+    for (const Variant& variant : c->variants)
+      if (variant.name.starts_with(selection.variant)) return {};
+  return Error{ErrorCode::unknown_name, "No variant of these cases starts with '" + selection.variant + "'; --list names them."};
 }
 
 std::size_t count_trials(const Selection& selection, std::span<Engine* const> engines) {

@@ -44,7 +44,7 @@ struct Selection {
   int repeats = 1;      // above 1, times are medians of so many runs in which nothing is read
 };
 
-/// Errors: unknown_name for a case that is not in the groups.
+/// Errors: unknown_name for a case that is not in the groups, and where no variant starts as asked.
 Status check(const Selection& selection);
 
 /// How many trials it takes, `engines` engines each.

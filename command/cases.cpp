@@ -85,6 +85,7 @@ Result<cases::Selection> resolve(const CaseOptions& options, const std::string& 
   cases::Selection selection;
   selection.groups = groups;
   selection.names = options.names;
+  selection.variant = options.variant;
   selection.slow = options.all;
   selection.coarse = true;
   if (auto status = check_choice("precision", options.precision, {"float", "double", "both"}); !status) return status.error();
@@ -141,6 +142,7 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
   app.add_option("CASE", options.names, "names of cases; all when none is given");
   app.add_flag("--list", options.list, "list the cases and their variants");
   app.add_flag("--all", options.all, "the step lengths that take minutes too");
+  app.add_option("--variant", options.variant, "only variants whose names start so, as --list shows them");
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--dt", options.dt, "this step length only [s], also as a fraction");
   app.add_option("--backend", options.backend, "gl: run the first 600 steps of everything there too, and compare hashes")

@@ -33,7 +33,7 @@ struct RunOptions {
 /// Of `accuracy` and `stability`.
 struct CaseOptions {
   std::vector<std::string> names;
-  std::string precision = "both", backend = "cpu", dt;
+  std::string variant, precision = "both", backend = "cpu", dt;
   long long repeats = 1;
   std::string peers = "none";
   double budget = 5;  // of stepping, for each trial of a peer [s]
