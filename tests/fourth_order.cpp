@@ -10,40 +10,6 @@ using namespace worldtest;
 
 namespace {
 
-BodyDef link_at(Vec3 position, double length = 0.4) {
-  BodyDef def;
-  def.shapes = {ShapeDef::box({0.03, 0.04, 0.5 * length})};
-  def.pose.position = position;
-  def.density = 500;
-  return def;
-}
-
-JointDef pin(BodyId a, Vec3 at_a, BodyId b, Vec3 at_b) {
-  JointDef def;
-  def.a = a;
-  def.b = b;
-  def.frame_a.position = at_a;
-  def.frame_b.position = at_b;
-  return def;
-}
-
-/// Links along z below `top`, on a pin there unless `free`; they spin, so that the chain moves in three dimensions.
-std::vector<BodyId> add_chain(World& world, Vec3 top, int count, bool free = false, Vec3 spin = {1.5, -1, 0.7},
-                              bool touching = false) {
-  std::vector<BodyId> links;
-  for (int i = 0; i < count; i++) {
-    BodyDef def = link_at(top - Vec3{0, 0, 0.2 + 0.4 * i});
-    def.angular_velocity = (i % 2 == 0 ? 1.0 : -0.5) * spin;
-    for (ShapeDef& shape : def.shapes) shape.filter.mask = touching ? ~0u : 0;
-    links.push_back(must(world.create_body(def)));
-    if (i > 0)
-      (void)must(world.create_joint(pin(links[std::size_t(i - 1)], {0, 0, -0.2}, links.back(), {0, 0, 0.2})));
-    else if (!free)
-      (void)must(world.create_joint(pin(world.ground(), top, links[0], {0, 0, 0.2})));
-  }
-  return links;
-}
-
 StepSettings fourth(std::uint32_t substeps = 1) {
   StepSettings s;
   s.order = 4;
@@ -127,15 +93,10 @@ TEST_CASE("order 4: energy and gaps over 100 s, momenta of a free chain") {
 
 TEST_CASE("order 4: equal hashes in lanes, threads, on GL and in all mixes") {
   for (const Precision precision : {Precision::f32, Precision::f64}) {
-    INFO((precision == Precision::f32 ? "float" : "double"));
+    INFO("precision " << (precision == Precision::f32 ? "float" : "double"));
     const auto hashes_of = [&](StepSettings settings, int steps) {
       settings.order = 4;
-      World world({precision});
-      must(world.set_gravity({0, 0, -9.81}));
-      (void)must(world.create_body(fixed_box({0, 0, -20}, {50, 50, 0.5})));
-      for (int i = 0; i < 11; i++) (void)add_chain(world, {3.0 * i, 0, 0}, 2 + i % 3, i % 4 == 3, {0.3 * i, 1, -0.2 * i});
-      (void)add_chain(world, {0, 5, 0}, 4, true, {150, 40, 20});  // of an octave of its own
-      (void)add_chain(world, {0, 9, -18.5}, 3, true, {}, true);   // meets the floor
+      World world = chains_world(precision);
       Stepper stepper(settings);
       std::vector<std::uint64_t> all;
       for (int i = 0; i < steps; i++) {

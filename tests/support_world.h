@@ -50,6 +50,14 @@ void require_gl();
 /// A ball at a place.
 BodyDef ball(Vec3 position, double radius = 0.5);
 BodyDef fixed_box(Vec3 position, Vec3 half_extents);
+/// A bar along z, 0.4 m by default, and a pin between two bodies.
+BodyDef link_at(Vec3 position, double length = 0.4);
+JointDef pin(BodyId a, Vec3 at_a, BodyId b, Vec3 at_b);
+/// Links along z below `top`, on a pin there unless `free`; they spin, so that the chain moves in three dimensions.
+std::vector<BodyId> add_chain(World& world, Vec3 top, int count, bool free = false, Vec3 spin = {1.5, -1, 0.7},
+                              bool touching = false);
+/// Chains of several shapes and spins, hanging and free; one of them meets a floor.
+World chains_world(Precision precision);
 template <class T> T must(Result<T> result) {
   if (!result) FAIL("refused: " << result.error().message);
   return std::move(*result);
