@@ -39,6 +39,8 @@ Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_
   if (names.empty())
     for (const scenes::SceneInfo& info : scenes::list()) names.push_back(std::string(info.name));
   std::vector<Setup> result;
+  if (run_options.sleep == "on")
+    return Error{ErrorCode::bad_argument, "--sleep on is not for compare: the peers keep everything awake; leave it off."};
   for (const std::string& name : names) {
     const auto entry = parse(name);
     if (!entry) return entry.error();

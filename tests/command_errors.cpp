@@ -44,7 +44,7 @@ const Case cases[] = {
     {"run balls --lanes 8 --precision double", 2, "1 and 4 lanes"},
     {"run balls --threads 257", 2, "--threads is 257"},
     {"run balls --threads -1", 2, "--threads is -1"},
-    {"run balls --sleep on", 2, "later version"},
+    {"compare balls --sleep on", 2, "keep everything awake"},
     {"run balls --sleep maybe", 2, "on, off"},
     {"run balls --integrator rk4", 2, "verlet"},
     {"run balls --backend cuda", 2, "cpu or gl"},

@@ -152,3 +152,28 @@ TEST_CASE("no allocation for forces and callbacks") {
   counting = false;
   CHECK(allocations == 0);
 }
+
+TEST_CASE("no allocation while everything sleeps, or all but one body") {
+  for (const bool rolls : {false, true}) {
+    SceneWorld s = scene_world("stack", 8);
+    StepSettings settings = lanes(0);
+    settings.sleep = true;
+    Stepper stepper(settings);
+    if (rolls) {
+      BodyDef def = ball({100, 0, 0});
+      def.can_sleep = false;
+      def.velocity = {5, 0, 0};
+      must(s.world.create_body(def));
+    }
+    run(s.world, stepper, 300);
+    allocations = 0;
+    for (int i = 0; i < 100; i++) {
+      counting = true;
+      const StepReport& report = stepper.step(s.world, frame);
+      counting = false;
+      if (!report) FAIL(report.error.message);
+      CHECK(report.asleep == 8);
+    }
+    CHECK(allocations == 0);
+  }
+}

@@ -130,6 +130,9 @@ class Detector {
   /// The row of one more contact.
   template <class Scalar>
   Scalar* append(Scratch<Scalar>& scratch, const ContactKey& key, const std::array<std::uint32_t, 2>& ends);
+  /// Takes over contacts of the last step, from the first row to before the last.
+  template <class Scalar>
+  void keep(const WorldState& state, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found);
   /// The pairs whose tight boxes overlap and that are looked at, into `near_`.
   void list_near();
   /// Finds the manifolds of pairs that go in lanes, and marks all pairs that may have one.

@@ -136,6 +136,23 @@ Scalar* Detector::append(Scratch<Scalar>& scratch, const ContactKey& key, const 
 }
 
 template <class Scalar>
+void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found) {
+  if (first == last) return;
+  const std::size_t row = next_.keys.size(), bytes = reals_of(Buffer::contact) * sizeof(Scalar);
+  const auto copy = [&](const auto& from, auto& to) { to.insert(to.end(), from.begin() + first, from.begin() + last); };
+  copy(s.contacts.keys, next_.keys);
+  copy(s.contacts.ends, next_.ends);
+  copy(s.contacts.features, next_.features);
+  const std::size_t end = (row + last - first) * bytes;
+  if (scratch.contacts.size() < end) scratch.contacts.resize(end);
+  const std::byte* contacts = s.tables.bytes(Buffer::contact).data();
+  std::copy(contacts + first * bytes, contacts + last * bytes, scratch.contacts.data() + row * bytes);
+  found.kept += last - first;
+  for (; first < last; first++)
+    found.kept_points += std::uint32_t(s.tables.data<Scalar>(Buffer::contact)[first * reals_of(Buffer::contact) + 3]);
+}
+
+template <class Scalar>
 Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   const auto pairs = pairs_.pairs();
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
@@ -160,14 +177,12 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   std::uint32_t kept = parts_.empty() ? before_rows : 1;
   // contacts of what sleeps, up to a key
   const auto keep_until = [&](const ContactKey* end) {
-    for (; kept < before_rows && (!end || s.contacts.keys[kept] < *end); kept++) {
-      if (!stays(s.contacts.ends[kept])) continue;
-      const Scalar* contact = before + kept * reals;
-      Scalar* out = append(scratch, s.contacts.keys[kept], s.contacts.ends[kept]);
-      std::copy_n(contact, reals, out);
-      next_.features.back() = s.contacts.features[kept];
-      found.kept++;
-      found.kept_points += std::uint32_t(contact[3]);
+    const auto ends = [&] { return kept == before_rows || (end && *end <= s.contacts.keys[kept]); };
+    while (!ends()) {
+      const std::uint32_t first = kept;
+      while (!ends() && stays(s.contacts.ends[kept])) kept++;
+      keep(s, scratch, first, kept, found);
+      while (!ends() && !stays(s.contacts.ends[kept])) kept++;
     }
   };
   const auto add = [&](std::uint32_t i) {

@@ -116,18 +116,26 @@ std::uint32_t Sleepers::wake_marked(WorldState& state) {
   return woke;
 }
 
-std::uint32_t Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes& before, double dt,
-                               const StepSettings& settings, bool changed) {
+void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
+                      const StepSettings& settings, bool changed, StepReport& report) {
   const bool single = state.tables.precision() == Precision::f32;
-  const bool some =
-      single ? count_time<float>(state, moved, before, dt, settings) : count_time<double>(state, moved, before, dt, settings);
-  state.tables.touch(Buffer::rest);
-  state.rests = true;
-  if (!some && !changed) return 0;
+  const double sleep_time = single ? double(float(settings.sleep_time)) : settings.sleep_time;  // as the table holds it
+  if (before) {
+    const bool some =
+        single ? count_time<float>(state, moved, *before, dt, settings) : count_time<double>(state, moved, *before, dt, settings);
+    state.tables.touch(Buffer::rest);
+    state.rests = true;
+    if (some || changed) report.fell_asleep = choose(state, moved, sleep_time);
+  }
+  if (state.stirred > 0) state.calm();
+  report.asleep = state.sleepers;
+  report.islands_asleep = count_islands(state);
+}
+
+std::uint32_t Sleepers::choose(WorldState& state, std::span<const std::uint32_t> moved, double sleep_time) {
   build(state);
-  const double enough = single ? double(float(settings.sleep_time)) : settings.sleep_time;
   for (const std::uint32_t row : moved)
-    if (state.tables.get(Buffer::rest, row, rest_quiet_time) < enough) awake_[islands_.root(row)] = true;
+    if (state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time) awake_[islands_.root(row)] = true;
   mark_kept_awake(state);
   return lay_down(state, moved);
 }
@@ -155,7 +163,7 @@ std::uint32_t Sleepers::lay_down(WorldState& state, std::span<const std::uint32_
   return fell;
 }
 
-std::uint32_t Sleepers::islands(const WorldState& state) {
+std::uint32_t Sleepers::count_islands(const WorldState& state) {
   if (serial_ == state.serial && counted_ == state.rest_version) return count_;
   serial_ = state.serial;
   counted_ = state.rest_version;

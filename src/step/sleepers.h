@@ -53,17 +53,19 @@ class Sleepers {
   /// With the contacts of a step: wakes the islands of these bodies.
   std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
   /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep. `before`: the poses that
-  /// the step began with. `changed`: islands are others than after the last step. Returns how many bodies fell asleep.
-  std::uint32_t follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes& before, double dt,
-                       const StepSettings& settings, bool changed);
-  /// How many islands sleep.
-  std::uint32_t islands(const WorldState& state);
+  /// the step began with, null where nothing moved. `changed`: islands are others than after the last step. Reports who sleeps.
+  void follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
+              const StepSettings& settings, bool changed, StepReport& report);
 
  private:
   void build(const WorldState& state);
   std::uint32_t wake_marked(WorldState& state);
+  /// Which fall asleep; how many bodies that are.
+  std::uint32_t choose(WorldState& state, std::span<const std::uint32_t> moved, double sleep_time);
   void mark_kept_awake(const WorldState& state);
   std::uint32_t lay_down(WorldState& state, std::span<const std::uint32_t> moved);
+
+  std::uint32_t count_islands(const WorldState& state);
 
   Islands islands_;
   std::vector<char> awake_;                 // by the root of an island

@@ -18,6 +18,7 @@
 #include "plan/octaves.h"
 #include "plan/plan.h"
 #include "plan/step_infos.h"
+#include "step/called_forces.h"
 #include "step/check_settings.h"
 #include "step/own_work.h"
 #include "step/processor_state.h"
@@ -68,7 +69,7 @@ struct Stepper::Inside {
   bool strayed = false;                         // some body went further than it was looked for
   int tries = 0;                                // of this step
   Vec3 sound_gravity;                           // the last that was looked at
-  std::vector<Wrench> called;                   // what the callbacks answered in this step
+  CalledForces called;
   StepPlan no_plan;
   Clock::time_point began;
 
@@ -137,36 +138,6 @@ struct Stepper::Inside {
     return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep), octaves_of(octaves.used()));
   }
 
-  /// Asks all callbacks before any answer is written: they see one world, and a bad answer changes nothing.
-  Status call_back(const World& world) {
-    const WorldState& s = world.state();
-    called.clear();
-    if (s.callbacks == 0) return {};
-    for (const ForceRecord& f : s.forces) {
-      if (!f.callback) continue;
-      called.push_back(f.callback(world, s.body_ids.id<BodyId>(f.body)));
-      if (Status ok = check_finite(called.back().force, "force of a callback"); !ok) return ok;
-      if (Status ok = check_finite(called.back().torque, "torque of a callback"); !ok) return ok;
-    }
-    return {};
-  }
-
-  /// Forces of callbacks on top of the constant ones.
-  void add_called(WorldState& s) {
-    if (called.empty()) return;
-    runner.keep(s, s.gathered ? s.gathered->force : Buffer::force);
-    if (s.gathered) runner.keep(s, s.gathered->torque);
-    for (const ForceRecord& f : s.forces)
-      if (f.callback) s.sum_forces(s.body_ids.row(f.body));
-    std::size_t i = 0;
-    for (const ForceRecord& f : s.forces) {
-      if (!f.callback) continue;
-      const std::uint32_t row = s.body_ids.row(f.body);
-      const Wrench& w = called[i++];
-      s.give_forces(row, s.given_force(row) + w.force, s.given_torque(row) + w.torque);
-    }
-  }
-
   Status prepare(Precision precision) {
     prepared.reset();
     Status ok = runner.prepare(settings, precision, own.kernels());
@@ -185,7 +156,7 @@ struct Stepper::Inside {
       if (ok) sound_gravity = s.gravity;
     }
     if (ok && prepared != s.tables.precision()) ok = prepare(s.tables.precision());
-    if (ok) ok = call_back(world);
+    if (ok) ok = called.ask(world);
     if (!ok) return ok;
     lap(Timer::forces);
 
@@ -216,11 +187,7 @@ struct Stepper::Inside {
 
   /// The step was made: what is at rest may fall asleep.
   void let_sleep(WorldState& s, double dt) {
-    if (const AlignedBytes* before = runner.before(Buffer::pose))
-      report.fell_asleep = sleepers.follow(s, schedule.moving_bodies(), *before, dt, settings, regrouped);
-    if (s.stirred > 0) s.calm();
-    report.asleep = s.sleepers;
-    report.islands_asleep = sleepers.islands(s);
+    sleepers.follow(s, schedule.moving_bodies(), runner.before(Buffer::pose), dt, settings, regrouped, report);
     if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
     update_structure(s);
     PlanSignature nothing = signature(s, schedule);
@@ -282,7 +249,7 @@ struct Stepper::Inside {
       update_structure(s);
       if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
       lap(Timer::broad);
-      add_called(s);
+      called.add(s, runner);
       if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
       lap(Timer::narrow);
       if (detector.touched().empty()) return {};

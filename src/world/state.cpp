@@ -121,6 +121,7 @@ void WorldState::calm() {
 }
 
 void WorldState::count_rest() {
+  const bool some_before = sleepers > 0 || stirred > 0;
   sleepers = stirred = 0;
   rests = false;
   for (std::uint32_t row = 0; row < bodies.size(); row++) {
@@ -128,7 +129,7 @@ void WorldState::count_rest() {
     stirred += tables.get(Buffer::rest, row, rest_stirred) > 0;
     rests |= !never_rested(row);
   }
-  rest_version++;
+  if (some_before || sleepers > 0 || stirred > 0) rest_version++;
 }
 
 void WorldState::set_angular_velocity(std::uint32_t row, Vec3 w) {

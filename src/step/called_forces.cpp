@@ -1,0 +1,35 @@
+#include "step/called_forces.h"
+
+#include "world/validate.h"
+
+namespace pcphys {
+
+Status CalledForces::ask(const World& world) {
+  const WorldState& s = world.state();
+  answers_.clear();
+  if (s.callbacks == 0) return {};
+  for (const ForceRecord& f : s.forces) {
+    if (!f.callback) continue;
+    answers_.push_back(f.callback(world, s.body_ids.id<BodyId>(f.body)));
+    if (Status ok = check_finite(answers_.back().force, "force of a callback"); !ok) return ok;
+    if (Status ok = check_finite(answers_.back().torque, "torque of a callback"); !ok) return ok;
+  }
+  return {};
+}
+
+void CalledForces::add(WorldState& s, Runner& runner) const {
+  if (answers_.empty()) return;
+  runner.keep(s, s.gathered ? s.gathered->force : Buffer::force);
+  if (s.gathered) runner.keep(s, s.gathered->torque);
+  for (const ForceRecord& f : s.forces)
+    if (f.callback) s.sum_forces(s.body_ids.row(f.body));
+  std::size_t i = 0;
+  for (const ForceRecord& f : s.forces) {
+    if (!f.callback) continue;
+    const std::uint32_t row = s.body_ids.row(f.body);
+    const Wrench& w = answers_[i++];
+    s.give_forces(row, s.given_force(row) + w.force, s.given_torque(row) + w.torque);
+  }
+}
+
+}  // namespace pcphys

@@ -1,0 +1,502 @@
+// Pins: islands at rest fall asleep as a whole and then do not change by a bit; whatever the host or another body does to one wakes all of
+// it, and nothing else does; who sleeps is the same in all lanes, threads and places, and across a snapshot; what wakes goes on as what
+// never slept.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include "support_world.h"
+
+using namespace worldtest;
+
+namespace {
+
+StepSettings sleepy(StepSettings s = {}) {
+  s.sleep = true;
+  s.timings = false;
+  return s;
+}
+
+BodyDef cube(Vec3 position, double half = 0.5) {
+  BodyDef def;
+  def.pose.position = position;
+  def.shapes = {ShapeDef::box({half, half, half})};
+  return def;
+}
+
+/// Towers of three cubes on a floor of their own, 10 m apart along x, and a joint between the two upper ones of the first.
+struct Towers {
+  World world;
+  std::vector<BodyId> floors, cubes;
+  JointId joint;
+  Stepper stepper{sleepy()};
+
+  explicit Towers(int count = 2, Precision precision = Precision::f32) : world({precision}) {
+    for (int k = 0; k < count; k++) {
+      floors.push_back(must(world.create_body(fixed_box({10.0 * k, -0.5, 0}, {2, 0.5, 2}))));
+      for (int i = 0; i < 3; i++) cubes.push_back(must(world.create_body(cube({10.0 * k, 0.5 + i, 0}))));
+    }
+    JointDef hold = pin(cubes[1], {0.3, 0.5, 0}, cubes[2], {0.3, -0.5, 0});
+    hold.collide = true;
+    joint = must(world.create_joint(hold));
+  }
+  bool asleep(int cube) const { return must(world.is_asleep(cubes[std::size_t(cube)])); }
+  bool all_asleep() const {
+    for (std::size_t i = 0; i < cubes.size(); i++)
+      if (!asleep(int(i))) return false;
+    return true;
+  }
+  /// Until everything sleeps; after how many steps.
+  int fall_asleep(int most = 600) {
+    for (int i = 1; i <= most; i++) {
+      run(world, stepper, 1);
+      if (all_asleep()) return i;
+    }
+    FAIL("still awake after " << most << " steps");
+    return most;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("sleep: what is at rest falls asleep, and then no bit of it changes") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    Towers t(2, precision);
+    const int steps = t.fall_asleep();
+    CHECK(steps >= 30);  // half a second
+    CHECK(steps < 240);
+    for (const BodyId cube : t.cubes) {
+      CHECK(must(t.world.velocity(cube)) == Vec3{});
+      CHECK(must(t.world.angular_velocity(cube)) == Vec3{});
+    }
+    const std::uint64_t hash = t.world.hash();
+    const std::size_t contacts = t.world.contact_count();
+    CHECK(contacts == 6);
+    for (int i = 0; i < 100; i++) {
+      const StepReport& report = t.stepper.step(t.world, i < 50 ? frame : frame / 3);
+      REQUIRE(report);
+      CHECK(report.asleep == 6);
+      CHECK(report.islands_asleep == 2);
+      CHECK((report.woke == 0 && report.fell_asleep == 0));
+      CHECK(report.contacts == contacts);
+      CHECK(report.points == 24);
+      CHECK(report.transfer_bytes == 0);
+      CHECK(t.world.hash() == hash);
+    }
+    CHECK(t.stepper.plan().entries.empty());
+    const auto& out = t.stepper.plan().left_out;
+    for (const char* what : {"integrate", "joints", "collision", "impulses"})
+      CHECK(std::ranges::any_of(out, [&](const LeftOut& l) { return l.what == what && l.why == "all bodies sleep"; }));
+    const StepPlan asked = must(t.stepper.plan_for(t.world, frame));
+    CHECK(asked == t.stepper.plan());
+  }
+}
+
+TEST_CASE("sleep: with it off nothing sleeps, and a step with it off wakes what does") {
+  Towers t;
+  Stepper awake;
+  World other = std::move(Towers().world);
+  run(other, awake, 200);
+  CHECK(awake.step(other, frame).asleep == 0);
+
+  t.fall_asleep();
+  StepSettings s = t.stepper.settings();
+  s.sleep = false;
+  must(t.stepper.configure(s));
+  CHECK(t.stepper.step(t.world, frame).asleep == 0);
+  for (int i = 0; i < 6; i++) CHECK(!t.asleep(i));
+}
+
+TEST_CASE("sleep: whatever the host changes of a body wakes its island, whole, and no other") {
+  struct Way {
+    const char* name;
+    std::function<void(Towers&)> act;
+    int woke = 3;
+  };
+  const MassProperties heavy{2000, {300, 300, 300}};
+  const Way ways[] = {
+      {"wake", [](Towers& t) { must(t.world.wake(t.cubes[2])); }},
+      {"set_pose",
+       [](Towers& t) {
+         must(t.world.set_pose(t.cubes[2], {{0, 2.5, 0.001}, {}}));
+       }},
+      {"set_velocity",
+       [](Towers& t) {
+         must(t.world.set_velocity(t.cubes[1], {0, 0.1, 0}));
+       }},
+      {"set_angular_velocity",
+       [](Towers& t) {
+         must(t.world.set_angular_velocity(t.cubes[2], {0, 0.1, 0}));
+       }},
+      {"set_position_last",
+       [](Towers& t) {
+         must(t.world.set_position_last(t.cubes[2], {0, 2.49, 0}));
+       }},
+      {"set_orientation_last",
+       [](Towers& t) {
+         must(t.world.set_orientation_last(t.cubes[2], {0, 0.001, 0, 1}));
+       }},
+      {"mass", [&](Towers& t) { must(t.world.set_mass_properties(t.cubes[0], heavy)); }},
+      {"material", [](Towers& t) { must(t.world.set_material(t.cubes[0], {.static_friction = 0.1})); }},
+      {"material of the floor", [](Towers& t) { must(t.world.set_material(t.floors[0], {.static_friction = 0.1})); }},
+      {"drag", [](Towers& t) { must(t.world.set_drag(t.cubes[0], 1, 1)); }},
+      {"filter",
+       [](Towers& t) {
+         must(t.world.set_filter(t.cubes[0], {2, 3, 0}));
+       }},
+      {"filter of the floor",
+       [](Towers& t) {
+         must(t.world.set_filter(t.floors[0], {1, 0, 0}));
+       }},
+      {"collide", [](Towers& t) { must(t.world.set_collide(t.floors[0], t.cubes[0], false)); }},
+      {"force",
+       [](Towers& t) {
+         (void)must(t.world.add_force(t.cubes[2], Wrench{{0, 1, 0}, {}}));
+       }},
+      {"callback",
+       [](Towers& t) { (void)must(t.world.add_force(t.cubes[2], [](const World&, BodyId) {
+                         return Wrench{{0, 1, 0}, {}};
+                       })); }},
+      {"gravity",
+       [](Towers& t) {
+         must(t.world.set_gravity({0, -9, 0}));
+       },
+       6},
+      {"new joint",
+       [](Towers& t) {
+         (void)must(t.world.create_joint(pin(t.world.ground(), {0, 3, 0}, t.cubes[2], {0, 0.5, 0})));
+       }},
+      {"new spring",
+       [](Towers& t) {
+         SpringDef def;
+         def.a = t.world.ground();
+         def.b = t.cubes[2];
+         def.stiffness = 1;
+         (void)must(t.world.create_spring(def));
+       }},
+      {"no joint", [](Towers& t) { must(t.world.destroy(t.joint)); }},
+      {"motor",
+       [](Towers& t) {
+         must(t.world.set_motor(t.joint, {1, 10}));
+       }},
+      {"spring of a joint",
+       [](Towers& t) {
+         must(t.world.set_spring(t.joint, AngularSpring{1, 0, {}}));
+       }},
+      {"may not sleep", [](Towers& t) { must(t.world.set_can_sleep(t.cubes[0], false)); }},
+      {"the floor moves",
+       [](Towers& t) {
+         must(t.world.set_pose(t.floors[0], {{0, -0.6, 0}, {}}));
+       }},
+      {"the floor goes", [](Towers& t) { must(t.world.destroy(t.floors[0])); }},
+      {"the lowest cube goes", [](Towers& t) { must(t.world.destroy(t.cubes[0])); }, 2},
+      {"a body comes into touch",
+       [](Towers& t) {
+         (void)must(t.world.create_body(cube({0, 3.499, 0})));
+       }},
+      {"a fixed body does",
+       [](Towers& t) {
+         (void)must(t.world.create_body(fixed_box({0, 3.49, 0}, {0.5, 0.5, 0.5})));
+       }},
+      {"a fixed body is put there",
+       [](Towers& t) {
+         must(t.world.set_pose(t.floors[1], {{2.45, 0.5, 0}, {}}));
+       },
+       6},
+      // what wakes nobody
+      {"a body comes elsewhere",
+       [](Towers& t) {
+         (void)must(t.world.create_body(cube({30, 3, 0})));
+       },
+       0},
+      {"a fixed body does",
+       [](Towers& t) {
+         (void)must(t.world.create_body(fixed_box({30, 3, 0}, {0.5, 0.5, 0.5})));
+       },
+       0},
+      {"boxes that overlap alone",
+       [](Towers& t) {
+         (void)must(t.world.create_body(ball({0.9, 3.4, 0.9}, 0.5)));
+       },
+       0},
+      {"a body far away may not sleep",
+       [](Towers& t) {
+         BodyDef def = ball({50, 0, 0});
+         def.can_sleep = false;
+         (void)must(t.world.create_body(def));
+       },
+       0},
+  };
+  for (const Way& way : ways) {
+    INFO(way.name);
+    Towers t;
+    t.fall_asleep();
+    way.act(t);
+    const StepReport& report = t.stepper.step(t.world, frame);
+    REQUIRE(report);
+    CHECK(report.woke == std::uint32_t(way.woke));
+    CHECK(report.asleep == (t.world.valid(t.cubes[0]) ? 6 : 5) - std::uint32_t(way.woke));
+    CHECK(report.islands_asleep == 2 - (way.woke + 1) / 3);
+  }
+}
+
+TEST_CASE("sleep: a body that the host has woken says so before the step") {
+  Towers t;
+  t.fall_asleep();
+  must(t.world.set_velocity(t.cubes[0], {1, 0, 0}));
+  CHECK(!t.asleep(0));
+  run(t.world, t.stepper, 1);
+  CHECK(!t.asleep(2));
+  CHECK(t.asleep(3));
+}
+
+TEST_CASE("sleep: a hit wakes, a miss does not") {
+  for (const double height : {2.5, 4.2}) {
+    Towers t;
+    t.fall_asleep();
+    BodyDef shot = ball({-8, height, 0}, 0.2);
+    shot.velocity = {30, 1, 0};
+    (void)must(t.world.create_body(shot));
+    std::uint32_t woke = 0;
+    for (int i = 0; i < 18; i++) woke += t.stepper.step(t.world, frame).woke;
+    CHECK(woke == (height < 3 ? 3 : 0));
+    CHECK(t.asleep(3));
+  }
+}
+
+TEST_CASE("sleep: kinematic bodies carry islands, and sleep only where they stand still") {
+  World world;
+  BodyDef platform = fixed_box({0, -0.5, 0}, {2, 0.5, 2});
+  platform.kind = BodyKind::kinematic;
+  const BodyId floor = must(world.create_body(platform)), box = must(world.create_body(cube({0, 0.5, 0})));
+  Stepper stepper(sleepy());
+  must(world.set_velocity(floor, {0, 0.001, 0}));
+  run(world, stepper, 120);
+  CHECK(!must(world.is_asleep(box)));
+  must(world.set_velocity(floor, {}));
+  run(world, stepper, 120);
+  CHECK(must(world.is_asleep(box)));
+  CHECK(must(world.is_asleep(floor)));
+  must(world.set_velocity(floor, {0.5, 0, 0}));
+  run(world, stepper, 60);
+  CHECK(must(world.pose(box)).position.x == doctest::Approx(0.5).epsilon(0.05));
+
+  must(world.set_velocity(floor, {}));
+  run(world, stepper, 120);
+  CHECK(must(world.is_asleep(box)));
+  BodyDef pusher = fixed_box({-1.6, 0.5, 0}, {0.5, 0.4, 0.4});
+  pusher.kind = BodyKind::kinematic;
+  pusher.velocity = {0.5, 0, 0};
+  (void)must(world.create_body(pusher));
+  const double x = must(world.pose(box)).position.x;
+  run(world, stepper, 100);
+  CHECK(must(world.is_asleep(box)));  // it is not there yet
+  run(world, stepper, 100);
+  CHECK(must(world.pose(box)).position.x > x + 0.2);
+  CHECK(!must(world.is_asleep(box)));
+}
+
+TEST_CASE("sleep: what is driven, or may not sleep, keeps its whole island awake") {
+  const std::function<void(Towers&)> ways[] = {
+      [](Towers& t) { must(t.world.set_can_sleep(t.cubes[2], false)); },
+      [](Towers& t) {
+        must(t.world.set_motor(t.joint, {1e-6, 1}));
+      },
+      [](Towers& t) { (void)must(t.world.add_force(t.cubes[2], [](const World&, BodyId) { return Wrench{}; })); },
+  };
+  for (const auto& act : ways) {
+    Towers t;
+    act(t);
+    run(t.world, t.stepper, 240);
+    for (int i = 0; i < 3; i++) CHECK(!t.asleep(i));
+    for (int i = 3; i < 6; i++) CHECK(t.asleep(i));
+  }
+}
+
+TEST_CASE("sleep: no island sleeps by halves, in a pile that comes to rest") {
+  std::uint32_t most = 0, woke = 0;
+  for (const auto& [scene, count] : {std::pair("hulls", 30), std::pair("dominoes", 20), std::pair("ragdolls", 3)}) {
+    INFO(scene);
+    SceneWorld s = scene_world(scene, count);
+    StepSettings settings = sleepy();
+    settings.sleep_time = 0.1;
+    settings.sleep_speed = 0.05;
+    settings.sleep_spin = 0.2;
+    Stepper stepper(settings);
+    for (int i = 0; i < 300; i++) {
+      const StepReport& report = stepper.step(s.world, frame);
+      REQUIRE(report);
+      most = std::max(most, report.asleep);
+      woke += report.woke;
+      const auto same = [&](BodyId a, BodyId b) {
+        if (must(s.world.kind(a)) == BodyKind::fixed || must(s.world.kind(b)) == BodyKind::fixed) return true;
+        return must(s.world.is_asleep(a)) == must(s.world.is_asleep(b));
+      };
+      for (const Contact& c : s.world.contacts()) CHECK(same(c.a, c.b));
+      for (const JointId joint : s.world.joints()) CHECK(same(must(s.world.joint(joint)).a, must(s.world.joint(joint)).b));
+    }
+  }
+  CHECK(most > 10);
+  CHECK(woke > 10);
+}
+
+TEST_CASE("sleep: equal hashes in lanes, threads, on GL and in all mixes") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    INFO((precision == Precision::f32 ? "float" : "double"));
+    std::uint32_t fell = 0, woke = 0;
+    const auto hashes_of = [&](const StepSettings& given, int steps) {
+      Towers t(2, precision);
+      (void)add_chain(t.world, {20, 5, 0}, 3, false, {});
+      BodyDef shot = ball({-7, 2.5, 0}, 0.2);
+      shot.velocity = {8, 1, 0};
+      (void)must(t.world.create_body(shot));
+      StepSettings settings = sleepy(given);
+      settings.sleep_time = 0.15;
+      Stepper stepper(settings);
+      std::vector<std::uint64_t> all;
+      fell = woke = 0;
+      for (int i = 0; i < steps; i++) {
+        const StepReport& report = stepper.step(t.world, frame);
+        REQUIRE(report);
+        fell += report.fell_asleep;
+        woke += report.woke;
+        all.push_back(t.world.hash());
+      }
+      return all;
+    };
+    check_same_bits(hashes_of, 90, 70);
+    CHECK(fell > 0);
+    CHECK(woke > 0);
+  }
+}
+
+TEST_CASE("sleep: a snapshot brings back who sleeps, and goes on alike") {
+  const auto shoot = [](World& world) {
+    BodyDef shot = ball({-7, 2.5, 0}, 0.2);
+    shot.velocity = {12, 2, 0};
+    shot.can_sleep = false;
+    return must(world.create_body(shot));
+  };
+  Towers a, b;
+  (void)shoot(a.world);
+  (void)shoot(b.world);
+  StepSettings settings = sleepy();
+  settings.sleep_time = 0.2;
+  must(a.stepper.configure(settings));
+  must(b.stepper.configure(settings));
+  for (const int steps : {5, 20, 40, 80}) {
+    run(a.world, a.stepper, steps);
+    const std::vector<std::byte> now = a.world.snapshot();
+    must(b.world.restore(now));
+    CHECK(b.world.hash() == a.world.hash());
+    Stepper fresh(settings);
+    World* world = &b.world;
+    for (int i = 0; i < 40; i++) {
+      run(*world, fresh, 1);
+      run(a.world, a.stepper, 1);
+      CHECK(world->hash() == a.world.hash());
+    }
+    must(a.world.restore(now));
+    run(a.world, a.stepper, 40);
+    CHECK(world->hash() == a.world.hash());
+    CHECK(must(a.world.is_asleep(a.cubes[4])) == must(b.world.is_asleep(b.cubes[4])));
+  }
+  // the host's change is in it, too
+  must(a.world.set_pose(a.floors[1], {{10, -0.6, 0}, {}}));
+  must(b.world.restore(a.world.snapshot()));
+  CHECK(b.world.hash() == a.world.hash());
+  Stepper fresh(settings);
+  CHECK(fresh.step(b.world, frame).woke == a.stepper.step(a.world, frame).woke);
+  CHECK(b.world.hash() == a.world.hash());
+}
+
+TEST_CASE("sleep: the order of ids does not change when what sleeps") {
+  const auto towers = [](bool turned) {
+    World world;
+    std::vector<std::vector<BodyId>> found(3);
+    for (int i = 0; i < 3; i++) {
+      const int k = turned ? 2 - i : i;
+      (void)must(world.create_body(fixed_box({10.0 * k, -0.5, 0}, {2, 0.5, 2})));
+      for (int j = 0; j <= k; j++) found[std::size_t(k)].push_back(must(world.create_body(cube({10.0 * k, 0.5 + 1.001 * j, 0}))));
+    }
+    Stepper stepper(sleepy());
+    std::vector<int> when(3, 0);
+    for (int step = 1; step < 200; step++) {
+      run(world, stepper, 1);
+      for (std::size_t k = 0; k < 3; k++)
+        if (when[k] == 0 && must(world.is_asleep(found[k][0]))) when[k] = step;
+    }
+    return when;
+  };
+  const std::vector<int> one = towers(false);
+  CHECK(one[2] > 0);
+  CHECK(one == towers(true));
+}
+
+TEST_CASE("sleep: what a hit wakes goes on as what never slept") {
+  const auto hit = [](bool sleep) {
+    Towers t(1);
+    StepSettings settings = t.stepper.settings();
+    settings.sleep = sleep;
+    must(t.stepper.configure(settings));
+    run(t.world, t.stepper, 180);
+    CHECK(t.asleep(0) == sleep);
+    BodyDef shot = ball({-3, 1.6, 0.1}, 0.2);
+    shot.velocity = {10, 0, 0};
+    shot.mass = 400;
+    t.cubes.push_back(must(t.world.create_body(shot)));
+    run(t.world, t.stepper, 30);
+    return states(t.world, t.cubes);
+  };
+  const std::vector<BodyState> slept = hit(true), never = hit(false);
+  CHECK(length(never[2].pose.position - Vec3{0, 2.5, 0}) > 0.1);  // it was one
+  for (std::size_t i = 0; i < slept.size(); i++) {
+    INFO(i);
+    CHECK(length(slept[i].pose.position - never[i].pose.position) < 5e-3);
+    CHECK(length(slept[i].velocity - never[i].velocity) < 5e-2);
+  }
+}
+
+TEST_CASE("sleep: waking keeps the tower where it stood") {
+  Towers t;
+  t.fall_asleep();
+  const std::vector<BodyState> before = states(t.world, t.cubes);
+  must(t.world.wake(t.cubes[0]));
+  for (int i = 0; i < 60; i++) {
+    run(t.world, t.stepper, 1);
+    const std::vector<BodyState> now = states(t.world, t.cubes);
+    for (std::size_t k = 0; k < now.size(); k++) CHECK(length(now[k].pose.position - before[k].pose.position) < 1e-4);
+  }
+  CHECK(t.all_asleep());
+}
+
+TEST_CASE("sleep: a step that fails wakes nobody") {
+  Towers t;
+  t.fall_asleep();
+  (void)must(t.world.create_body(ball({30, 0, 0})));  // a world that sleeps as a whole looks for no pairs
+  must(t.world.wake(t.cubes[0]));
+  StepSettings settings = t.stepper.settings();
+  settings.max_pairs = 1;
+  must(t.stepper.configure(settings));
+  const Fingerprint before = fingerprint(t.world);
+  CHECK(step_status(t.stepper, t.world).error().code == ErrorCode::buffer_full);
+  CHECK(fingerprint(t.world) == before);
+  settings.max_pairs = 1000;
+  must(t.stepper.configure(settings));
+  const StepReport& report = t.stepper.step(t.world, frame);
+  CHECK(report.woke == 3);
+  CHECK(report.asleep == 3);
+}
+
+TEST_CASE("sleep: settings out of range are refused") {
+  Stepper stepper;
+  for (double StepSettings::*const field : {&StepSettings::sleep_speed, &StepSettings::sleep_spin, &StepSettings::sleep_time})
+    for (const double value : {-1.0, std::nan(""), HUGE_VAL}) {
+      StepSettings s;
+      s.*field = value;
+      const Status status = stepper.configure(s);
+      REQUIRE(!status);
+      CHECK(status.error().code == ErrorCode::bad_argument);
+    }
+}
