@@ -127,9 +127,6 @@ class Detector {
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
-  /// The row of one more contact.
-  template <class Scalar>
-  Scalar* append(Scratch<Scalar>& scratch, const ContactKey& key, const std::array<std::uint32_t, 2>& ends);
   /// Takes over contacts of the last step, from the first row to before the last.
   template <class Scalar>
   void keep(const WorldState& state, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found);

@@ -126,16 +126,6 @@ bool Detector::touches(const WorldState& s, double dt, const Options& options, S
 }
 
 template <class Scalar>
-Scalar* Detector::append(Scratch<Scalar>& scratch, const ContactKey& key, const std::array<std::uint32_t, 2>& ends) {
-  const std::size_t row = next_.keys.size(), bytes = reals_of(Buffer::contact) * sizeof(Scalar);
-  next_.keys.push_back(key);
-  next_.ends.push_back(ends);
-  next_.features.push_back({});
-  if (scratch.contacts.size() < (row + 1) * bytes) scratch.contacts.resize((row + 1) * bytes);
-  return reinterpret_cast<Scalar*>(scratch.contacts.data() + row * bytes);
-}
-
-template <class Scalar>
 void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found) {
   if (first == last) return;
   const std::size_t row = next_.keys.size(), bytes = reals_of(Buffer::contact) * sizeof(Scalar);
@@ -192,7 +182,12 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     const Manifold<Scalar>& manifold = *touch.manifold;
     const ContactKey key{a, b};
     if (kept < before_rows) keep_until(&key);
-    Scalar* out = append(scratch, key, {row_a, row_b});
+    const std::size_t row = next_.keys.size();
+    next_.keys.push_back(key);
+    next_.ends.push_back({row_a, row_b});
+    next_.features.push_back({});
+    if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
+    Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
     auto& features = next_.features.back();
     if (!parts_.empty())
       for (const std::uint32_t body : touch.rows)
