@@ -226,12 +226,23 @@ struct Stepper::Inside {
   }
 
   void freeze_leaving(WorldState& s) {
+    freeze(s);
+    update_structure(s);
+  }
+  void freeze(WorldState& s) {
     for (const std::uint32_t row : leaving) {
       report.frozen.push_back(s.body_ids.id<BodyId>(s.bodies[row].index));
       s.freeze(row);
     }
     std::ranges::sort(report.frozen);
-    update_structure(s);
+  }
+
+  /// Bodies in flight that their kernel has left where they were: all others have made the step.
+  void freeze_left(WorldState& s) {
+    leaving.clear();
+    for (const std::uint32_t row : schedule.moving_bodies())
+      if (s.tables.get(Buffer::motion, row, 7) == frozen_phase) leaving.push_back(row);
+    freeze(s);
   }
 
   /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
@@ -272,7 +283,11 @@ struct Stepper::Inside {
     lap(Timer::plan);
 
     if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
-    find_outside(s, schedule.moving_bodies(), outside);
+    if (plan->flight) {
+      if (runner.left()) freeze_left(s);
+    } else {
+      find_outside(s, schedule.moving_bodies(), outside);
+    }
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);

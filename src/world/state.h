@@ -67,6 +67,7 @@ void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointD
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 
+inline constexpr double frozen_phase = -2;        // of a frozen body: what snapshots and hashes know it by
 inline constexpr std::uint32_t settling_at = 15;  // of a body, in its row of Buffer::velocity_parts
 
 struct WorldState {
