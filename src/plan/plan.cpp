@@ -125,13 +125,17 @@ class Builder {
 
 void leave_out(const PlanSignature& s, StepPlan& plan) {
   const auto out = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
-  if (!s.bodies) out("integrate", "no body moves");
+  const bool idle = s.sleepers && !s.bodies;
+  constexpr const char* all_sleep = "all bodies sleep";
+  if (s.sleepers && s.bodies) out("sleeping islands", "they are at rest, and nothing has touched them");
+  if (!s.bodies) out("integrate", idle ? all_sleep : "no body moves");
   if (s.bodies && !s.drag) out("drag", "no body has any");
   const bool seed = s.integrator == Integrator::seed;
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
   if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
-  if (!s.joints() && !s.trees) out("joints", "the world has no joints");
+  if (!s.joints() && !s.trees)
+    out("joints", idle ? all_sleep : s.sleepers ? "no body that is awake has any" : "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
@@ -141,7 +145,9 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   for (unsigned why = 0; why < unsigned(SecondOrder::count); why++)
     if (s.second_order >> why & 1) out(reason(SecondOrder(why))[0], reason(SecondOrder(why))[1]);
   if (!s.shapes) out("collision", "no two shapes could ever touch");
-  if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
+  if (s.shapes && idle) out("collision", all_sleep);
+  if (!s.contacts())
+    out("impulses", idle ? all_sleep : s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");

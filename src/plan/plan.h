@@ -19,6 +19,7 @@ struct PlanSignature {
   Integrator integrator = Integrator::verlet;
   std::array<Place, stage_count> places{};  // by Stage
   bool bodies = false;                      // some move
+  bool sleepers = false;                    // some sleep
   bool drag = false;                        // of some body
   bool gyroscopic = false;                  // some body has unequal moments
   bool trees = false;                       // joints that stand in a tree
