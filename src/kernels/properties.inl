@@ -24,6 +24,7 @@ PC_PROPERTY(body, pose, 12, quat, orientation_low, state, 0, "1", "the same of o
 PC_BUFFER(body, velocity_parts, 4, "what belongs to the velocities besides motion")
 PC_PROPERTY(body, velocity_parts, 0, vec3, velocity_half_change, state, 0, "m/s", "velocity in phase with the position = displacement_rate + this")
 PC_PROPERTY(body, velocity_parts, 4, vec3, momentum_half_change, state, 0, "kg m^2/s", "the same of angular_momentum")
+PC_PROPERTY(body, velocity_parts, 7, real, some_left, scratch, 0, "1", "of the ground's row alone: 1 since a body in flight was about to leave the range of numbers (Backend::take_flag)")
 PC_PROPERTY(body, velocity_parts, 8, vec3, velocity_low, state, 0, "m/s", "what rounding dropped from displacement_rate when forces and lasting contacts changed it")
 PC_PROPERTY(body, velocity_parts, 11, real, some_struck, scratch, 0, "1", "of the ground's row alone: 1 since an impact struck some body, until another sweep has looked (Backend::take_flag)")
 PC_PROPERTY(body, velocity_parts, 12, vec3, momentum_low, state, 0, "kg m^2/s", "the same of angular_momentum")

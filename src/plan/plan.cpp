@@ -133,6 +133,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   const bool seed = s.integrator == Integrator::seed;
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
+  if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
   if (!s.joints() && !s.trees)
     out("joints", idle ? all_sleep : s.sleepers ? "no body that is awake has any" : "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
@@ -240,6 +241,16 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   b.own(Stage::impulses, true, k, count, false);
 }
 
+/// All sub-steps of bodies in flight, which no kernel needs to look at in between.
+void fly(Builder& b, const PlanSignature& s) {
+  const std::uint32_t last = s.substeps - 1;
+  b.enter(0);
+  b.own(Stage::integrate, false, 0, s.substeps);
+  const Kernel round = s.drag ? Kernel::fly_round_drag : Kernel::fly_round, any = s.drag ? Kernel::fly_drag : Kernel::fly;
+  b.kernel(s.gyroscopic ? any : round, Phase::first, 0);
+  b.own(Stage::impulses, true, last, s.substeps, true);
+}
+
 /// Where nothing moves the host's own kernels have their sub-steps all the same.
 void own_alone(Builder& b, const PlanSignature& s) {
   for (std::uint32_t k = 0; k < s.substeps; k++)
@@ -288,15 +299,24 @@ std::span<const Access> accesses(const PlanEntry& entry) {
 }
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }
 
+bool in_flight(const PlanSignature& s, OwnKernels::Ordered own) {
+  const bool alone = !s.trees && !s.joints() && !s.contacts();
+  return s.bodies && alone && s.octaves == 1 && s.integrator == Integrator::verlet && std::ranges::all_of(own, [](const auto& k) {
+    return k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate);
+  });
+}
+
 StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   StepPlan plan;
   plan.substeps = s.substeps;
   plan.own.assign(own.begin(), own.end());
+  plan.flight = in_flight(s, own);
   leave_out(s, plan);
   if (!s.bodies && own.empty()) return plan;
   Builder b(s, own, plan);
   if (!s.bodies) own_alone(b, s);
-  for (std::uint8_t octave = 0; s.bodies && octave < octave_count; octave++)
+  if (plan.flight) fly(b, s);
+  for (std::uint8_t octave = 0; s.bodies && !plan.flight && octave < octave_count; octave++)
     if (s.octaves >> octave & 1) substeps(b, s, octave);
   for (unsigned octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> (octave_count + octave) & 1) smooth_substeps(b, s, octave);

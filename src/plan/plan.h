@@ -44,6 +44,9 @@ struct PlanSignature {
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 
+/// Whether each body moves by itself: nothing holds or meets it, and no kernel of the host's own looks at it between sub-steps.
+bool in_flight(const PlanSignature& signature, OwnKernels::Ordered own);
+
 /// `own`: kernels of the host's own, in the order in which those of one moment run.
 StepPlan make_plan(const PlanSignature& signature, OwnKernels::Ordered own = {});
 

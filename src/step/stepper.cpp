@@ -229,12 +229,23 @@ struct Stepper::Inside {
   }
 
   void freeze_leaving(WorldState& s) {
+    freeze(s);
+    update_structure(s);
+  }
+  void freeze(WorldState& s) {
     for (const std::uint32_t row : leaving) {
       report.frozen.push_back(s.body_ids.id<BodyId>(s.bodies[row].index));
       s.freeze(row);
     }
     std::ranges::sort(report.frozen);
-    update_structure(s);
+  }
+
+  /// Bodies in flight that their kernel has left where they were: all others have made the step.
+  void freeze_left(WorldState& s) {
+    leaving.clear();
+    for (const std::uint32_t row : schedule.moving_bodies())
+      if (s.tables.get(Buffer::motion, row, 7) == frozen_phase) leaving.push_back(row);
+    freeze(s);
   }
 
   /// Pairs and contacts. What sleeps and is stirred or touched wakes, and then has its contacts found, too.
@@ -292,7 +303,11 @@ struct Stepper::Inside {
     lap(Timer::plan);
 
     if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
-    find_outside(s, schedule.moving_bodies(), outside);
+    if (plan->flight) {
+      if (runner.left()) freeze_left(s);
+    } else {
+      find_outside(s, schedule.moving_bodies(), outside);
+    }
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);

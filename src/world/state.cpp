@@ -162,10 +162,6 @@ int middle_axis(Vec3 i) {
   return 3 - smallest - largest;
 }
 
-namespace {
-constexpr double frozen_phase = -2;  // of a frozen body: what snapshots and hashes know it by
-}
-
 void WorldState::freeze(std::uint32_t row) {
   BodyRecord& body = bodies[row];
   if (body.frozen) return;

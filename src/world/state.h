@@ -67,6 +67,7 @@ void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointD
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 
+inline constexpr double frozen_phase = -2;        // of a frozen body: what snapshots and hashes know it by
 /// Where its properties stand in a row of Buffer::rest.
 enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, rest_can_sleep, rest_fields };
 
