@@ -66,6 +66,7 @@ class Bullet : public Peer {
   Bullet(const Description& description, const Options& options)
       : bodies_(description.bodies),
         substeps_(std::max(1, options.substeps)),
+        sleeps_(options.sleep),
         configuration_(pools(description.bodies.size())),
         dispatcher_(&configuration_),
         world_(&dispatcher_, &broad_phase_, &solver_, &configuration_) {
@@ -176,7 +177,7 @@ class Bullet : public Peer {
     rigid.setUserIndex(int(index));
     rigid.setLinearVelocity(to_bullet(body.velocity));
     rigid.setAngularVelocity(to_bullet(body.angular_velocity));
-    rigid.setActivationState(DISABLE_DEACTIVATION);
+    if (!sleeps_) rigid.setActivationState(DISABLE_DEACTIVATION);
     world_.addRigidBody(&rigid);
     if (body.pushed()) pushed_.push_back(index);
   }
@@ -222,6 +223,7 @@ class Bullet : public Peer {
 
   std::vector<Body> bodies_;
   int substeps_;
+  bool sleeps_;
   Filters filters_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;

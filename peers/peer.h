@@ -33,9 +33,10 @@ struct Options {
   int iterations = 0;  // of its solver in each sub-step; 0: the engine's own default
   /// Approach speeds below it do not bounce [m/s]; where absent, the engine's default.
   std::optional<double> restitution_threshold;
+  bool sleep = false;  // whether bodies may, by the engine's own thresholds; Bullet alone
 };
 
-/// Body i of a peer is the i-th of those that it was made of. Nothing sleeps.
+/// Body i of a peer is the i-th of those that it was made of. Nothing sleeps unless Options::sleep.
 class Peer {
  public:
   virtual ~Peer() = default;

@@ -499,4 +499,25 @@ TEST_CASE("sleep: settings out of range are refused") {
       REQUIRE(!status);
       CHECK(status.error().code == ErrorCode::bad_argument);
     }
+  StepSettings s;
+  s.sleep_time = 0;
+  CHECK(!stepper.configure(s));
+}
+
+TEST_CASE("sleep: bodies that float at rest sleep, on every backend alike; those that drift do not") {
+  require_gl();
+  for (const Place place : {Place::cpu, Place::gl}) {
+    World world({Precision::f32, {}});
+    const BodyId still = must(world.create_body(ball({}))), drifts = must(world.create_body(ball({5, 0, 0})));
+    must(world.set_velocity(drifts, {0, 0.03, 0}));
+    StepSettings settings = sleepy();
+    settings.set_all(place);
+    Stepper stepper(settings);
+    run(world, stepper, 29);
+    CHECK(!must(world.is_asleep(still)));
+    run(world, stepper, 2);
+    CHECK(must(world.is_asleep(still)));
+    run(world, stepper, 100);
+    CHECK(!must(world.is_asleep(drifts)));
+  }
 }

@@ -37,7 +37,7 @@ struct StepSettings {
   bool sleep = false;
   double sleep_speed = constants::sleep_speed;  // what is faster is not at rest [m/s]
   double sleep_spin = constants::sleep_spin;    // nor what spins faster [rad/s]
-  double sleep_time = constants::sleep_time;    // how long an island is at rest before it sleeps [s]
+  double sleep_time = constants::sleep_time;    // how long an island is at rest before it sleeps, above 0 [s]
 
   double push_speed = 3;               // at which an overlap is undone, at most [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off

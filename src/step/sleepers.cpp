@@ -10,11 +10,11 @@ namespace {
 /// What tells whether a body is slow, straight from the tables' rows.
 template <class Scalar> class Slowness {
  public:
-  Slowness(const WorldState& state, const AlignedBytes& before, double dt, const StepSettings& settings)
+  Slowness(const WorldState& state, const AlignedBytes* before, double dt, const StepSettings& settings)
       : state_(state),
         motion_(state.tables.data<Scalar>(Buffer::motion)),
         pose_(state.tables.data<Scalar>(Buffer::pose)),
-        before_(reinterpret_cast<const Scalar*>(before.data())),
+        before_(before ? reinterpret_cast<const Scalar*>(before->data()) : nullptr),
         inverse_(state.tables.data<Scalar>(Buffer::mass) + 4),
         speed_(settings.sleep_speed),
         spin_(settings.sleep_spin),
@@ -24,7 +24,7 @@ template <class Scalar> class Slowness {
     const Scalar* motion = motion_ + row * reals_of(Buffer::motion);
     const Vec3 u = at(motion), l = at(motion + 4);
     if (!state_.responds(row)) return u == Vec3{} && l == Vec3{};  // what carries others moves them however slow it is
-    return dot(u, u) <= speed_ * speed_ && went_little(row) && spins_little(row, l);
+    return dot(u, u) <= speed_ * speed_ && (!before_ || went_little(row)) && spins_little(row, l);
   }
 
  private:
@@ -54,7 +54,7 @@ template <class Scalar> class Slowness {
 
 /// Counts the time of each body that moved; whether some came to be quiet for `settings.sleep_time`.
 template <class Scalar>
-bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes& before, double dt,
+bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
                 const StepSettings& settings) {
   const Slowness<Scalar> slowness(state, before, dt, settings);
   const Scalar enough = Scalar(settings.sleep_time);
@@ -120,13 +120,13 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
                       const StepSettings& settings, bool changed, StepReport& report) {
   const bool single = state.tables.precision() == Precision::f32;
   const double sleep_time = single ? double(float(settings.sleep_time)) : settings.sleep_time;  // as the table holds it
-  if (before) {
-    const bool some =
-        single ? count_time<float>(state, moved, *before, dt, settings) : count_time<double>(state, moved, *before, dt, settings);
+  const bool some =
+      single ? count_time<float>(state, moved, before, dt, settings) : count_time<double>(state, moved, before, dt, settings);
+  if (!moved.empty()) {
     state.tables.touch(Buffer::rest);
     state.rests = true;
-    if (some || changed) report.fell_asleep = choose(state, moved, sleep_time);
   }
+  if (some || changed) report.fell_asleep = choose(state, moved, sleep_time);
   if (state.stirred > 0) state.calm();
   report.asleep = state.sleepers;
   report.islands_asleep = count_islands(state);

@@ -53,7 +53,8 @@ class Sleepers {
   /// With the contacts of a step: wakes the islands of these bodies.
   std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
   /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep. `before`: the poses that
-  /// the step began with, null where nothing moved. `changed`: islands are others than after the last step. Reports who sleeps.
+  /// the step began with; null where velocities tell enough, of bodies in flight. `changed`: islands are others than after the last
+  /// step. Reports who sleeps.
   void follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
               const StepSettings& settings, bool changed, StepReport& report);
 

@@ -187,7 +187,8 @@ struct Stepper::Inside {
 
   /// The step was made: what is at rest may fall asleep.
   void let_sleep(WorldState& s, double dt) {
-    sleepers.follow(s, schedule.moving_bodies(), runner.before(Buffer::pose), dt, settings, regrouped, report);
+    const AlignedBytes* before = plan->flight ? nullptr : runner.before(Buffer::pose);  // in flight some places keep none
+    sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, regrouped, report);
     if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
     update_structure(s);
     PlanSignature nothing = signature(s, schedule);
