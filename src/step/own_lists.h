@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plan/own_kernels.h"
-#include "step/neighbours.h"
+#include "collision/neighbours.h"
 #include "world/state.h"
 
 namespace pcphys {
