@@ -36,7 +36,8 @@ World crowd(int count, Precision precision) {
 }
 void add_kernels(Stepper& stepper, World& world, double cutoff) {
   must(stepper.add_kernel(world, {.text = count_near::text(), .stage = Stage::impulses, .after = true, .cutoff = cutoff}));
-  must(stepper.add_kernel(world, {.text = spring_apart::text(), .parameters = {{"stiffness", 30.0}, {"reach", 0.8}}, .cutoff = 0.8}));
+  must(stepper.add_kernel(world,
+                          {.text = spring_apart::text(), .parameters = {{"stiffness", 30.0}, {"reach", 0.8}}, .cutoff = 0.8}));
 }
 void check_counts(const World& world, double cutoff) {
   const auto near = must(world.property<std::uint32_t>("near"));
@@ -89,7 +90,8 @@ TEST_CASE("a body that is thrown further than lists were made for: the step is m
   for (const double x : {0.0, 0.01, 3.0, 5.0, 8.0}) (void)must(world.create_body(ball({x, 0, 0}, 0.001)));
   Stepper stepper;
   must(stepper.add_kernel(world, {.text = count_near::text(), .stage = Stage::impulses, .after = true, .cutoff = 0.8}));
-  must(stepper.add_kernel(world, {.text = spring_apart::text(), .parameters = {{"stiffness", 2e5}, {"reach", 0.8}}, .cutoff = 0.8}));
+  must(stepper.add_kernel(world,
+                          {.text = spring_apart::text(), .parameters = {{"stiffness", 2e5}, {"reach", 0.8}}, .cutoff = 0.8}));
   for (int i = 0; i < 3; i++) {
     run(world, stepper, 1);
     check_counts(world, 0.8);

@@ -22,15 +22,15 @@ PCPHYS_KERNEL(totals,
                 high = position;
                 bodies = 1u;
               })
-PCPHYS_KERNEL(spread, (PC_IN(Real) x, PC_IN(int) n, PC_SUM(Real) sum, PC_MIN(Real) least, PC_MAX(int) most, PC_SUM(double) fine), {
-  sum = x;
-  least = x;
-  most = n;
-  fine = double(n);
-})
-PCPHYS_KERNEL(brake, (PC_INOUT(Vec3) displacement_rate, PC_IN(Real) kinetic, PC_PARAM(Real) limit), {
-  displacement_rate = pc_scale(displacement_rate, kinetic > limit ? PC_REAL(0.5) : PC_REAL(1.0));
-})
+PCPHYS_KERNEL(spread, (PC_IN(Real) x, PC_IN(int) n, PC_SUM(Real) sum, PC_MIN(Real) least, PC_MAX(int) most, PC_SUM(double) fine),
+              {
+                sum = x;
+                least = x;
+                most = n;
+                fine = double(n);
+              })
+PCPHYS_KERNEL(brake, (PC_INOUT(Vec3) displacement_rate, PC_IN(Real) kinetic, PC_PARAM(Real) limit),
+              { displacement_rate = pc_scale(displacement_rate, kinetic > limit ? PC_REAL(0.5) : PC_REAL(1.0)); })
 
 TableId add_totals(World& world) {
   const TableId table = must(world.add_table("totals", 1));

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "plan/own_kernels.h"
 #include "collision/neighbours.h"
+#include "plan/own_kernels.h"
 #include "world/state.h"
 
 namespace pcphys {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plan/island_class.h"
+#include "step/own_work.h"
 
 namespace pcphys {
 namespace {
@@ -327,6 +328,7 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   if (gl_ && entry.place == Place::cpu && !runs[0].ranges.empty())
     for (const Access& a : accesses(entry))
       if (a.write && of_table(a.buffer)) state.tables.touch(a.buffer);
+  if (watched_ && entry.again == 0) return run_watched(entry.place, runs, state);
   if (entry.again == 0) return backend.run(runs);
   if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
   for (std::uint32_t i = 0; i < entry.again; i++) {
@@ -334,6 +336,21 @@ Status Runner::kernels(const Call& call, WorldState& state) {
     if (!struck) return struck.error();
     if (!*struck) break;
     if (Status ok = backend.run(runs); !ok) return ok;
+  }
+  return {};
+}
+
+Status Runner::run_watched(Place place, std::span<const KernelRun> runs, WorldState& state) {
+  Backend& backend = *at(place).backend;
+  for (const KernelRun& run : runs) {
+    if (Status ok = backend.run(std::span(&run, 1)); !ok) return ok;
+    if (!run.own) continue;
+    for (const Access& a : run.own->accesses) {
+      if (place == Place::cpu || !of_table(a.buffer)) continue;
+      keep(state, a.buffer);
+      if (Status ok = backend.download(a.buffer); !ok) return ok;
+    }
+    if (Status ok = check_written(state, *run.own); !ok && reads_finite(state, *run.own)) return ok;
   }
   return {};
 }

@@ -61,6 +61,9 @@ struct Stepper::Inside {
   StepInfos infos;
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
+  bool watched = false;                         // of this step: kernels of the host's own, one by one
+  bool ran = false;                             // as far as its plan
+  Status written;                               // whether what the host's own kernels left is finite
   int tries = 0;                                // of this step
   Vec3 sound_gravity;                           // the last that was looked at
   std::vector<Wrench> called;                   // what the callbacks answered in this step
@@ -188,10 +191,14 @@ struct Stepper::Inside {
     detector.forget_strays();
     schedule.own.near.forget_strays();
     tries = 0;
-    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed) {
-      if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
+    watched = false;
+    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed || !written) {
+      if (!ok && (ran || ok.error().code != ErrorCode::not_finite)) return ok;
       if (ok) (void)undo(s, {});
       if (strayed) continue;
+      // the step anew, to see which kernel of the host's own it came from, if one it was
+      if (ok && own.hosts() && !std::exchange(watched, true)) continue;
+      if (!written) return written;
       // others may have met it: those that leave the range by themselves are to blame, where there are any
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
@@ -239,7 +246,8 @@ struct Stepper::Inside {
   Status attempt(WorldState& s, double dt) {
     Status ok;
     outside.clear();
-    strayed = false;
+    strayed = ran = false;
+    written = {};
     if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
     lap(Timer::broad);
     add_called(s);
@@ -273,8 +281,12 @@ struct Stepper::Inside {
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
+    ran = true;
+    runner.watch(watched);
     if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
     find_outside(s, schedule.moving_bodies(), outside);
+    if (own.hosts()) written = own.check_written(s);
+    if (!written) return {};
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);
