@@ -10,8 +10,8 @@ namespace {
 
 PCPHYS_KERNEL(good, (PC_INOUT(Vec3) force),
               { force = pc_madd(force, Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)), PC_REAL(0.5)); })
-PCPHYS_KERNEL(quotient, (PC_IN(Vec3) position, PC_INOUT(Vec3) force, PC_PARAM(Real) at), {
-  precise Real d = position.x - at;
+PCPHYS_KERNEL(quotient, (PC_IN(Vec3) home, PC_INOUT(Vec3) force, PC_PARAM(Real) at), {
+  precise Real d = home.x - at;
   force.y = force.y + pc_div(d, d);
 })
 PCPHYS_KERNEL(root, (PC_OUT(Real) fuel, PC_PARAM(Real) of), { fuel = pc_sqrt(of); })
@@ -51,7 +51,8 @@ void check_named(Stepper& stepper, World& world, const std::string& words) {
 
 World three(Precision precision) {
   World world(WorldDef{precision, {}});
-  for (int i = 0; i < 3; i++) (void)must(world.create_body(ball({3.0 * i, 5, 0})));
+  const auto home = must(world.add_property<Vec3>("home", {}, "m", body_table, Role::input));
+  for (int i = 0; i < 3; i++) must(world.set(home, must(world.create_body(ball({3.0 * i, 5, 0}))), Vec3{3.0 * i, 5, 0}));
   return world;
 }
 StepSettings at(Place place) {
@@ -67,21 +68,20 @@ void each_place(const std::function<void(Place, Precision)>& check) {
 
 }  // namespace
 
-TEST_CASE("a force that is no number names kernel and body") {
+TEST_CASE("a force that is no number names kernel and body, in sub-steps and where one kernel makes all of them") {
   each_place([](Place place, Precision precision) {
-    World world = three(precision);
-    Stepper stepper(at(place));
-    must(stepper.add_kernel(world, {.text = good::text()}));
-    must(stepper.add_kernel(world, {.text = quotient::text(), .parameters = {{"at", 1.0}}}));
-    run(world, stepper, 1);
-    Stepper still(at(place));
-    World level = three(precision);
-    must(still.add_kernel(level, {.text = quotient::text(), .parameters = {{"at", 3.0}}}));
-    const std::string words = "The kernel \"quotient\" gave body " + std::to_string(level.bodies()[1].index) + " a \"force\"";
-    check_named(still, level, words);
-    check_named(still, level, words);
-    must(still.set_parameter("quotient", {"at", 2.0}));
-    run(level, still, 2);
+    for (const bool once : {false, true}) {
+      World world = three(precision);
+      Stepper stepper(at(place));
+      must(stepper.add_kernel(world, {.text = good::text(), .once_a_step = once}));
+      must(stepper.add_kernel(world, {.text = quotient::text(), .once_a_step = once, .parameters = {{"at", 1.0}}}));
+      must(stepper.set_parameter("quotient", {"at", 3.0}));
+      const std::string words = "The kernel \"quotient\" gave body " + std::to_string(world.bodies()[1].index) + " a \"force\"";
+      check_named(stepper, world, words);
+      check_named(stepper, world, words);
+      must(stepper.set_parameter("quotient", {"at", 2.0}));
+      run(world, stepper, 2);
+    }
   });
 }
 
@@ -121,14 +121,16 @@ TEST_CASE("and pairs in one place, and totals") {
 
 TEST_CASE("a finite push beyond the range of numbers freezes its body") {
   each_place([](Place place, Precision precision) {
-    World world = three(precision);
-    const auto shoved = must(world.add_property<Real>("shoved", 0, "1", body_table, Role::input));
-    const BodyId body = world.bodies()[1];
-    must(world.set(shoved, body, Real(1)));
-    Stepper stepper(at(place));
-    must(stepper.add_kernel(world, {.text = shove::text(), .parameters = {{"size", 1e15}}}));
-    const StepReport& report = stepper.step(world, frame);
-    REQUIRE_MESSAGE(bool(report), report.error.message);
-    CHECK(report.frozen == std::vector<BodyId>{body});
+    for (const bool once : {false, true}) {
+      World world = three(precision);
+      const auto shoved = must(world.add_property<Real>("shoved", 0, "1", body_table, Role::input));
+      const BodyId body = world.bodies()[1];
+      must(world.set(shoved, body, Real(1)));
+      Stepper stepper(at(place));
+      must(stepper.add_kernel(world, {.text = shove::text(), .once_a_step = once, .parameters = {{"size", 1e15}}}));
+      const StepReport& report = stepper.step(world, frame);
+      REQUIRE_MESSAGE(bool(report), report.error.message);
+      CHECK(report.frozen == std::vector<BodyId>{body});
+    }
   });
 }

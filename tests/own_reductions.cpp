@@ -129,3 +129,19 @@ TEST_CASE("any number of rows, none among them") {
       CHECK_MESSAGE(hashes[0] == hashes[1], rows, " rows");
     }
 }
+
+TEST_CASE("what sleeps counts still") {
+  World world(WorldDef{Precision::f32, {0, -9.81, 0}});
+  add_totals(world);
+  (void)must(world.create_body(fixed_box({0, -0.5, 0}, {5, 0.5, 5})));
+  (void)must(world.create_body(ball({0, 0.5, 0})));
+  (void)must(world.create_body(ball({2, 0.5, 0})));
+  (void)must(world.create_body(ball({4, 40, 0})));
+  StepSettings settings;
+  settings.sleep = true;
+  Stepper stepper(settings);
+  must(stepper.add_kernel(world, {.text = totals::text()}));
+  run(world, stepper, 120);
+  CHECK(stepper.step(world, frame).asleep == 2);
+  CHECK(total<std::uint32_t>(world, "bodies") == 3);
+}
