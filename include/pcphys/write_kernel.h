@@ -13,6 +13,15 @@
 // text come a C++ function and a GLSL program; in both what is PC_IN or PC_PARAM is const. Of the library's properties a kernel may
 // write force, torque, displacement_rate and angular_momentum.
 //
+// Of a body and each other one, all or those within KernelDef::cutoff: PC_SELF and PC_OTHER read (the other's names end in _other),
+// PC_ADD and PC_SUM name the properties that take the sum of what the text gives for each pair, added or in place of what was there.
+//
+//   PCPHYS_PAIR_KERNEL(push_apart, (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force), {
+//     force = pc_sub(position, position_other);
+//   })
+//
+// Of all rows to one value: PC_SUM, PC_MIN, PC_MAX in a PCPHYS_KERNEL name properties of a table of one row. docs/own-kernels.md
+//
 // Not part of pcphys.h: kernels' text needs macros of short names (precise, PC_REAL, ...).
 #pragma once
 #include <cstring>

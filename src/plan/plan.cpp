@@ -311,8 +311,9 @@ Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : sche
 bool in_flight(const PlanSignature& s, OwnKernels::Ordered own) {
   const bool alone = !s.trees && !s.joints() && !s.contacts();
   return s.bodies && alone && s.octaves == 1 && s.integrator == Integrator::verlet && std::ranges::all_of(own, [](const auto& k) {
-    return k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate);
-  });
+           return k->form == OwnKernel::Form::reduction ||
+                  (k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate));
+         });
 }
 
 StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {

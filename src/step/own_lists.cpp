@@ -11,7 +11,7 @@ template <class Record> void sort_by_id(std::span<std::uint32_t> rows, const std
 
 }  // namespace
 
-void OwnLists::order(const WorldState& s, std::span<const std::uint32_t> rows_that_move, const OwnKernels& kernels) {
+void OwnLists::order(const WorldState& s, const OwnKernels& kernels) {
   const bool wanted = std::ranges::any_of(kernels.ordered(), [](const auto& k) { return k->form != OwnKernel::Form::element; });
   if (known_ || !wanted) return;
   known_ = true;
@@ -22,8 +22,10 @@ void OwnLists::order(const WorldState& s, std::span<const std::uint32_t> rows_th
   for (std::uint32_t row = 1; row < count; row++) ordered[row - 1] = row;
   sort_by_id(ordered, s.bodies);
   for (std::uint32_t place = 0; place + 1 < count; place++) bodies[ordered[place]] = place;
-  moving.assign(rows_that_move.begin(), rows_that_move.end());
-  sort_by_id(std::span(moving), s.bodies);
+  moving.clear();
+  for (const std::uint32_t row : ordered)
+    if (!s.stands(row)) moving.push_back(row);
+  movable = std::uint32_t(moving.size());
   joints.clear();
   for (std::uint32_t row = 1; row < s.joints.size(); row++) joints.push_back(row);
   sort_by_id(std::span(joints), s.joints);

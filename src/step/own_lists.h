@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "collision/neighbours.h"
 #include "plan/own_kernels.h"
-#include "step/neighbours.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -17,13 +17,14 @@ class OwnLists {
     known_ = false;
     near.forget();
   }
-  /// What these kernels need, once for each change. `moving`: rows that move.
-  void order(const WorldState& state, std::span<const std::uint32_t> moving, const OwnKernels& kernels);
+  /// What these kernels need, once for each change.
+  void order(const WorldState& state, const OwnKernels& kernels);
 
   std::span<const std::uint32_t> places() const { return std::span(bodies).first(bodies.size() / 2 + 1); }
 
-  std::vector<std::uint32_t> bodies;  // of each row its place, then the row of each place (row 0 has none)
-  std::vector<std::uint32_t> moving, joints;
+  std::vector<std::uint32_t> bodies;          // of each row its place, then the row of each place (row 0 has none)
+  std::vector<std::uint32_t> moving, joints;  // what sleeps can move, too
+  std::uint32_t movable = 0;                  // how many of `moving`
   std::uint64_t version = 0;
   Neighbours near;
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pcphys/write_kernel.h"
+#include "world/range.h"
 
 namespace pcphys {
 namespace {
@@ -47,6 +48,47 @@ void stop_gathering(WorldState& s) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Of an argument the first row that is not finite; 0: none.
+std::uint32_t bad_row(const WorldState& s, const OwnKernel& k, const OwnArgument& a) {
+  const std::uint32_t rows = a.single ? 2 : s.tables.rows(k.table);
+  const std::uint32_t row = find_not_finite(s.tables, a.buffer, a.offset, a.type, 1, rows);
+  return row < rows ? row : 0;
+}
+std::string object(const WorldState& s, const OwnKernel& k, const OwnArgument& a, std::uint32_t row) {
+  if (a.single) return "the total of all rows";
+  if (k.table == Table::body) return "body " + std::to_string(s.bodies[row].index);
+  if (k.table == Table::joint) return "joint " + std::to_string(s.joints[row].index);
+  for (const OwnTable& t : s.own.tables)
+    if (t.used && t.table == k.table) return "row " + std::to_string(row) + " of \"" + t.name + "\"";
+  return "row " + std::to_string(row);
+}
+
+}  // namespace
+
+Status check_written(const WorldState& s, const OwnKernel& k) {
+  for (const OwnArgument& a : k.arguments)
+    if (const std::uint32_t row = a.writes() ? bad_row(s, k, a) : 0)
+      return Error{ErrorCode::not_finite,
+                   "The kernel \"" + k.name + "\" gave " + object(s, k, a, row) + " a \"" + a.property +
+                       "\" that is no finite number; look for a division by zero or a root of what is below "
+                       "it. The world is as before the step."};
+  return {};
+}
+
+bool reads_finite(const WorldState& s, const OwnKernel& k) {
+  return std::ranges::none_of(k.arguments,
+                              [&](const OwnArgument& a) { return a.of_property() && !a.writes() && bad_row(s, k, a) != 0; });
+}
+
+Status OwnWork::check_written(const WorldState& s) const {
+  for (const auto& k : ordered())
+    for (const OwnArgument& a : k->arguments)
+      if (a.writes() && is_own(a.buffer) && !of_library(*k) && bad_row(s, *k, a) != 0) return pcphys::check_written(s, *k);
+  return {};
+}
 
 bool OwnWork::hosts() const {
   return std::ranges::any_of(ordered(), [](const auto& k) { return !of_library(*k); });

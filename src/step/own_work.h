@@ -7,6 +7,11 @@
 
 namespace pcphys {
 
+/// Whether what the kernel wrote, as it stands in the host's tables, is finite. Error: not_finite, naming kernel and object.
+Status check_written(const WorldState& state, const OwnKernel& kernel);
+/// Whether what it reads is.
+bool reads_finite(const WorldState& state, const OwnKernel& kernel);
+
 class OwnWork {
  public:
   /// Before a step of this world, and before a kernel is added: whether the kernels fit it still. Where forces are made, by this
@@ -24,10 +29,13 @@ class OwnWork {
 
   const OwnKernels& kernels() const { return kernels_; }
   OwnKernels::Ordered ordered() const { return kernels_.ordered(); }
+  /// Whether there are some of the host's, and not of the library alone.
+  bool hosts() const;
+  /// Of properties of the host's own, after a step: as check_written.
+  Status check_written(const WorldState& state) const;
   bool of_another(const WorldState& state) const { return hosts() && serial_ != state.serial; }
 
  private:
-  bool hosts() const;
   bool makes_forces() const;
   Status begin_forces(WorldState& state);
 

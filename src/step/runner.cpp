@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "plan/island_class.h"
+#include "step/own_work.h"
 
 namespace pcphys {
 namespace {
@@ -276,7 +277,7 @@ void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Sche
   const std::size_t first = ranges_.size();
   const OwnKernel& k = *entry.own;
   if (k.form == OwnKernel::Form::reduction)
-    ranges_.push_back(k.table == Table::body    ? Range{0, schedule.moving}
+    ranges_.push_back(k.table == Table::body    ? Range{0, schedule.own.movable}
                       : k.table == Table::joint ? Range{0, state.tables.rows(k.table) - 1}
                                                 : Range{1, state.tables.rows(k.table)});
   else if (k.table == Table::body)
@@ -320,7 +321,7 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState&
   for (const PlanEntry& entry : plan.entries) octave = std::max(octave, octave_of(entry.octave));
   infos_ = phase_count * (1 + octave);
   kept_.clear();
-  if (plan.flight && !gl_) return;  // nothing of it can fail
+  if (plan.flight && !gl_ && plan.own.empty()) return;  // nothing of it can fail
   for (const Buffer buffer : plan.overwritten)
     if (keeps(buffer)) kept_.push_back(buffer);
 }
@@ -340,6 +341,7 @@ Status Runner::kernels(const Call& call, WorldState& state) {
     left_ = *left;
     return ok;
   }
+  if (watched_ && entry.again == 0) return run_watched(entry.place, runs, state);
   if (entry.again == 0) return backend.run(runs);
   if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
   for (std::uint32_t i = 0; i < entry.again; i++) {
@@ -347,6 +349,21 @@ Status Runner::kernels(const Call& call, WorldState& state) {
     if (!struck) return struck.error();
     if (!*struck) break;
     if (Status ok = backend.run(runs); !ok) return ok;
+  }
+  return {};
+}
+
+Status Runner::run_watched(Place place, std::span<const KernelRun> runs, WorldState& state) {
+  Backend& backend = *at(place).backend;
+  for (const KernelRun& run : runs) {
+    if (Status ok = backend.run(std::span(&run, 1)); !ok) return ok;
+    if (!run.own) continue;
+    for (const Access& a : run.own->accesses) {
+      if (place == Place::cpu || !of_table(a.buffer)) continue;
+      keep(state, a.buffer);
+      if (Status ok = backend.download(a.buffer); !ok) return ok;
+    }
+    if (Status ok = check_written(state, *run.own); !ok && reads_finite(state, *run.own)) return ok;
   }
   return {};
 }

@@ -24,6 +24,9 @@ class Runner {
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
   /// Runs the plan that was bound.
   Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
+  /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others is an error
+  /// (check_written).
+  void watch(bool kernels) { watched_ = kernels; }
 
   /// Before a step changes a buffer of a table, so that `undo` can put it back. Contacts are not copied: the detector
   /// has their last list; nor, on the CPU alone, is scratch.
@@ -92,6 +95,7 @@ class Runner {
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
   Status kernels(const Call& call, WorldState& state);
+  Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
   bool keeps(Buffer buffer) const;
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
@@ -108,6 +112,7 @@ class Runner {
   Rollback rollback_;
   bool gl_ = false;    // takes part
   bool left_ = false;  // see `left`
+  bool watched_ = false;
 };
 
 }  // namespace pcphys

@@ -67,6 +67,10 @@ struct Stepper::Inside {
   StepInfos infos;
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
+  bool suspect = false;                         // a kernel of the host's own may have written what is no number
+  bool watched = false;                         // of this step: such kernels one by one
+  bool ran = false;                             // as far as its plan
+  Status written;                               // whether what the host's own kernels left is finite
   int tries = 0;                                // of this step
   Vec3 sound_gravity;                           // the last that was looked at
   CalledForces called;
@@ -171,10 +175,15 @@ struct Stepper::Inside {
     detector.forget_strays();
     schedule.own.near.forget_strays();
     tries = 0;
-    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed) {
-      if (!ok && ok.error().code != ErrorCode::not_finite) return put_rest_back(s, ok);
+    watched = false;
+    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed || suspect || !written) {
+      if (!ok && (ran || ok.error().code != ErrorCode::not_finite)) return put_rest_back(s, ok);
       if (ok) (void)undo(s, {});
       if (strayed) continue;
+      // the step anew, to see which kernel of the host's own it came from, if one it was
+      watched |= suspect;
+      if (suspect) continue;
+      if (!written) return put_rest_back(s, written);
       // others may have met it: those that leave the range by themselves are to blame, where there are any
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
@@ -276,7 +285,8 @@ struct Stepper::Inside {
   Status attempt(WorldState& s, double dt) {
     Detector::Found found;
     outside.clear();
-    strayed = false;
+    strayed = suspect = ran = false;
+    written = {};
     Status ok = detect(s, dt, found);
     if (!ok) return ok;
     regrouped = found.changed || other || contacts_version != s.contacts_version;
@@ -307,12 +317,15 @@ struct Stepper::Inside {
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
+    ran = true;
+    runner.watch(watched);
     if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
-    if (plan->flight) {
-      if (runner.left()) freeze_left(s);
-    } else {
-      find_outside(s, schedule.moving_bodies(), outside);
-    }
+    const bool left = plan->flight && runner.left();
+    if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
+    if (own.hosts()) written = own.check_written(s);
+    suspect = own.hosts() && !watched && (left || !outside.empty() || !written);
+    if (suspect || !written) return {};
+    if (left) freeze_left(s);
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);
@@ -335,7 +348,7 @@ struct Stepper::Inside {
   /// Who comes when in pair kernels and reductions.
   Status order_own(const WorldState& s, double dt) {
     OwnLists& lists = schedule.own;
-    lists.order(s, schedule.rows_that_move(), own.kernels());
+    lists.order(s, own.kernels());
     const double cutoff = own.kernels().cutoff();
     if (cutoff == 0) return {};
     return lists.near.find(s, schedule.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);

@@ -42,7 +42,26 @@ template <class Out> void collect(std::span<const std::uint32_t> bodies, std::ve
     if (out(row)) rows.push_back(row);
 }
 
+/// Without a branch for each number: hardly ever is one found.
+template <class Scalar> bool finite(const std::byte* p, std::uint32_t count) {
+  Scalar none = 0;
+  for (std::uint32_t c = 0; c < count; c++) none += Scalar(0) * reinterpret_cast<const Scalar*>(p)[c];
+  return none == 0;
+}
+
 }  // namespace
+
+std::uint32_t find_not_finite(const Tables& tables, Buffer buffer, std::uint32_t offset, PropertyType type, std::uint32_t begin,
+                              std::uint32_t end) {
+  if (type == PropertyType::int32 || type == PropertyType::uint32) return end;
+  const std::byte* const rows = tables.bytes(buffer).data() + offset;
+  const std::size_t stride = tables.row_bytes(buffer);
+  const bool wide = number_bytes(type, tables.real_bytes()) == 8;
+  const std::uint32_t count = components(type);
+  std::uint32_t row = begin;
+  while (row < end && (wide ? finite<double>(rows + row * stride, count) : finite<float>(rows + row * stride, count))) row++;
+  return row;
+}
 
 void find_outside(const WorldState& state, std::span<const std::uint32_t> bodies, std::vector<std::uint32_t>& outside) {
   const Tables& t = state.tables;

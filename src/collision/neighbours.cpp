@@ -1,4 +1,4 @@
-#include "step/neighbours.h"
+#include "collision/neighbours.h"
 
 #include <algorithm>
 #include <numeric>

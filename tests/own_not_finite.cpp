@@ -1,0 +1,136 @@
+// Pins what happens when a kernel of the host's own writes a number that is none: the step is an error that names the kernel and the
+// object, on the CPU and on the GPU, and the world is as it was; once that is mended, steps go on. A body that leaves the range of
+// numbers by finite forces is frozen and named, as ever.
+#include "pcphys/write_kernel.h"
+#include "support_world.h"
+
+using namespace worldtest;
+
+namespace {
+
+PCPHYS_KERNEL(good, (PC_INOUT(Vec3) force),
+              { force = pc_madd(force, Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)), PC_REAL(0.5)); })
+PCPHYS_KERNEL(quotient, (PC_IN(Vec3) home, PC_INOUT(Vec3) force, PC_PARAM(Real) at), {
+  precise Real d = home.x - at;
+  force.y = force.y + pc_div(d, d);
+})
+PCPHYS_KERNEL(root, (PC_OUT(Real) fuel, PC_PARAM(Real) of), { fuel = pc_sqrt(of); })
+PCPHYS_PAIR_KERNEL(bare_gravity,
+                   (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force, PC_PARAM(Real) softening), {
+                     Vec3 d = pc_sub(position_other, position);
+                     precise Real r2 = pc_dot(d, d) + softening;
+                     force = pc_scale(d, pc_div(PC_REAL(1e-3), r2));
+                   })
+PCPHYS_KERNEL(mean_inverse, (PC_IN(Real) x, PC_SUM(Real) inverse), { inverse = pc_div(PC_REAL(1.0), x); })
+PCPHYS_KERNEL(shove, (PC_IN(Real) shoved, PC_INOUT(Vec3) force, PC_PARAM(Real) size), {
+  precise Real more = size * PC_REAL(1e8);
+  force.x = force.x + shoved * more;
+})
+
+/// All that a host writes and that lasts: what is scratch, or follows from the rest, is made anew by the next step.
+std::vector<double> lasting(const World& world) {
+  std::vector<double> numbers{double(world.hash())};
+  for (const PropertyInfo& info : world.properties()) {
+    if (info.role != Role::state && info.role != Role::input) continue;
+    const PropertyView view = must(world.view(info.name));
+    for (std::size_t row = 0; row < view.count; row++)
+      for (std::uint32_t c = 0; c < view.components; c++) numbers.push_back(view.at(row, c));
+  }
+  return numbers;
+}
+void check_named(Stepper& stepper, World& world, const std::string& words) {
+  const std::vector<double> before = lasting(world);
+  const std::vector<std::byte> snapshot = world.snapshot();
+  const Status made = step_status(stepper, world);
+  REQUIRE(!made);
+  CHECK(made.error().code == ErrorCode::not_finite);
+  CHECK_MESSAGE(made.error().message.find(words) != std::string::npos, made.error().message);
+  CHECK(lasting(world) == before);
+  CHECK(world.snapshot() == snapshot);
+}
+
+World three(Precision precision) {
+  World world(WorldDef{precision, {}});
+  const auto home = must(world.add_property<Vec3>("home", {}, "m", body_table, Role::input));
+  for (int i = 0; i < 3; i++) must(world.set(home, must(world.create_body(ball({3.0 * i, 5, 0}))), Vec3{3.0 * i, 5, 0}));
+  return world;
+}
+StepSettings at(Place place) {
+  StepSettings settings;
+  settings.set_all(place);
+  return settings;
+}
+void each_place(const std::function<void(Place, Precision)>& check) {
+  require_gl();
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    for (const Place place : {Place::cpu, Place::gl}) check(place, precision);
+}
+
+}  // namespace
+
+TEST_CASE("a force that is no number names kernel and body, in sub-steps and where one kernel makes all of them") {
+  each_place([](Place place, Precision precision) {
+    for (const bool once : {false, true}) {
+      World world = three(precision);
+      Stepper stepper(at(place));
+      must(stepper.add_kernel(world, {.text = good::text(), .once_a_step = once}));
+      must(stepper.add_kernel(world, {.text = quotient::text(), .once_a_step = once, .parameters = {{"at", 1.0}}}));
+      must(stepper.set_parameter("quotient", {"at", 3.0}));
+      const std::string words = "The kernel \"quotient\" gave body " + std::to_string(world.bodies()[1].index) + " a \"force\"";
+      check_named(stepper, world, words);
+      check_named(stepper, world, words);
+      must(stepper.set_parameter("quotient", {"at", 2.0}));
+      run(world, stepper, 2);
+    }
+  });
+}
+
+TEST_CASE("so does a property of one's own") {
+  each_place([](Place place, Precision precision) {
+    World world = three(precision);
+    const auto fuel = must(world.add_property<Real>("fuel", 1));
+    Stepper stepper(at(place));
+    must(stepper.add_kernel(world, {.text = root::text(), .parameters = {{"of", -4.0}}}));
+    check_named(stepper, world, "The kernel \"root\" gave body");
+    must(stepper.set_parameter("root", {"of", 4.0}));
+    run(world, stepper, 1);
+    CHECK(double(must(world.get(fuel, world.bodies()[0]))) == 2);
+  });
+}
+
+TEST_CASE("and pairs in one place, and totals") {
+  each_place([](Place place, Precision precision) {
+    World world = three(precision);
+    must(world.set_pose(world.bodies()[2], must(world.pose(world.bodies()[1]))));
+    for (const BodyId id : world.bodies()) must(world.set_filter(id, {.category = 1, .mask = 0}));
+    Stepper stepper(at(place));
+    must(stepper.add_kernel(world, {.text = bare_gravity::text(), .parameters = {{"softening", 0.0}}}));
+    check_named(stepper, world, "The kernel \"bare_gravity\" gave body");
+    must(stepper.set_parameter("bare_gravity", {"softening", 0.1}));
+    run(world, stepper, 1);
+    const TableId table = must(world.add_table("totals", 1));
+    const auto inverse = must(world.add_property<Real>("inverse", 0, "1", table));
+    const auto x = must(world.add_property<Real>("x", 2, "1"));
+    must(stepper.add_kernel(world, {.text = mean_inverse::text()}));
+    run(world, stepper, 1);
+    CHECK(double(must(world.get(inverse, RowOf(1)))) == 1.5);
+    must(world.set(x, world.bodies()[1], Real(0)));
+    check_named(stepper, world, "The kernel \"mean_inverse\" gave the total of all rows a \"inverse\"");
+  });
+}
+
+TEST_CASE("a finite push beyond the range of numbers freezes its body") {
+  each_place([](Place place, Precision precision) {
+    for (const bool once : {false, true}) {
+      World world = three(precision);
+      const auto shoved = must(world.add_property<Real>("shoved", 0, "1", body_table, Role::input));
+      const BodyId body = world.bodies()[1];
+      must(world.set(shoved, body, Real(1)));
+      Stepper stepper(at(place));
+      must(stepper.add_kernel(world, {.text = shove::text(), .once_a_step = once, .parameters = {{"size", 1e15}}}));
+      const StepReport& report = stepper.step(world, frame);
+      REQUIRE_MESSAGE(bool(report), report.error.message);
+      CHECK(report.frozen == std::vector<BodyId>{body});
+    }
+  });
+}
