@@ -59,7 +59,7 @@ class Builder {
     for (std::size_t b = 0; b < buffers_.size(); b++)
       if (of_table(Buffer(b)) &&
           (is_own(Buffer(b)) || holds(Buffer(b), Role::state) || buffers_[b].host_wrote || buffers_[b].own_wrote))
-        bring(Buffer(b), Place::cpu, substep);
+        leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
@@ -70,6 +70,11 @@ class Builder {
   };
   Known& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
   static bool is_rows(Buffer b) { return !of_table(b) && schema(b).reals > 0; }
+
+  /// Whether the device may keep it.
+  bool leave(Buffer b) const {
+    return plan_.flight && signature_.resident && !is_own(b) && !buffers_[std::size_t(b)].current[std::size_t(Place::cpu)];
+  }
 
   void add(PlanEntry entry, std::span<const Access> accesses, Domain domain) {
     const Place place = entry.place;
@@ -131,6 +136,8 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
   if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
+  if (plan.flight && s.resident && s.places[std::size_t(Stage::integrate)] == Place::gl)
+    out("downloads", "what a step leaves on the device comes when the host asks for it");
   if (!s.joints() && !s.trees) out("joints", "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
@@ -296,8 +303,8 @@ Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : sche
 bool in_flight(const PlanSignature& s, OwnKernels::Ordered own) {
   const bool alone = !s.trees && !s.joints() && !s.contacts();
   return s.bodies && alone && s.octaves == 1 && s.integrator == Integrator::verlet && std::ranges::all_of(own, [](const auto& k) {
-    return k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate);
-  });
+           return k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate);
+         });
 }
 
 StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
