@@ -13,7 +13,7 @@ Tables::Tables(Precision precision) : precision_(precision), columns_(table_buff
 }
 
 void Tables::add_listed(Buffer buffer) {
-  Column& column = at(buffer);
+  Column& column = columns_[index(buffer)];
   column.used = true;
   column.table = schema(buffer).table;
   column.row_bytes = schema(buffer).reals * real_bytes();
