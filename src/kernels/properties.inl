@@ -60,6 +60,12 @@ PC_PROPERTY(body, material, 4, real, rolling_friction, input, 0, "m", "lever of 
 PC_PROPERTY(body, material, 5, real, torsional_friction, input, 0, "m", "the same about the normal")
 PC_PROPERTY(body, material, 6, real, restitution_rule, input, 0, "1", "as friction_rule")
 
+PC_BUFFER(body, rest, 1, "who sleeps (docs/sleeping.md); no kernel reads it")
+PC_PROPERTY(body, rest, 0, real, quiet_time, state, 0, "s", "how long it has been slow, up to StepSettings::sleep_time; hashed where some of these three is not 0")
+PC_PROPERTY(body, rest, 1, real, asleep, state, 0, "1", "1 while it sleeps")
+PC_PROPERTY(body, rest, 2, real, stirred, state, 0, "1", "1 where the host has changed it since the last step and something sleeps that this may wake")
+PC_PROPERTY(body, rest, 3, real, can_sleep, input, 1, "1", "0: it never sleeps, nor does its island")
+
 PC_TABLE(joint, "a pin between two bodies, with an angle constraint")
 PC_BUFFER(joint, joint_frame, 6, "what the host gave")
 PC_PROPERTY(joint, joint_frame, 0, vec3, anchor_a, input, 0, "m", "of the pin, in body a")

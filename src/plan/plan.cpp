@@ -38,15 +38,18 @@ class Builder {
   void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count, bool once_a_step) {
     for (const auto& k : own_) {
       if (k->stage != stage || k->after != after || k->once_a_step != once_a_step) continue;
+      if (k->form == OwnKernel::Form::reduction) continue;
       if (once_a_step && substep != (after ? count - 1 : 0)) continue;
       // rows that are no bodies are of no octave
       if (k->table != Table::body && octave_ != std::countr_zero(signature_.octaves)) continue;
-      Place place = signature_.places[std::size_t(stage)];
-      if (k->body.empty()) place = Place::cpu;
-      if (!k->loop) place = Place::gl;
-      add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, k.get(), 0}, k->accesses,
-          Domain::body);
+      add(*k, substep);
     }
+  }
+  /// Those that make one value of all rows, when the step is made.
+  void totals() {
+    enter(0);
+    for (const auto& k : own_)
+      if (k->form == OwnKernel::Form::reduction) add(*k, plan_.entries.empty() ? 0 : plan_.entries.back().substep);
   }
   void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count) {
     own(stage, after, substep, count, true);
@@ -76,6 +79,12 @@ class Builder {
     return plan_.flight && signature_.resident && !is_own(b) && !buffers_[std::size_t(b)].current[std::size_t(Place::cpu)];
   }
 
+  void add(const OwnKernel& k, std::uint32_t substep) {
+    Place place = signature_.places[std::size_t(k.stage)];
+    if (k.body.empty()) place = Place::cpu;
+    if (!k.in_cpp()) place = Place::gl;
+    add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, &k, 0}, k.accesses, Domain::body);
+  }
   void add(PlanEntry entry, std::span<const Access> accesses, Domain domain) {
     const Place place = entry.place;
     for (const Access& a : accesses) {
@@ -130,7 +139,10 @@ class Builder {
 
 void leave_out(const PlanSignature& s, StepPlan& plan) {
   const auto out = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
-  if (!s.bodies) out("integrate", "no body moves");
+  const bool idle = s.sleepers && !s.bodies;
+  constexpr const char* all_sleep = "all bodies sleep";
+  if (s.sleepers && s.bodies) out("sleeping islands", "they are at rest, and nothing has touched them");
+  if (!s.bodies) out("integrate", idle ? all_sleep : "no body moves");
   if (s.bodies && !s.drag) out("drag", "no body has any");
   const bool seed = s.integrator == Integrator::seed;
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
@@ -138,7 +150,8 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
   if (plan.flight && s.resident && s.places[std::size_t(Stage::integrate)] == Place::gl)
     out("downloads", "what a step leaves on the device comes when the host asks for it");
-  if (!s.joints() && !s.trees) out("joints", "the world has no joints");
+  if (!s.joints() && !s.trees)
+    out("joints", idle ? all_sleep : s.sleepers ? "no body that is awake has any" : "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
@@ -148,7 +161,9 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   for (unsigned why = 0; why < unsigned(SecondOrder::count); why++)
     if (s.second_order >> why & 1) out(reason(SecondOrder(why))[0], reason(SecondOrder(why))[1]);
   if (!s.shapes) out("collision", "no two shapes could ever touch");
-  if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
+  if (s.shapes && idle) out("collision", all_sleep);
+  if (!s.contacts())
+    out("impulses", idle ? all_sleep : s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
@@ -321,6 +336,7 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
     if (s.octaves >> octave & 1) substeps(b, s, octave);
   for (unsigned octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> (octave_count + octave) & 1) smooth_substeps(b, s, octave);
+  b.totals();
   if (!plan.entries.empty()) b.results(plan.entries.back().substep);
   return plan;
 }

@@ -20,6 +20,7 @@ struct PlanSignature {
   bool resident = false;                    // StepSettings::resident
   std::array<Place, stage_count> places{};  // by Stage
   bool bodies = false;                      // some move
+  bool sleepers = false;                    // some sleep
   bool drag = false;                        // of some body
   bool gyroscopic = false;                  // some body has unequal moments
   bool trees = false;                       // joints that stand in a tree

@@ -78,7 +78,7 @@ class Runner final : Keeper {
   struct Bound {
     const StepPlan* plan = nullptr;
     std::uint64_t world = 0, layout = 0, schedule = 0;
-    bool timings = false;
+    bool timings = false, sleep = false;
     friend bool operator==(const Bound&, const Bound&) = default;
   };
   /// What a backend is asked for at once: a transfer, or kernels, `count` of runs_ from `first` on.
@@ -99,7 +99,7 @@ class Runner final : Keeper {
   std::uint32_t lanes(Place place, Domain domain, const Schedule& schedule);
   Status attach_table(Place place, Buffer buffer, WorldState& state);
   /// Finds calls_, and what undo must find.
-  void prepare_calls(const StepPlan& plan, bool timings, const WorldState& state, const Schedule& schedule);
+  void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);

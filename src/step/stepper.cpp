@@ -23,6 +23,7 @@
 #include "step/processor_state.h"
 #include "step/runner.h"
 #include "step/schedule.h"
+#include "step/sleepers.h"
 #include "world/range.h"
 #include "world/state.h"
 #include "world/validate.h"
@@ -57,7 +58,11 @@ struct Stepper::Inside {
   const StepPlan* plan = nullptr;
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
+  std::uint64_t scheduled_rest = 0;                   // and who slept in it
   bool other = false;                                 // than those of the last step
+  bool regrouped = false;                             // islands may be others than after it
+  Sleepers sleepers;
+  Idle idle;  // the world, if all of it sleeps
   StepInfos infos;
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
@@ -79,7 +84,7 @@ struct Stepper::Inside {
   }
 
   /// What the objects of `schedule` need; contacts are for the caller to say.
-  PlanSignature signature(const Schedule& from) const {
+  PlanSignature signature(const WorldState& world, const Schedule& from) const {
     PlanSignature s;
     s.substeps = settings.substeps;
     s.integrator = settings.integrator;
@@ -87,6 +92,7 @@ struct Stepper::Inside {
     s.resident = settings.resident;
     s.places = {settings.integrate, settings.joints, settings.impulses};
     s.bodies = from.moving > 0;
+    s.sleepers = world.sleepers > 0;
     s.drag = from.drag;
     s.gyroscopic = from.gyroscopic;
     s.trees = from.trees.forest().trees() > 0;
@@ -113,6 +119,7 @@ struct Stepper::Inside {
     own_seen = own.kernels().version();
     plans.clear();
     plan = nullptr;
+    idle = {};
     runner.unbind();
     prepared.reset();
     return ok;
@@ -120,7 +127,7 @@ struct Stepper::Inside {
   /// Compiles it where it is to run, while it can still be refused.
   Status check_kernel(const WorldState& s, const OwnKernel& kernel) {
     const Place stage_place = std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
-    const Place place = kernel.body.empty() ? Place::cpu : !kernel.loop ? Place::gl : stage_place;
+    const Place place = kernel.body.empty() ? Place::cpu : !kernel.in_cpp() ? Place::gl : stage_place;
     if (stage_place == Place::gl && kernel.body.empty()) return {};  // runs on the CPU; the plan shows what goes to and fro
     if (place == Place::cpu) return {};
     if (Status ok = prepare(s.tables.precision()); !ok) return ok;
@@ -183,29 +190,59 @@ struct Stepper::Inside {
     if (!ok) return ok;
     lap(Timer::forces);
 
+    if (settings.sleep && idle.holds(s) && own.ordered().empty()) {
+      plan = idle.plan;
+      idle.report_to(report, s);
+      return {};
+    }
     const FlushSubnormals flush;
     if (serial != s.serial) runner.forget();
-    update_structure(s);
+    if (s.rests && !settings.sleep) s.forget_rest();
     detector.forget_strays();
+    schedule.own.near.forget_strays();
     tries = 0;
     while (ok = attempt(s, dt), !ok || !outside.empty() || strayed) {
-      if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
+      if (!ok && ok.error().code != ErrorCode::not_finite) return put_rest_back(s, ok);
       if (ok) (void)undo(s, {});
       if (strayed) continue;
       // others may have met it: those that leave the range by themselves are to blame, where there are any
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
-      if (leaving.empty()) return ok;
+      if (leaving.empty()) return put_rest_back(s, ok);
       freeze_leaving(s);
     }
+    if (settings.sleep) let_sleep(s, dt);
     runner.drop();
     return ok;
   }
 
+  /// The step was made: what is at rest may fall asleep.
+  void let_sleep(WorldState& s, double dt) {
+    if (const AlignedBytes* before = runner.before(Buffer::pose))
+      report.fell_asleep = sleepers.follow(s, schedule.moving_bodies(), *before, dt, settings, regrouped);
+    if (s.stirred > 0) s.calm();
+    report.asleep = s.sleepers;
+    report.islands_asleep = sleepers.islands(s);
+    if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
+    update_structure(s);
+    PlanSignature nothing = signature(s, schedule);
+    nothing.shapes = detector.possible();
+    idle = {s, find_plan(nothing), report};
+  }
+
+  /// A step that could not be made has woken nobody.
+  Status put_rest_back(WorldState& s, const Status& failed) {
+    if (!runner.before(Buffer::rest)) return failed;
+    runner.undo(s);
+    s.count_rest();
+    return failed;
+  }
+
   void update_structure(WorldState& s) {
-    if (scheduled_serial == s.serial && scheduled == s.structure_version) return;
+    if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) return;
     scheduled_serial = s.serial;
     scheduled = s.structure_version;
+    scheduled_rest = s.rest_version;
     other = true;
     schedule.update_structure(s);
     runner.keep(s, Buffer::joint_impulse);
@@ -246,30 +283,50 @@ struct Stepper::Inside {
     freeze(s);
   }
 
+  /// Pairs and contacts. What sleeps and is stirred or touched wakes, and then has its contacts found, too.
+  Status detect(WorldState& s, double dt, Detector::Found& found) {
+    Status ok;
+    report.woke = 0;
+    if (s.sleepers > 0 && (scheduled_serial != s.serial || scheduled_rest != s.rest_version)) {
+      runner.keep(s, Buffer::rest);
+      report.woke = sleepers.wake_stirred(s);
+    }
+    while (true) {
+      update_structure(s);
+      if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
+      lap(Timer::broad);
+      add_called(s);
+      if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
+      lap(Timer::narrow);
+      if (detector.touched().empty()) return {};
+      runner.keep(s, Buffer::rest);
+      report.woke += sleepers.wake_touched(s, detector.touched());
+      detector.put_back(s);
+    }
+  }
+
   /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
   Status attempt(WorldState& s, double dt) {
-    Status ok;
+    Detector::Found found;
     outside.clear();
     strayed = false;
-    if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
-    lap(Timer::broad);
-    add_called(s);
-    Detector::Found found;
-    if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
-    lap(Timer::narrow);
+    Status ok = detect(s, dt, found);
+    if (!ok) return ok;
+    regrouped = found.changed || other || contacts_version != s.contacts_version;
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
     choose_order(fourth, s, schedule.trees, dt);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.points > found.contacts, fourth.trees(),
-                       settings, dt) ||
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
+                       own.kernels().pairs_of_bodies(), settings, dt) ||
         other)
       schedule.group(octaves.of_bodies());
-    PlanSignature wanted = signature(schedule);
+    PlanSignature wanted = signature(s, schedule);
     wanted.octaves = octaves.used();
     wanted.second_order = fourth.reasons();
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
+    if (ok = order_own(s, dt); !ok) return undo(s, ok);
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
     if (const std::uint32_t rows = schedule.trees.nodes().rows();
@@ -292,7 +349,7 @@ struct Stepper::Inside {
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);
-    strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
+    strayed = before && ++tries < most_tries && find_strays(s, *before);
     if (strayed) return {};
     s.last_substep = h;
     if (s.settling > 0) s.settling--;
@@ -308,9 +365,23 @@ struct Stepper::Inside {
     return {};
   }
 
+  /// Who comes when in pair kernels and reductions.
+  Status order_own(const WorldState& s, double dt) {
+    OwnLists& lists = schedule.own;
+    lists.order(s, schedule.rows_that_move(), own.kernels());
+    const double cutoff = own.kernels().cutoff();
+    if (cutoff == 0) return {};
+    return lists.near.find(s, schedule.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
+  }
+  bool find_strays(const WorldState& s, const AlignedBytes& before) {
+    const bool near = own.kernels().cutoff() > 0 && schedule.own.near.find_strays(s, schedule.rows_that_move());
+    return detector.find_strays(s, before) || near;
+  }
+
   /// The world as it was: what the step wrote into its tables goes back, and the contacts are the last step's again.
   Status undo(WorldState& s, const Status& failed) {
     runner.undo(s);
+    if (s.rests) s.count_rest();
     detector.put_back(s);
     s.tables.resize(Table::node, 0);  // nothing is pending, not in the row that pads either
     s.tables.resize(Table::node, 1);
@@ -368,9 +439,10 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   schedule.update_structure(world.state());
   Detector detector;
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
-  PlanSignature wanted = in.signature(schedule);
-  wanted.shapes = wanted.free_contacts = detector.possible();
-  wanted.tree_contacts = wanted.shapes && wanted.trees;
+  PlanSignature wanted = in.signature(world.state(), schedule);
+  wanted.shapes = detector.possible();
+  wanted.free_contacts = wanted.shapes && (wanted.bodies || !wanted.sleepers);
+  wanted.tree_contacts = wanted.free_contacts && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
   FourthOrder order;
