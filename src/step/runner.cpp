@@ -391,7 +391,7 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
 Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
   left_ = false;
   if (!fetched_) return std::exchange(fetched_, Status{});
-  if (holds_of_)
+  if (state.tables.kept())  // by this device or another stepper's
     for (const PlanBinding& b : bound_.plan->bindings)
       if (b.place == Place::cpu && of_table(b.buffer)) (void)state.tables.bytes(b.buffer);
   for (Device& d : devices_)

@@ -59,6 +59,8 @@ class Tables {
   void leave(Buffer buffer, Keeper* keeper);
   /// Brings home all that it holds; it is none of theirs any more.
   void take_back(Keeper* keeper);
+  /// Whether some keeper holds rows, or did.
+  bool kept() const { return !keepers_.empty(); }
   /// Where rows stand, or will once they are asked for.
   AlignedBytes& place_of(Buffer buffer);
   /// Bytes taken, also of a buffer that nobody has asked for.
