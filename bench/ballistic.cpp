@@ -45,6 +45,7 @@ struct Flight {
       : stepper([place] {
           StepSettings s;
           s.set_all(place);
+          s.resident = true;
           s.timings = false;
           return s;
         }()) {

@@ -175,7 +175,7 @@ const std::vector<Kind>& kinds() {
       {"ballistic, drag; none", [](Run& r) { r.make("ballistic", many), r.drag(); }, [](Run& r) { r.make("ballistic", many); }},
       {"ballistic, unequal moments; equal", [](Run& r) { r.make("ballistic", many), r.unequal_moments(); },
        [](Run& r) { r.make("ballistic", many); }},
-      {"ballistic, could meet; filtered", [](Run& r) { r.make("ballistic", many), r.filters({}); },
+      {"ballistic, meets others; filtered", [](Run& r) { r.make("ballistic", many), r.filters({}); },
        [](Run& r) { r.make("ballistic", many); }},
       {"ballistic, a pendulum beside; alone", [](Run& r) { r.make("ballistic", many), r.pendulum(); },
        [](Run& r) { r.make("ballistic", many); }},
