@@ -151,6 +151,8 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--steps", options.steps, "how many steps (default: 600)");
   app.add_option("--dt", options.dt, "time step [s], also as a fraction")->capture_default_str();
   app.add_option("--substeps", options.substeps, "sub-steps a step")->capture_default_str();
+  app.add_flag("--resident", options.resident,
+               "on gl, where nothing meets or holds a body: poses come to the host when they are read");
   app.add_option("--order", options.order, "2, or 4: joint trees on which nothing but forces and pins acts move in fourth order")
       ->capture_default_str();
   app.add_option("--precision", options.precision, "float or double")->capture_default_str();
@@ -191,6 +193,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.settings.integrator = options.integrator == "seed" ? Integrator::seed : Integrator::verlet;
   setup.settings.substeps = std::uint32_t(options.substeps);
   setup.settings.order = std::uint32_t(options.order);
+  setup.settings.resident = options.resident;
   setup.settings.threads =
       options.threads > 0 ? std::uint32_t(options.threads) : std::clamp(std::thread::hardware_concurrency(), 1u, 256u);
   setup.settings.device = int(options.device);

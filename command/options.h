@@ -27,7 +27,7 @@ struct RunOptions {
   long long substeps = 4, order = 2, threads = 1, warmup = 0, device = -1;
   double ratio = 100;
   std::string json, csv, gltf;
-  bool hash = false, poses = false;
+  bool hash = false, poses = false, resident = false;
 };
 
 /// Of `accuracy` and `stability`.

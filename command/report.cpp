@@ -1,9 +1,12 @@
 #include "report.h"
 
+#include <algorithm>
 #include <cinttypes>
 #include <cstdarg>
 #include <cstdio>
 #include <numbers>
+
+#include "world/schema.h"
 
 namespace pcphys::command {
 namespace {
@@ -39,6 +42,27 @@ const char* shape_name(ShapeKind kind) {
   }
   return "plane";
 }
+
+}  // namespace
+
+Json memory_json(const Simulation& simulation) {
+  Json buffers = Json::array(), absent = Json::array();
+  std::size_t sum = 0;
+  const std::vector<BufferUse> uses = simulation.stepper.memory(simulation.world);
+  for (const BufferUse& use : uses) {
+    Json row{{"buffer", use.name}, {"place", name(use.place)}, {"bytes", use.bytes}};
+    if (!use.table.empty()) row["table"] = use.table;
+    buffers.push_back(row);
+    sum += use.bytes;
+  }
+  for (std::size_t b = 0; b < buffer_count; ++b) {
+    const std::string_view name = schema(Buffer(b)).name;
+    if (std::ranges::find(uses, name, &BufferUse::name) == uses.end()) absent.push_back(name);
+  }
+  return {{"bytes", sum}, {"buffers", buffers}, {"not_allocated", absent}};
+}
+
+namespace {
 
 Json bodies_json(const Simulation& simulation) {
   Json rows = Json::array();
@@ -120,6 +144,7 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"stages", setup.settings.timings ? stages_json(outcome.times) : Json::object()},
       {"transfers_bytes", outcome.last.transfer_bytes},
       {"left_out", left_out},
+      {"memory", memory_json(simulation)},
       {"contacts", outcome.last.contacts},
       {"contact_points", outcome.last.points},
       {"pairs", outcome.last.pairs},

@@ -15,6 +15,8 @@ Json stage_backends(const StepSettings& settings);
 /// The device of every place that is used, in one line.
 std::string device_name(const Simulation& simulation);
 
+/// What buffers take, and which have none.
+Json memory_json(const Simulation& simulation);
 /// The object of `run --json`: the keys of docs/command.md.
 Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses);
 std::string to_text(const Simulation& simulation, const Outcome& outcome);

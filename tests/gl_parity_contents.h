@@ -160,7 +160,8 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
 
 template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
   if (row == 0) {
-    for (const Buffer b : {Buffer::joint_frame, Buffer::joint_solved}) put(b, row, {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1});
+    for (const Buffer b : {Buffer::joint_frame, Buffer::joint_solved})
+      put(b, row, {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1});
     put(Buffer::joint_drive, row, {0, 0, 0, 1});
     return;
   }
@@ -175,11 +176,11 @@ template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
     if (rarely()) lower[i] = -infinity, upper[i] = infinity;
   }
   const std::initializer_list<double> frame = {either(0.5), either(0.5), either(0.5), double(below(3)),
-                          p[0],        p[1],        p[2],        p[3],
-                          either(0.5), either(0.5), either(0.5), 0,
-                          q[0],        q[1],        q[2],        q[3],
-                          lower[0],    lower[1],    lower[2],    0,
-                          upper[0],    upper[1],    upper[2],    0};
+                                               p[0],        p[1],        p[2],        p[3],
+                                               either(0.5), either(0.5), either(0.5), 0,
+                                               q[0],        q[1],        q[2],        q[3],
+                                               lower[0],    lower[1],    lower[2],    0,
+                                               upper[0],    upper[1],    upper[2],    0};
   for (const Buffer b : {Buffer::joint_frame, Buffer::joint_solved}) put(b, row, frame);
   const double push = rarely() ? 0 : mood_.impulse;
   const auto axes = turn(4);
@@ -333,6 +334,8 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.tree_damping = Scalar(0.25);
     info.restitution_threshold = Scalar(1);
     info.rounding = Scalar(1e-3);
+    info.substeps = Scalar(3);
+    info.largest_state = Scalar(1e4);  // some bodies are beyond it
     state_.infos[std::size_t(phase)] = info;
   }
 }

@@ -69,6 +69,7 @@ struct StepPlan {
   std::vector<PlanEntry> entries;
   std::vector<LeftOut> left_out;
   std::vector<PlanBinding> bindings;                  // each buffer of each place once
+  std::vector<Buffer> left_there;                     // on the device, until the host asks (StepSettings::resident)
   std::vector<Buffer> overwritten;                    // in the host's tables
   std::vector<std::shared_ptr<const OwnKernel>> own;  // kernels of the host's own that entries name
   friend bool operator==(const StepPlan&, const StepPlan&) = default;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcphys/constants.h"
@@ -31,7 +32,10 @@ struct StepSettings {
   NarrowPhase narrow = NarrowPhase::native;
   int device = -1;            // EGL device; -1: the first that works
   bool host_context = false;  // use the GL context that is current on this thread
-  bool timings = true;        // clock the step and each stage (StepReport); on GL this waits for the device after each
+  /// On GL, where nothing meets or holds a body (StepPlan::flight): what a step leaves on the device comes to the host when something
+  /// asks for it, a view, a hash or a step that needs it there, by the thread that asks. A device that fails takes it along.
+  bool resident = false;
+  bool timings = true;  // clock the step and each stage (StepReport); on GL this waits for the device after each
 
   /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md). A step with it off wakes what sleeps.
   bool sleep = false;
@@ -70,6 +74,13 @@ struct StepReport {
   explicit operator bool() const { return error.code == ErrorCode::none; }
 };
 
+/// Memory of a step, of one buffer in one place.
+struct BufferUse {
+  std::string_view name, table;  // table: empty where it is of none
+  Place place = Place::cpu;
+  std::size_t bytes = 0;
+};
+
 class Stepper {
  public:
   explicit Stepper(const StepSettings& settings = {});
@@ -97,6 +108,9 @@ class Stepper {
   /// What the last step ran, or (`plan_for`) what a step of this world would.
   const StepPlan& plan() const;
   Result<StepPlan> plan_for(const World& world, double dt);
+
+  /// What the buffers of this world and of its last step take, those that take any, with the device's copies.
+  std::vector<BufferUse> memory(const World& world) const;
 
   /// "cpu, 8 lanes", or the GL renderer's name; empty when no stage runs there.
   std::string device(Place place) const;

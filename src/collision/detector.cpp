@@ -51,10 +51,34 @@ float inner_radius(const ShapeDef& d) {
 
 }  // namespace
 
+namespace {
+bool meets_some(const ShapeRecord& shape) { return shape.alive && (shape.filter.mask != 0 || shape.filter.group > 0); }
+
+bool some_could_touch(const WorldState& s) {
+  std::uint32_t solid = 0;
+  bool responds = false;
+  for (const ShapeRecord& shape : s.shapes) {
+    if (!meets_some(shape)) continue;
+    solid++;
+    responds |= s.responds(s.body_ids.row(shape.body));
+    if (responds && solid > 1) return true;
+  }
+  return false;
+}
+}  // namespace
+
 void Detector::rebuild(const WorldState& s) {
   structure_ = s.structure_version;
   serial_ = s.serial;
   pairs_ = PairCache();
+  possible_ = some_could_touch(s);
+  hints_.clear();
+  hinted_ = false;
+  proxies_.clear();
+  standing_.clear();
+  round_ = false;
+  rest_ = 0;
+  if (!possible_) return;  // none of the columns below is needed
   pairs_.set_margin(float(constants::broad_margin), 0.125f);
   filter_->rebuild(s);
   pairs_.set_filter(may_touch, filter_.get());
@@ -73,18 +97,13 @@ void Detector::rebuild(const WorldState& s) {
   movers_ = std::uint32_t(moving_.size());
   moving_.resize((moving_.size() + lanes - 1) / lanes * lanes, 0);
   listed_margin_ = -1;
-  hints_.clear();
-  hinted_ = false;
-  standing_.clear();
-  bool some_dynamic = false;
   thinnest_ = std::numeric_limits<float>::infinity();
-  std::uint32_t solid = 0;
   std::vector<bool> jointed(s.bodies.size());
   for (std::uint32_t row = 1; row < s.joints.size(); row++)
     for (std::uint32_t body : {s.joints[row].body_a, s.joints[row].body_b}) jointed[s.body_ids.row(body)] = true;
   for (std::uint32_t i = 0; i < s.shapes.size(); i++) {
     const ShapeRecord& shape = s.shapes[i];
-    if (!shape.alive || (shape.filter.mask == 0 && shape.filter.group <= 0)) continue;
+    if (!meets_some(shape)) continue;
     const std::uint32_t row = s.body_ids.row(shape.body);
     const auto [across, any] = levers(shape.def);
     proxies_[i] = {shape.def.kind,
@@ -105,11 +124,18 @@ void Detector::rebuild(const WorldState& s) {
     if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
     if (!s.responds(row)) standing_.push_back(i);
     pairs_.add(i, !s.stands(row));
-    some_dynamic |= s.responds(row);
-    solid++;
   }
-  possible_ = some_dynamic && solid > 1;
-  rest_ = 0;
+}
+
+std::size_t Detector::memory_bytes() const {
+  const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
+  std::size_t sum = of(proxies_, tight_, margins_, reach_, twists_, odd_, moving_, bodies_, struck_, went_, near_, hints_,
+                       next_hints_, standing_, next_.keys, next_.ends, next_.features);
+  sum += of(scratch_f_.shapes, scratch_f_.looks, scratch_f_.flights, scratch_d_.shapes, scratch_d_.looks, scratch_d_.flights);
+  for (const AlignedBytes* bytes : {&columns_, &rows_, &scratch_f_.rows, &scratch_f_.twists, &scratch_f_.contacts,
+                                    &scratch_d_.rows, &scratch_d_.twists, &scratch_d_.contacts})
+    sum += bytes->capacity();
+  return sum + pairs_.memory_bytes();
 }
 
 void Detector::follow_rest(const WorldState& s) {

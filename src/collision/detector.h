@@ -59,6 +59,8 @@ class Detector {
   std::span<const std::uint32_t> touched() const { return touched_; }
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
+  /// Of boxes, pairs and contacts, about.
+  std::size_t memory_bytes() const;
   /// Whether some body has restitution, rolling or torsional friction.
   static bool may_bounce(const WorldState& state) { return some_material(state, {2}); }
   static bool may_resist_rolling(const WorldState& state) { return some_material(state, {4, 5}); }

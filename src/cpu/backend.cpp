@@ -57,6 +57,9 @@ class CpuBackend final : public Backend {
     buffers_[std::size_t(buffer)] = rows.data();
     return {};
   }
+  std::size_t held_bytes(Buffer buffer) const override {
+    return std::size_t(buffer) < scratch_.size() ? scratch_[std::size_t(buffer)].capacity() : 0;
+  }
   Status upload(Buffer) override { return {}; }
   Status download(Buffer) override { return {}; }
   Status set_infos(const void* infos, std::size_t) override {

@@ -40,6 +40,9 @@ class GlBackend final : public Backend {
   }
   Status attach(Buffer buffer, void* host, std::size_t bytes) override;
   Status reserve(Buffer buffer, std::size_t slots) override;
+  std::size_t held_bytes(Buffer buffer) const override {
+    return std::size_t(buffer) < buffers_.size() ? buffers_[std::size_t(buffer)].capacity() : 0;
+  }
   Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
   Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
   Status set_infos(const void* infos, std::size_t count) override;

@@ -22,6 +22,7 @@ class GlBuffer {
   bool take(std::size_t offset, std::size_t bytes) const;
   void release();
 
+  std::size_t capacity() const { return capacity_; }
   std::uint32_t id() const { return id_; }
   bool attached() const { return id_ != 0; }
   bool transferable() const { return host_ != nullptr || bytes_ == 0; }

@@ -23,12 +23,13 @@ void Forest::build(std::span<const JointLink> links, std::span<const double> mas
   first_.assign(1, 0);
   grow_hanging();
   // free ones, from their heaviest body; of equal ones from the lowest id
-  std::vector<std::uint32_t> rows(masses.size());
-  std::iota(rows.begin(), rows.end(), 0u);
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t row = 0; row < masses.size(); row++)
+    if (masses[row] > 0 && !reached_[row] && begin_[row] != begin_[row + 1]) rows.push_back(row);
   std::ranges::sort(
       rows, [&](std::uint32_t x, std::uint32_t y) { return masses[x] != masses[y] ? masses[x] > masses[y] : ids[x] < ids[y]; });
   for (const std::uint32_t row : rows)
-    if (masses[row] > 0 && !reached_[row] && begin_[row] != begin_[row + 1]) {
+    if (!reached_[row]) {
       reached_[row] = 1;
       trees_.assign(1, {{row, 0, 0, false}});
       grow();

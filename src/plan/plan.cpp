@@ -62,7 +62,7 @@ class Builder {
     for (std::size_t b = 0; b < buffers_.size(); b++)
       if (of_table(Buffer(b)) &&
           (is_own(Buffer(b)) || holds(Buffer(b), Role::state) || buffers_[b].host_wrote || buffers_[b].own_wrote))
-        bring(Buffer(b), Place::cpu, substep);
+        leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
@@ -73,6 +73,11 @@ class Builder {
   };
   Known& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
   static bool is_rows(Buffer b) { return !of_table(b) && schema(b).reals > 0; }
+
+  /// Whether the device may keep it.
+  bool leave(Buffer b) const {
+    return plan_.flight && signature_.resident && !is_own(b) && !buffers_[std::size_t(b)].current[std::size_t(Place::cpu)];
+  }
 
   void add(const OwnKernel& k, std::uint32_t substep) {
     Place place = signature_.places[std::size_t(k.stage)];
@@ -143,6 +148,8 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
   if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
+  if (plan.flight && s.resident && s.places[std::size_t(Stage::integrate)] == Place::gl)
+    out("downloads", "what a step leaves on the device comes when the host asks for it");
   if (!s.joints() && !s.trees)
     out("joints", idle ? all_sleep : s.sleepers ? "no body that is awake has any" : "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");

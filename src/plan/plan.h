@@ -17,6 +17,7 @@ struct PlanSignature {
   std::uint32_t order = 2;         // StepSettings::order
   std::uint32_t second_order = 0;  // of order 4, why some trees are not: bits by SecondOrder
   Integrator integrator = Integrator::verlet;
+  bool resident = false;                    // StepSettings::resident
   std::array<Place, stage_count> places{};  // by Stage
   bool bodies = false;                      // some move
   bool sleepers = false;                    // some sleep

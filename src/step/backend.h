@@ -52,6 +52,9 @@ class Backend {
   /// Scratch of the solver: `slots` rows of a PC_ROWS buffer, a multiple of the lanes. Never transferred.
   virtual Status reserve(Buffer buffer, std::size_t slots) = 0;
 
+  /// What the backend has itself for a buffer.
+  virtual std::size_t held_bytes(Buffer buffer) const { return (void)buffer, std::size_t{0}; }
+
   /// Host to device and back, the whole buffer; nothing to do on the CPU.
   virtual Status upload(Buffer buffer) = 0;
   virtual Status download(Buffer buffer) = 0;

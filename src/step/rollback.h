@@ -26,6 +26,12 @@ class Rollback {
                                                                                      : nullptr;
   }
 
+  std::size_t memory_bytes() const {
+    std::size_t sum = 0;
+    for (const Copy& copy : copies_) sum += copy.bytes.capacity();
+    return sum;
+  }
+
   /// The step was made.
   void drop() {
     for (Copy& copy : copies_) copy.kept = false;

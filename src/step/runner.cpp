@@ -146,6 +146,7 @@ Status Runner::prepare(const StepSettings& s, Precision precision, const OwnKern
     const bool fits = d.backend && d.precision == precision &&
                       (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
     if (fits) continue;
+    bring_home();
     bound_ = {};
     auto made = place == Place::cpu ? make_cpu_backend(precision, s.lanes, workers_.get())
                                     : gl_backend_maker()(precision, s.device, s.host_context);
@@ -161,7 +162,29 @@ Status Runner::prepare(const StepSettings& s, Precision precision, const OwnKern
   return {};
 }
 
+Runner::~Runner() { bring_home(); }
+
+void Runner::bring_home() {
+  if (Tables* tables = std::exchange(holds_of_, nullptr)) tables->take_back(this);
+}
+
+void Runner::fetch(Buffer buffer) {
+  const Status ok = at(Place::gl).backend->download(buffer);
+  if (fetched_) fetched_ = ok;
+}
+
+void Runner::list_memory(std::vector<BufferUse>& uses) const {
+  for (const Place place : {Place::cpu, Place::gl}) {
+    const Device& d = devices_[std::size_t(place)];
+    for (std::size_t b = 0; d.backend && b < buffer_count; b++)
+      if (const std::size_t bytes = d.backend->held_bytes(Buffer(b)))
+        uses.push_back({schema(Buffer(b)).name, of_table(Buffer(b)) ? name(schema(Buffer(b)).table) : "", place, bytes});
+  }
+  if (const std::size_t bytes = rollback_.memory_bytes()) uses.push_back({"rollback", "", Place::cpu, bytes});
+}
+
 void Runner::forget() {
+  bring_home();
   bound_ = {};
   for (Device& d : devices_) d.copies.clear();
 }
@@ -194,12 +217,12 @@ Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes)
 }
 
 Status Runner::attach_table(Place place, Buffer buffer, WorldState& state) {
-  AlignedBytes& rows = state.tables.bytes(buffer);
+  AlignedBytes& rows = state.tables.place_of(buffer);
   return attach(place, buffer, rows.data(), rows.size());
 }
 
 Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule) {
-  const Bound now{&plan, state.serial, state.tables.layout(), schedule.changes(), settings.timings};
+  const Bound now{&plan, state.serial, state.tables.layout(), schedule.changes(), settings.timings, settings.sleep};
   if (now == bound_) {
     for (const Place place : exchanged_)
       if (Status ok = attach_table(place, Buffer::contact, state); !ok) return ok;
@@ -224,15 +247,17 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
   for (const PlanEntry& entry : plan.entries)
     if (entry.own && entry.kind == PlanEntry::Kind::kernel)
       if (Status ok = at(entry.place).backend->prepare(*entry.own); !ok) return ok;
-  prepare_calls(plan, settings.timings, state, schedule);
+  prepare_calls(plan, settings, state, schedule);
   bound_ = now;
   return {};
 }
 
-Status Runner::upload(Buffer buffer, std::uint64_t version, StepReport& report) {
+Status Runner::upload(Buffer buffer, WorldState& state, const Schedule& schedule, StepReport& report) {
   Device& d = at(Place::gl);
   Copy& copy = d.copy(buffer);
+  const std::uint64_t version = version_of(buffer, state, schedule);
   if (copy.version == version) return {};
+  if (of_table(buffer)) (void)state.tables.bytes(buffer);  // another device may have it
   copy.version = version;
   report.transfer_bytes += copy.bytes;
   return d.backend->upload(buffer);
@@ -293,7 +318,9 @@ void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Sche
                    state.tables.rows(k.table) - 1});
 }
 
-void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState& state, const Schedule& schedule) {
+void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state,
+                           const Schedule& schedule) {
+  const bool timings = settings.timings;
   calls_.clear();
   runs_.clear();
   ranges_.clear();
@@ -321,7 +348,10 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState&
   for (const PlanEntry& entry : plan.entries) octave = std::max(octave, octave_of(entry.octave));
   infos_ = phase_count * (1 + octave);
   kept_.clear();
-  if (plan.flight && !gl_ && plan.own.empty()) return;  // nothing of it can fail
+  if (plan.flight && !gl_ && plan.own.empty()) {        // nothing of it can fail
+    if (settings.sleep) kept_.push_back(Buffer::pose);  // how far bodies went
+    return;
+  }
   for (const Buffer buffer : plan.overwritten)
     if (keeps(buffer)) kept_.push_back(buffer);
 }
@@ -372,11 +402,15 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
   const PlanEntry& entry = *call.entry;
   if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state);
   if (entry.kind == PlanEntry::Kind::download) return transfer(entry, state, report);
-  return upload(entry.buffer, version_of(entry.buffer, state, schedule), report);
+  return upload(entry.buffer, state, schedule, report);
 }
 
 Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
   left_ = false;
+  if (!fetched_) return std::exchange(fetched_, Status{});
+  if (state.tables.kept())  // by this device or another stepper's
+    for (const PlanBinding& b : bound_.plan->bindings)
+      if (b.place == Place::cpu && of_table(b.buffer)) (void)state.tables.bytes(b.buffer);
   for (Device& d : devices_)
     if (d.takes_part)
       if (Status ok = d.backend->set_infos(infos, infos_); !ok) return ok;
@@ -396,6 +430,11 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
   }
   if (gl_)
     if (Status done = at(Place::gl).backend->finish(); !done) return done;
+  for (const Buffer buffer : bound_.plan->left_there) {
+    holds_of_ = &state.tables;
+    state.tables.leave(buffer, this);
+    at(Place::gl).copy(buffer).version = state.tables.version(buffer) + 1;
+  }
   return {};
 }
 

@@ -14,8 +14,13 @@
 
 namespace pcphys {
 
-class Runner {
+class Runner final : Keeper {
  public:
+  Runner() = default;
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+  ~Runner();
+
   /// Makes the backends that the settings ask for, keeping those that still fit.
   /// `own`: kernels of the host's own, which may want a place that no stage is put on.
   Status prepare(const StepSettings& settings, Precision precision, const OwnKernels& own = {});
@@ -45,6 +50,8 @@ class Runner {
   void unbind() { bound_ = {}; }
   /// What the devices hold is not the data of the world that comes.
   void forget();
+  /// What backends and copies of this step's buffers take.
+  void list_memory(std::vector<BufferUse>& uses) const;
   std::string device(Place place) const;
   /// After `prepare`.
   const Workers& workers() const { return *workers_; }
@@ -74,7 +81,7 @@ class Runner {
   struct Bound {
     const StepPlan* plan = nullptr;
     std::uint64_t world = 0, layout = 0, schedule = 0;
-    bool timings = false;
+    bool timings = false, sleep = false;
     friend bool operator==(const Bound&, const Bound&) = default;
   };
   /// What a backend is asked for at once: a transfer, or kernels, `count` of runs_ from `first` on.
@@ -84,13 +91,18 @@ class Runner {
     bool last = false;  // of a stage that is clocked
   };
 
+  void fetch(Buffer buffer) override;
+  void lose() override { holds_of_ = nullptr; }
+  /// All that devices hold alone.
+  void bring_home();
+
   Device& at(Place place) { return devices_[std::size_t(place)]; }
   Status attach(Place place, Buffer buffer, void* host, std::size_t bytes);
-  Status upload(Buffer buffer, std::uint64_t version, StepReport& report);
+  Status upload(Buffer buffer, WorldState& state, const Schedule& schedule, StepReport& report);
   std::uint32_t lanes(Place place, Domain domain, const Schedule& schedule);
   Status attach_table(Place place, Buffer buffer, WorldState& state);
   /// Finds calls_, and what undo must find.
-  void prepare_calls(const StepPlan& plan, bool timings, const WorldState& state, const Schedule& schedule);
+  void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
@@ -110,8 +122,10 @@ class Runner {
   std::uint32_t threads_ = 0;         // that were asked for
   std::array<Device, 2> devices_;     // by Place
   Rollback rollback_;
-  bool gl_ = false;    // takes part
-  bool left_ = false;  // see `left`
+  Tables* holds_of_ = nullptr;  // whose rows the device may hold alone
+  Status fetched_;              // whether all that was asked for could be brought
+  bool gl_ = false;             // takes part
+  bool left_ = false;           // see `left`
   bool watched_ = false;
 };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "pcphys/step.h"
 #include "plan/coloring.h"
 #include "plan/forest.h"
 #include "plan/pivots.h"
@@ -153,6 +154,8 @@ class Schedule {
   /// Places in `bodies`.
   std::span<const Range> ranges(unsigned octave) const { return std::span(body_ranges_).subspan(octave, 1); }
   bool grouped() const { return body_ranges_.size() > 1; }
+  /// Lists and slots, those that are there.
+  void list_memory(std::vector<BufferUse>& uses);
   /// Counts the changes of all that stands here, but for how it is packed.
   std::uint64_t changes() const { return changes_ + own.version + own.near.version; }
   std::span<const std::uint32_t> rows_that_move() const { return rows_; }

@@ -94,6 +94,7 @@ struct Stepper::Inside {
     s.substeps = settings.substeps;
     s.integrator = settings.integrator;
     s.order = settings.order;
+    s.resident = settings.resident;
     s.places = {settings.integrate, settings.joints, settings.impulses};
     s.bodies = from.moving > 0;
     s.sleepers = world.sleepers > 0;
@@ -453,6 +454,18 @@ Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& pa
   if (!k)
     return Error{ErrorCode::unknown_name, "There is no kernel \"" + std::string(kernel) + "\"; Stepper::add_kernel adds one."};
   return set(*k, parameter);
+}
+
+std::vector<BufferUse> Stepper::memory(const World& world) const {
+  const Tables& tables = world.state().tables;
+  std::vector<BufferUse> uses;
+  for (std::size_t b = 0; b < table_buffer_count; b++)
+    if (const std::size_t bytes = tables.held_bytes(Buffer(b)))
+      uses.push_back({schema(Buffer(b)).name, pcphys::name(schema(Buffer(b)).table), Place::cpu, bytes});
+  inside_->schedule.list_memory(uses);
+  if (const std::size_t bytes = inside_->detector.memory_bytes()) uses.push_back({"collision", "", Place::cpu, bytes});
+  inside_->runner.list_memory(uses);
+  return uses;
 }
 
 std::string Stepper::device(Place place) const { return inside_->runner.device(place); }

@@ -1,5 +1,6 @@
 #include "world/tables.h"
 
+#include <algorithm>
 #include <cassert>
 #include <utility>
 
@@ -12,11 +13,12 @@ Tables::Tables(Precision precision) : precision_(precision), columns_(table_buff
 }
 
 void Tables::add_listed(Buffer buffer) {
-  Column& column = at(buffer);
+  Column& column = columns_[index(buffer)];
   column.used = true;
   column.table = schema(buffer).table;
   column.row_bytes = schema(buffer).reals * real_bytes();
   column.initial.resize(column.row_bytes);
+  column.on_demand = !holds(buffer, Role::input) && !holds(buffer, Role::state) && !holds(buffer, Role::derived);
   const auto put = [&](std::uint32_t offset, double value) {
     if (precision_ == Precision::f32)
       reinterpret_cast<float*>(column.initial.data())[offset] = float(value);
@@ -40,13 +42,54 @@ void Tables::fill(Column& column, std::uint32_t before, std::uint32_t rows) {
 void Tables::resize(Table table, std::uint32_t rows) {
   const std::uint32_t before = std::exchange(rows_[std::size_t(table)], rows);
   layout_++;
-  for (Column& column : columns_)
-    if (column.used && column.table == table) fill(column, before, rows);
+  for (std::size_t k = 0; k < columns_.size(); k++) {
+    Column& column = columns_[k];
+    if (!column.used || column.table != table) continue;
+    if (!column.made && (rows <= 1 || column.on_demand)) {
+      column.version++;
+      continue;
+    }
+    if (column.keeper) std::exchange(column.keeper, nullptr)->fetch(buffer_at(k));
+    fill(column, std::exchange(column.made, true) ? before : 0, rows);
+  }
+}
+
+Tables::~Tables() {
+  for (Keeper* keeper : keepers_) keeper->lose();
+}
+
+void Tables::make_current(Buffer buffer) {
+  Column& column = columns_[index(buffer)];
+  place_of(buffer);
+  if (column.keeper) std::exchange(column.keeper, nullptr)->fetch(buffer);
+}
+
+AlignedBytes& Tables::place_of(Buffer buffer) {
+  Column& column = columns_[index(buffer)];
+  if (!std::exchange(column.made, true)) {
+    fill(column, 0, rows(column.table));
+    layout_++;
+  }
+  return column.bytes;
+}
+
+void Tables::leave(Buffer buffer, Keeper* keeper) {
+  Column& column = columns_[index(buffer)];
+  column.version++;
+  column.keeper = keeper;
+  if (std::ranges::find(keepers_, keeper) == keepers_.end()) keepers_.push_back(keeper);
+}
+
+void Tables::take_back(Keeper* keeper) {
+  std::erase(keepers_, keeper);
+  for (std::size_t k = 0; k < columns_.size(); k++)
+    if (columns_[k].keeper == keeper) make_current(buffer_at(k));
 }
 
 void Tables::copy_row(Table table, std::uint32_t from, std::uint32_t to) {
   for (Column& column : columns_) {
-    if (!column.used || column.table != table) continue;
+    if (!column.used || column.table != table || !column.made) continue;
+    if (column.keeper) make_current(buffer_at(std::size_t(&column - columns_.data())));
     const std::size_t n = column.row_bytes;
     column.version++;
     std::memcpy(column.bytes.data() + to * n, column.bytes.data() + from * n, n);
@@ -60,7 +103,7 @@ Buffer Tables::add(Table table, std::span<const std::byte> initial) {
   Column& column = columns_[k];
   const std::uint64_t version = column.version;  // goes on: a device may still hold what stood here before
   column = {};
-  column.used = true;
+  column.used = column.made = true;
   column.table = table;
   column.row_bytes = initial.size();
   column.initial.resize(initial.size());
@@ -72,9 +115,10 @@ Buffer Tables::add(Table table, std::span<const std::byte> initial) {
 }
 
 void Tables::remove(Buffer own) {
-  const std::uint64_t version = at(own).version;
-  at(own) = {};
-  at(own).version = version + 1;
+  const std::uint64_t version = this->version(own);
+  Column& column = columns_[index(own)];
+  column = {};
+  column.version = version + 1;
   layout_++;
 }
 
@@ -97,12 +141,12 @@ void Tables::touch_all() {
 }
 
 double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
-  assert(row < rows(at(buffer).table));
+  assert(row < rows(columns_[index(buffer)].table));
   const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
   return precision_ == Precision::f32 ? double(data<float>(buffer)[i]) : data<double>(buffer)[i];
 }
 void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
-  assert(row < rows(at(buffer).table));
+  assert(row < rows(columns_[index(buffer)].table));
   const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
   if (precision_ == Precision::f32)
     data<float>(buffer)[i] = float(value);

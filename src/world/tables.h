@@ -11,14 +11,31 @@
 
 namespace pcphys {
 
+/// Holds the newest rows of buffers that the host has not asked for since a device wrote them.
+class Keeper {
+ public:
+  /// Puts them where the tables keep them.
+  virtual void fetch(Buffer buffer) = 0;
+  /// The tables are gone.
+  virtual void lose() = 0;
+
+ protected:
+  ~Keeper() = default;
+};
+
+/// A buffer's rows are there once something asks for them: those that only steps use (Role::scratch) until then take no memory,
+/// nor do those of tables without rows, and rows that a keeper holds come from it.
 class Tables {
  public:
   explicit Tables(Precision precision);
+  Tables(const Tables&) = delete;
+  Tables& operator=(const Tables&) = delete;
+  ~Tables();
 
   Precision precision() const { return precision_; }
   std::size_t real_bytes() const { return precision_ == Precision::f32 ? 4 : 8; }
   std::uint32_t rows(Table table) const { return rows_[std::size_t(table)]; }
-  std::size_t row_bytes(Buffer buffer) const { return at(buffer).row_bytes; }
+  std::size_t row_bytes(Buffer buffer) const { return columns_[index(buffer)].row_bytes; }
 
   /// New rows hold every property's initial value.
   void resize(Table table, std::uint32_t rows);
@@ -38,6 +55,17 @@ class Tables {
     touch(buffer);
   }
 
+  /// From now on the keeper has the newest rows; those here are old until they are asked for.
+  void leave(Buffer buffer, Keeper* keeper);
+  /// Brings home all that it holds; it is none of theirs any more.
+  void take_back(Keeper* keeper);
+  /// Whether some keeper holds rows, or did.
+  bool kept() const { return !keepers_.empty(); }
+  /// Where rows stand, or will once they are asked for.
+  AlignedBytes& place_of(Buffer buffer);
+  /// Bytes taken, also of a buffer that nobody has asked for.
+  std::size_t held_bytes(Buffer buffer) const { return columns_[index(buffer)].bytes.capacity(); }
+
   AlignedBytes& bytes(Buffer buffer) { return at(buffer).bytes; }
   const AlignedBytes& bytes(Buffer buffer) const { return at(buffer).bytes; }
   template <class Scalar> Scalar* data(Buffer buffer) { return reinterpret_cast<Scalar*>(bytes(buffer).data()); }
@@ -46,8 +74,8 @@ class Tables {
   }
 
   /// Counts the changes of a buffer, so that a device knows when its copy is old.
-  std::uint64_t version(Buffer buffer) const { return at(buffer).version; }
-  void touch(Buffer buffer) { at(buffer).version++; }
+  std::uint64_t version(Buffer buffer) const { return columns_[index(buffer)].version; }
+  void touch(Buffer buffer) { columns_[index(buffer)].version++; }
   void touch_all();
   /// Counts the changes of where buffers stand and how long they are, but for what `exchange` does.
   std::uint64_t layout() const { return layout_; }
@@ -64,7 +92,9 @@ class Tables {
 
  private:
   struct Column {
-    bool used = false;
+    bool used = false, made = false;  // made: rows have memory
+    bool on_demand = false;           // only steps use it
+    Keeper* keeper = nullptr;         // has newer rows
     Table table{};
     std::size_t row_bytes = 0;
     AlignedBytes initial;  // one row
@@ -75,8 +105,15 @@ class Tables {
   static std::size_t index(Buffer buffer) {
     return is_own(buffer) ? std::size_t(buffer) - buffer_count + table_buffer_count : std::size_t(buffer);
   }
-  Column& at(Buffer buffer) { return columns_[index(buffer)]; }
-  const Column& at(Buffer buffer) const { return columns_[index(buffer)]; }
+  Column& at(Buffer buffer) {
+    Column& column = columns_[index(buffer)];
+    if (!column.made || column.keeper) [[unlikely]]
+      make_current(buffer);
+    return column;
+  }
+  const Column& at(Buffer buffer) const { return const_cast<Tables*>(this)->at(buffer); }  // what it shows is the same
+  void make_current(Buffer buffer);
+  static Buffer buffer_at(std::size_t k) { return k < table_buffer_count ? Buffer(k) : own_buffer(k - table_buffer_count); }
   void fill(Column& column, std::uint32_t before, std::uint32_t rows);
   void add_listed(Buffer buffer);
 
@@ -84,6 +121,7 @@ class Tables {
   std::vector<Column> columns_;
   std::vector<std::uint32_t> rows_;  // by Table; 0: removed
   std::uint64_t layout_ = 0;
+  std::vector<Keeper*> keepers_;  // that hold rows, or did
 };
 
 }  // namespace pcphys
