@@ -201,6 +201,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.settings.threads =
       options.threads > 0 ? std::uint32_t(options.threads) : std::clamp(std::thread::hardware_concurrency(), 1u, 256u);
   setup.settings.device = int(options.device);
+  setup.settings.contact_events = setup.settings.hit_events = setup.settings.moved_events = !options.events.empty();
   setup.settings.timings = options.timings == "on";
   setup.dt = *dt;
   setup.steps = options.steps ? std::uint64_t(*options.steps) : default_steps;

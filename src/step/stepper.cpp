@@ -10,6 +10,7 @@
 
 #include "collision/detector.h"
 #include "collision/hook.h"
+#include "events/event_recorder.h"
 #include "pcphys/constants.h"
 #include "pcphys/step.h"
 #include "plan/fourth_order.h"
@@ -59,6 +60,7 @@ struct Stepper::Inside {
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   bool other = false;                                 // than those of the last step
   StepInfos infos;
+  EventRecorder recorder;
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
   int tries = 0;                                // of this step
@@ -197,6 +199,8 @@ struct Stepper::Inside {
       if (leaving.empty()) return ok;
       freeze_leaving(s);
     }
+    if (EventRecorder::wanted(settings))
+      recorder.record(settings, s, {runner.before(Buffer::pose), runner.before(Buffer::motion), dt}, schedule.moving_bodies());
     runner.drop();
     return ok;
   }
@@ -267,6 +271,8 @@ struct Stepper::Inside {
     wanted.placed = found.placed && wanted.free_contacts;
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
+    wanted.touches = EventRecorder::of_contacts(settings) && wanted.contacts();
+    if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
     plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
@@ -328,6 +334,7 @@ const StepReport& Stepper::step(World& world, double dt) {
   static const StepReport blank;
   const std::uint64_t made = in.report.step;
   in.report = blank;
+  in.recorder.clear();
   const bool clocked = in.settings.timings;
   Clock::time_point start;
   if (clocked) start = in.began = Clock::now();
@@ -339,6 +346,8 @@ const StepReport& Stepper::step(World& world, double dt) {
   if (clocked) in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   return in.report;
 }
+
+StepEvents Stepper::events() const { return inside_->recorder.events(); }
 
 const StepPlan& Stepper::plan() const { return inside_->plan ? *inside_->plan : inside_->no_plan; }
 
@@ -357,6 +366,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.tree_contacts = wanted.shapes && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
+  wanted.touches = EventRecorder::of_contacts(in.settings) && wanted.contacts();
   FourthOrder order;
   in.choose_order(order, world.state(), schedule.trees, dt);
   wanted.octaves = order.classes(schedule.moving);
