@@ -29,10 +29,14 @@ void EventLines::add(std::uint64_t step, const StepEvents& events) {
     json["impulse"] = c.impulse;
     line(step, "hit", json);
   }
-  if (events.moved.empty()) return;
-  Json bodies = Json::array();
-  for (const BodyId body : events.moved) bodies.push_back(body.index);
-  line(step, "moved", {{"bodies", bodies}});
+  const auto list = [&](const char* event, std::span<const BodyId> of) {
+    Json bodies = Json::array();
+    for (const BodyId body : of) bodies.push_back(body.index);
+    if (!of.empty()) line(step, event, {{"bodies", bodies}});
+  };
+  list("moved", events.moved);
+  list("slept", events.slept);
+  list("woken", events.woken);
 }
 
 }  // namespace pcphys::command

@@ -80,13 +80,6 @@ Status check_choice(const char* option, const std::string& value, std::initializ
 
 namespace {
 
-/// What the contract of the command already names and this version does not do.
-Status check_later(const RunOptions& options) {
-  if (auto status = check_choice("sleep", options.sleep, {"on", "off"}); !status) return status;
-  if (options.sleep == "on") return bad("--sleep on comes with a later version; until then nothing sleeps, so leave it off.");
-  return {};
-}
-
 Status check_numbers(const RunOptions& options) {
   constexpr long long many = 1'000'000'000;
   if (options.count)
@@ -164,7 +157,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
   app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
   app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
-  app.add_option("--sleep", options.sleep, "off; on comes with a later version")->capture_default_str();
+  app.add_option("--sleep", options.sleep, "on: islands at rest are no longer stepped")->capture_default_str();
   app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")
       ->capture_default_str();
   app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
@@ -180,10 +173,10 @@ void add_output_options(CLI::App& app, RunOptions& options) {
 
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   Setup setup;
-  for (const Status& status :
-       {check_later(options), check_numbers(options), check_choice("narrow", options.narrow, {"native", "fcl"}),
-        check_choice("integrator", options.integrator, {"verlet", "seed"}),
-        check_choice("timings", options.timings, {"on", "off"})})
+  for (const Status& status : {check_numbers(options), check_choice("sleep", options.sleep, {"on", "off"}),
+                               check_choice("narrow", options.narrow, {"native", "fcl"}),
+                               check_choice("integrator", options.integrator, {"verlet", "seed"}),
+                               check_choice("timings", options.timings, {"on", "off"})})
     if (!status) return status.error();
   if (auto status = set_places(options, setup.settings); !status) return status.error();
   if (auto status = set_precision(options, setup); !status) return status.error();
@@ -201,7 +194,8 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.settings.threads =
       options.threads > 0 ? std::uint32_t(options.threads) : std::clamp(std::thread::hardware_concurrency(), 1u, 256u);
   setup.settings.device = int(options.device);
-  setup.settings.contact_events = setup.settings.hit_events = setup.settings.moved_events = !options.events.empty();
+  setup.settings.contact_events = setup.settings.hit_events = setup.settings.body_events = !options.events.empty();
+  setup.settings.sleep = options.sleep == "on";
   setup.settings.timings = options.timings == "on";
   setup.dt = *dt;
   setup.steps = options.steps ? std::uint64_t(*options.steps) : default_steps;

@@ -108,6 +108,9 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"substeps_last", outcome.last.substeps},
       {"refined_last", outcome.last.refined},
       {"fourth_order_last", outcome.last.fourth_order},
+      {"sleep", setup.settings.sleep},
+      {"asleep_last", outcome.last.asleep},
+      {"islands_asleep_last", outcome.last.islands_asleep},
       {"lanes", simulation.lanes},
       {"threads", setup.settings.threads},
       {"median_ms", median(outcome.times.step)},
@@ -172,6 +175,7 @@ std::string to_text(const Simulation& simulation, const Outcome& outcome) {
   for (const LeftOut& item : simulation.stepper.plan().left_out)
     text += "left out          " + item.what + ": " + item.why + "\n";
   text += format("contacts          %u with %u points\n", outcome.last.contacts, outcome.last.points);
+  if (s.sleep) text += format("asleep            %u bodies in %u islands\n", outcome.last.asleep, outcome.last.islands_asleep);
   text += format("overlap           max %.3f mm, mean %.3f mm, peak %.3f mm\n", mm * end.penetration.max,
                  mm * end.penetration.mean(), mm * outcome.peaks.penetration);
   if (simulation.world.joint_count() > 0)

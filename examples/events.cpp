@@ -23,7 +23,7 @@ int main() {
     if (!world.create_body(marble)) return 1;
   }
   StepSettings settings;
-  settings.contact_events = settings.hit_events = settings.moved_events = true;
+  settings.contact_events = settings.hit_events = settings.body_events = true;
   settings.hit_speed = 2;  // [m/s]
   Stepper stepper(settings);
   std::size_t sounds = 0, touching = 0, drawn = 0;

@@ -57,5 +57,6 @@ void build_chainswing(Builder& builder);
 void build_door(Builder& builder);
 void build_dominoes(Builder& builder);
 void build_hulls(Builder& builder);
+void build_ballistic(Builder& builder);
 
 }  // namespace pcphys::scenes

@@ -27,6 +27,7 @@ constexpr Entry entries[] = {
     {{"door", "COUNT free-swinging doors, each hit by a ball", 1, 100'000}, build_door},
     {{"dominoes", "COUNT dominoes along a spiral; a ball knocks over the first", 50, 1'000'000}, build_dominoes},
     {{"hulls", "COUNT random convex hulls of 8 to 32 vertices fall into an open-lidded box", 40, 1'000'000}, build_hulls},
+    {{"ballistic", "COUNT spinning balls in free fall that meet nothing", 1'000, 4'000'000}, build_ballistic},
 };
 
 constexpr auto infos = [] {

@@ -1,6 +1,7 @@
 // Pins events: who touched, let go, was hit and moved is told once, in stable order, with the numbers that mechanics gives; the lists are
 // the same to the bit in all lanes and threads, on GL and in all mixes of places; asking changes no bit of the motion; what is not asked
 // for is not told; a failed step tells nothing; ids of what is gone are told once more, as ended.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -10,7 +11,7 @@ using namespace worldtest;
 
 namespace {
 
-void ask_for_all(StepSettings& s) { s.contact_events = s.hit_events = s.moved_events = true; }
+void ask_for_all(StepSettings& s) { s.contact_events = s.hit_events = s.body_events = true; }
 StepSettings all_events(double hit_speed = 1) {
   StepSettings s;
   ask_for_all(s);
@@ -235,6 +236,51 @@ TEST_CASE("moved: those whose pose changed, by id; not those that stand") {
     const StepEvents e = stepper.events();
     CHECK(std::vector<BodyId>(e.moved.begin(), e.moved.end()) == std::vector<BodyId>{third, first, second});
   }
+}
+
+TEST_CASE("slept and woken are told once, and a touch lasts while its bodies sleep") {
+  SceneWorld s = scene_world("stack", 3);
+  StepSettings settings = all_events();
+  settings.sleep = true;
+  Stepper stepper(settings);
+  std::vector<BodyId> slept, woken;
+  int begun = 0, ended = 0;
+  const auto step = [&](int steps) {
+    for (int i = 0; i < steps; i++) {
+      run(s.world, stepper, 1);
+      const StepEvents e = stepper.events();
+      slept.insert(slept.end(), e.slept.begin(), e.slept.end());
+      woken.insert(woken.end(), e.woken.begin(), e.woken.end());
+      begun += int(e.begun.size()), ended += int(e.ended.size());
+    }
+  };
+  step(600);
+  REQUIRE(slept.size() == 3);
+  CHECK(std::ranges::is_sorted(slept));
+  CHECK(woken.empty());
+  CHECK(begun == 3);
+  CHECK(ended == 0);
+  CHECK(stepper.events().moved.empty());
+  must(s.world.wake(slept[0]));
+  step(1);
+  CHECK(woken == slept);
+  Stepper late(settings);  // knows nobody yet
+  step(400);
+  run(s.world, late, 1);
+  CHECK(ended == 0);
+  must(s.world.set_velocity(slept[2], {0, 3, 0}));
+  step(20);
+  CHECK(ended == 1);
+}
+
+TEST_CASE("moved in flight, where steps keep no copy of the poses") {
+  SceneWorld s = scene_world("ballistic", 20), plain = scene_world("ballistic", 20);
+  Stepper stepper(all_events()), without;
+  run(s.world, stepper, 5);
+  run(plain.world, without, 5);
+  CHECK(stepper.plan().flight);
+  CHECK(stepper.events().moved.size() == s.world.bodies().size());
+  CHECK(s.world.hash() == plain.world.hash());
 }
 
 TEST_CASE("only what is asked for; and a failed step tells nothing") {

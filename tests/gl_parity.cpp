@@ -125,7 +125,14 @@ template <class Scalar> void compare_gl(Precision precision, const CpuKernels& r
   REQUIRE_MESSAGE((precision == Precision::f64 ? report.f64 : report.f32).parity(), "this device promises no parity");
   const std::unique_ptr<Backend> gl = require_gl(precision);
   compare<Scalar>(reference, "GL",
-                  [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, kernel, info, state); });
+                  [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, gl->width(), kernel, info, state); });
+  // as small forests stand: trees of several shapes side by side in one work group
+  compare<Scalar>(reference, "GL, a tree a block", [&](Kernel kernel, std::size_t info, State<Scalar>& state) {
+    if (schema(kernel).domain == Domain::tree)
+      run_gl(*gl, 1, kernel, info, state);
+    else
+      run_cpu(reference, kernel, info, state);
+  });
 }
 
 template <class Scalar> void compare_lanes(const CpuKernels& reference, const CpuKernels& lanes) {

@@ -155,31 +155,32 @@ inline void require(const Status& status) {
   if (!status) FAIL(status.error().message);
 }
 
-template <class Scalar> void run_gl(Backend& gl, Kernel kernel, std::size_t info, State<Scalar>& state) {
+/// `width`: slots side by side, gl.width() or 1.
+template <class Scalar> void run_gl(Backend& gl, std::uint32_t width, Kernel kernel, std::size_t info, State<Scalar>& state) {
   std::array<std::vector<Scalar>, buffer_count> reals;
   std::array<std::vector<std::uint32_t>, buffer_count> indices;
   std::array<SlotLayout, buffer_count> layouts;
-  const TreeLayout trees = lay_out(state.trees, gl.width());
+  const TreeLayout trees = lay_out(state.trees, width);
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
-    indices[i] = pack_indices(access.buffer, state, gl.width(), trees);
-    layouts[i] = layout_of(access.buffer, state, gl.width(), trees);
+    indices[i] = pack_indices(access.buffer, state, width, trees);
+    layouts[i] = layout_of(access.buffer, state, width, trees);
     reals[i].resize(layouts[i].size * schema(access.buffer).reals);
-    copy_reals(access.buffer, state.reals[i].data(), reals[i].data(), state.reals[i].size(), gl.width(), layouts[i], true);
+    copy_reals(access.buffer, state.reals[i].data(), reals[i].data(), state.reals[i].size(), width, layouts[i], true);
     void* host = is_index(access.buffer) ? static_cast<void*>(indices[i].data()) : reals[i].data();
     require(gl.attach(access.buffer, host, indices[i].size() * 4 + reals[i].size() * sizeof(Scalar)));
     require(gl.upload(access.buffer));
   }
   require(gl.set_infos(state.infos.data(), state.infos.size()));
-  const std::vector<Range> ranges = ranges_of(kernel, state, gl.width());
-  const KernelRun run{kernel, true, std::uint32_t(info), gl.width(), ranges};
+  const std::vector<Range> ranges = ranges_of(kernel, state, width);
+  const KernelRun run{kernel, true, std::uint32_t(info), width, ranges};
   require(gl.run({&run, 1}));
   require(gl.finish());
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer);
     if (!access.write) continue;
     require(gl.download(access.buffer));
-    copy_reals(access.buffer, reals[i].data(), state.reals[i].data(), state.reals[i].size(), gl.width(), layouts[i], false);
+    copy_reals(access.buffer, reals[i].data(), state.reals[i].data(), state.reals[i].size(), width, layouts[i], false);
   }
 }
 

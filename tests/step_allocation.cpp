@@ -127,7 +127,7 @@ TEST_CASE("no allocation in 100 steps of scenes that move") {
 
 TEST_CASE("no allocation for events") {
   StepSettings settings;
-  settings.contact_events = settings.hit_events = settings.moved_events = true;
+  settings.contact_events = settings.hit_events = settings.body_events = true;
   check_none("balls", 200, Precision::f32, settings, 60, 100);
   check_none("ragdolls", 4, Precision::f64, settings, 60, 100);
 }

@@ -127,6 +127,10 @@ inline constexpr unsigned impact_sweeps = 8;
 /// holds it (docs/impulses.md).
 inline constexpr unsigned settling_visits = 8, settling_steps = 16;
 
+/// A body is slow below this speed of its centre of mass [m/s] and this spin [rad/s], and falls asleep with its island when all of it has been
+/// for so long [s] (docs/sleeping.md). Piles at rest keep a hundredth of that and less.
+inline constexpr double sleep_speed = 0.02, sleep_spin = 0.05, sleep_time = 0.5;
+
 /// Proxies of the broad phase are fattened by this, so that most steps change no pair [m].
 inline constexpr double broad_margin = 0.05;
 

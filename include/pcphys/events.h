@@ -1,4 +1,4 @@
-// What happened in a step, for those who ask (StepSettings): who touched, who let go, who hit whom, who moved. docs/events.md
+// What happened in a step, for those who ask (StepSettings): who touched, who let go, who hit whom, who moved, slept or woke. docs/events.md
 #pragma once
 #include <cstdint>
 #include <span>
@@ -39,6 +39,8 @@ struct StepEvents {
   std::span<const ContactEnded> ended;
   std::span<const ContactHit> hits;
   std::span<const BodyId> moved;  // their position or orientation is another than before the step
+  std::span<const BodyId> slept;  // they sleep since this step
+  std::span<const BodyId> woken;  // they no longer do
 };
 
 }  // namespace pcphys

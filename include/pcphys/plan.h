@@ -65,6 +65,7 @@ struct PlanBinding {
 
 struct StepPlan {
   std::uint32_t substeps = 0;  // of octave 0
+  bool flight = false;         // nothing meets or holds a body: one kernel makes all sub-steps of each
   std::vector<PlanEntry> entries;
   std::vector<LeftOut> left_out;
   std::vector<PlanBinding> bindings;                  // each buffer of each place once

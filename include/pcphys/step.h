@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pcphys/constants.h"
 #include "pcphys/events.h"
 #include "pcphys/kernel.h"
 #include "pcphys/plan.h"
@@ -33,6 +34,12 @@ struct StepSettings {
   bool host_context = false;  // use the GL context that is current on this thread
   bool timings = true;        // clock the step and each stage (StepReport); on GL this waits for the device after each
 
+  /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md). A step with it off wakes what sleeps.
+  bool sleep = false;
+  double sleep_speed = constants::sleep_speed;  // what is faster is not at rest [m/s]
+  double sleep_spin = constants::sleep_spin;    // nor what spins faster [rad/s]
+  double sleep_time = constants::sleep_time;    // how long an island is at rest before it sleeps [s]
+
   double push_speed = 3;               // at which an overlap is undone, at most [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
   double contact_margin = 0;           // contacts are kept up to this gap [m]; 0: up to margin_share of the smaller shape
@@ -41,8 +48,8 @@ struct StepSettings {
   /// What Stepper::events tells of; nothing is spent on the rest (docs/events.md).
   bool contact_events = false;  // begun and ended
   bool hit_events = false;
-  bool moved_events = false;
-  double hit_speed = 1;  // contacts that meet slower are no hits [m/s]
+  bool body_events = false;  // moved, fell asleep, woke
+  double hit_speed = 1;      // contacts that meet slower are no hits [m/s]
 
   void set_all(Place place) { integrate = joints = impulses = place; }
 };
@@ -57,6 +64,8 @@ struct StepReport {
   std::uint32_t refined = 0;       // bodies whose islands made more than the setting
   std::uint32_t fourth_order = 0;  // bodies that moved in fourth order (StepSettings::order)
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
+  std::uint32_t asleep = 0, islands_asleep = 0;  // bodies that sleep after this step, and how many islands they make
+  std::uint32_t fell_asleep = 0, woke = 0;       // bodies, in this step
   /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of the same bodies, joints
   /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;

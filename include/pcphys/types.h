@@ -88,6 +88,7 @@ struct BodyDef {
   Material material;
   double linear_drag = 0;   // F in v' = -F v [1/s]; the original's default is 0.25
   double angular_drag = 0;  // the same of the angular momentum [1/s]
+  bool can_sleep = true;    // false: it keeps its island awake (docs/sleeping.md)
 };
 
 /// Freedom of b's frame relative to a's. Angles [rad]: roll about the frames' x axis (twist), pitch

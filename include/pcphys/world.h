@@ -101,6 +101,14 @@ class World {
   /// velocity, mass or drag, or changing its forces lets it move again, at rest unless a velocity is set.
   Result<bool> frozen(BodyId body) const;
 
+  /// Whether it sleeps: its step left it out, and so will the next (docs/sleeping.md).
+  Result<bool> is_asleep(BodyId body) const;
+  /// Wakes its island at the next step, and lets no body rest on what it was before. What the functions of this class change wakes by
+  /// itself; this is for what they do not see, such as a change of what a kernel of the host's own does.
+  Status wake(BodyId body);
+  Result<bool> can_sleep(BodyId body) const;
+  Status set_can_sleep(BodyId body, bool can_sleep);
+
   // ---- inputs ----------------------------------------------------------------------------------------
   Vec3 gravity() const;
   Status set_gravity(Vec3 gravity);

@@ -109,6 +109,21 @@ void Detector::rebuild(const WorldState& s) {
     solid++;
   }
   possible_ = some_dynamic && solid > 1;
+  rest_ = 0;
+}
+
+void Detector::follow_rest(const WorldState& s) {
+  if (rest_ == s.rest_version) return;
+  rest_ = s.rest_version;
+  parts_.clear();
+  if (s.sleepers == 0) return;
+  parts_.resize(s.bodies.size(), Part::none);
+  for (std::uint32_t row = 0; row < parts_.size(); row++) {
+    if (s.asleep(row))
+      parts_[row] = Part::sleeps;
+    else if (!s.stands(row) || s.tables.get(Buffer::rest, row, rest_stirred) > 0)
+      parts_[row] = Part::looked_at;
+  }
 }
 
 bool Detector::some_material(const WorldState& s, std::initializer_list<std::uint32_t> offsets) {
@@ -120,6 +135,7 @@ bool Detector::some_material(const WorldState& s, std::initializer_list<std::uin
 
 Status Detector::find_pairs(const WorldState& s, double dt, const Options& options) {
   if (structure_ != s.structure_version || serial_ != s.serial) rebuild(s);
+  follow_rest(s);
   if (!possible_) return {};
   if (s.tables.precision() == Precision::f32)
     bound(s, dt, options, scratch_f_);

@@ -35,11 +35,14 @@ class Detector {
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
-    bool restitution = false;  // some contact bounces
-    bool impacts = false;      // or is between shapes that meet in flight
-    bool rolling = false;      // some contact resists rolling or turning
-    bool placed = false;       // some is of a body that was just placed
-    bool changed = false;      // other pairs touch than in the last step
+    bool restitution = false;                 // some contact bounces
+    bool impacts = false;                     // or is between shapes that meet in flight
+    bool rolling = false;                     // some contact resists rolling or turning
+    bool placed = false;                      // some is of a body that was just placed
+    bool changed = false;                     // other pairs touch than in the last step
+    std::uint32_t kept = 0, kept_points = 0;  // of contacts and points, those of bodies that sleep: as they were
+    /// Some contact has more than one point, so that something may stand on something.
+    bool faces() const { return points - kept_points > contacts - kept; }
   };
 
   /// Broad phase. Errors (too many pairs, a pose that is not finite) leave the world as it was.
@@ -52,6 +55,8 @@ class Detector {
   /// `before`: the poses that the step began with. `find_pairs` looks as far for them as they went, until `forget_strays`.
   bool find_strays(const WorldState& state, const AlignedBytes& before);
   void forget_strays();
+  /// Rows of bodies that sleep and that something touches which does not.
+  std::span<const std::uint32_t> touched() const { return touched_; }
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
   /// Whether some body has restitution, rolling or torsional friction.
@@ -101,6 +106,17 @@ class Detector {
     Manifold<Scalar> own;  // where nothing else holds it
   };
 
+  /// What the narrow phase looks at: pairs with a body that goes, or that stands and was stirred.
+  enum class Part : std::uint8_t { none, looked_at, sleeps };
+  void follow_rest(const WorldState& state);
+  bool looked_at(Pair shapes) const {
+    return parts_[proxies_[shapes.a].body] == Part::looked_at || parts_[proxies_[shapes.b].body] == Part::looked_at;
+  }
+  /// Whether a contact of the last step stands as it is.
+  bool stays(const std::array<std::uint32_t, 2>& ends) const {
+    const Part a = parts_[ends[0]], b = parts_[ends[1]];
+    return a != Part::looked_at && b != Part::looked_at && (a == Part::sleeps || b == Part::sleeps);
+  }
   static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
   void rebuild(const WorldState& state);
   template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
@@ -111,7 +127,10 @@ class Detector {
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
-  /// The pairs whose tight boxes overlap, into `near_`.
+  /// The row of one more contact.
+  template <class Scalar>
+  Scalar* append(Scratch<Scalar>& scratch, const ContactKey& key, const std::array<std::uint32_t, 2>& ends);
+  /// The pairs whose tight boxes overlap and that are looked at, into `near_`.
   void list_near();
   /// Finds the manifolds of pairs that go in lanes, and marks all pairs that may have one.
   template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
@@ -146,6 +165,9 @@ class Detector {
   template <class Scalar> Scratch<Scalar>& scratch();
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
+  std::uint64_t rest_ = 0;
+  std::vector<Part> parts_;             // of bodies, by row; empty where none sleeps
+  std::vector<std::uint32_t> touched_;  // of those that sleep
   bool possible_ = false;
   std::vector<Proxy> proxies_;
   std::vector<std::uint32_t> standing_;  // shapes of fixed and kinematic bodies

@@ -57,6 +57,7 @@ void Detector::list_near() {
     n += overlap(tight_[pairs[i].a], tight_[pairs[i].b]);
   }
   near_.resize(n);
+  if (!parts_.empty()) std::erase_if(near_, [&](std::uint32_t i) { return !looked_at(pairs[i]); });
 }
 
 template <class Scalar> void Detector::sort_out(const Options& options, Scratch<Scalar>& scratch) {
@@ -125,6 +126,16 @@ bool Detector::touches(const WorldState& s, double dt, const Options& options, S
 }
 
 template <class Scalar>
+Scalar* Detector::append(Scratch<Scalar>& scratch, const ContactKey& key, const std::array<std::uint32_t, 2>& ends) {
+  const std::size_t row = next_.keys.size(), bytes = reals_of(Buffer::contact) * sizeof(Scalar);
+  next_.keys.push_back(key);
+  next_.ends.push_back(ends);
+  next_.features.push_back({});
+  if (scratch.contacts.size() < (row + 1) * bytes) scratch.contacts.resize((row + 1) * bytes);
+  return reinterpret_cast<Scalar*>(scratch.contacts.data() + row * bytes);
+}
+
+template <class Scalar>
 Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   const auto pairs = pairs_.pairs();
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
@@ -145,25 +156,38 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   scratch.flight = 0;
   const BodyReader<Scalar> bodies(s.tables);
   Touch<Scalar> touch;
+  touched_.clear();
+  std::uint32_t kept = parts_.empty() ? before_rows : 1;
+  // contacts of what sleeps, up to a key
+  const auto keep_until = [&](const ContactKey* end) {
+    for (; kept < before_rows && (!end || s.contacts.keys[kept] < *end); kept++) {
+      if (!stays(s.contacts.ends[kept])) continue;
+      const Scalar* contact = before + kept * reals;
+      Scalar* out = append(scratch, s.contacts.keys[kept], s.contacts.ends[kept]);
+      std::copy_n(contact, reals, out);
+      next_.features.back() = s.contacts.features[kept];
+      found.kept++;
+      found.kept_points += std::uint32_t(contact[3]);
+    }
+  };
   const auto add = [&](std::uint32_t i) {
     if (!touches(s, dt, options, scratch, i, touch)) return;
     const auto [a, b] = pairs[i];
     const auto [row_a, row_b] = touch.rows;
     const Manifold<Scalar>& manifold = *touch.manifold;
     const ContactKey key{a, b};
-    const std::uint32_t row = std::uint32_t(next_.keys.size());
-    next_.keys.push_back(key);
-    next_.ends.push_back({row_a, row_b});
-    next_.features.push_back({});
-    if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
-    Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
+    if (kept < before_rows) keep_until(&key);
+    Scalar* out = append(scratch, key, {row_a, row_b});
+    auto& features = next_.features.back();
+    if (!parts_.empty())
+      for (const std::uint32_t body : touch.rows)
+        if (parts_[body] == Part::sleeps) touched_.push_back(body);
     const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
-    write_contact(manifold, of_a, of_b, out, next_.features[row].data());
+    write_contact(manifold, of_a, of_b, out, features.data());
     out[31] = Scalar(touch.impact);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
     if (old < before_rows && s.contacts.keys[old] == key)
-      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out,
-                        next_.features[row].data());
+      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out, features.data());
     found.points += manifold.count;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
@@ -177,6 +201,8 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     marks_.each(add);
   else
     for (const std::uint32_t i : near_) add(i);
+  keep_until(nullptr);
+  found.points += found.kept_points;
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   found.placed = s.settling > 0 && some_settles(s, next_.ends);
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;

@@ -157,6 +157,7 @@ PC_INLINE void pc_raise(Scalar* flag) {
 #define PC_IO const Io &io,
 #define PC_PASS io,
 #define PC_INFO(field) Real(io.info->field)
+#define PC_COUNT(field) uint(io.info->field)
 #define PC_GATHER(buffer, i, k) pc_gather(io.buffer, i, quads_##buffer, k)
 #define PC_ROW(buffer, i) pc_row(io.buffer, i, quads_##buffer)
 #define PC_ROW_QUAD(buffer, row, k) pc_row_quad(row, k)

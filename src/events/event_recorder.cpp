@@ -1,11 +1,14 @@
 #include "events/event_recorder.h"
 
 #include <algorithm>
+#include <cstring>
+#include <iterator>
 
 namespace pcphys {
 namespace {
 
-constexpr std::uint32_t speed_at = 4;  // in a row of Buffer::touch
+constexpr std::uint32_t speed_at = 4;            // in a row of Buffer::touch
+constexpr std::uint32_t normal_impulse_at = 20;  // in a row of Buffer::contact
 
 template <class Scalar> const Scalar* row_of(const AlignedBytes& bytes, Buffer buffer, std::uint32_t row) {
   return reinterpret_cast<const Scalar*>(bytes.data()) + std::size_t{row} * schema(buffer).reals;
@@ -27,9 +30,15 @@ TouchingPair pair_of(const WorldState& s, std::uint32_t contact) {
   return {s.body_ids.id<BodyId>(a.index), s.body_ids.id<BodyId>(b.index), place(a, shape_a), place(b, shape_b)};
 }
 
+bool sleeps(const WorldState& s, std::uint32_t contact) {
+  return s.asleep(s.contacts.ends[contact][0]) || s.asleep(s.contacts.ends[contact][1]);
+}
+
 /// Whether a point was pressed in this step, or the shapes overlap.
 template <class Scalar> bool touches(const WorldState& s, std::uint32_t contact) {
   const Scalar *touch = row_of<Scalar>(s, Buffer::touch, contact), *found = row_of<Scalar>(s, Buffer::contact, contact);
+  // what sleeps had no step, and its row of `touch` may be of another: its impulses are those that it rests on
+  if (sleeps(s, contact)) touch = found + normal_impulse_at;
   if (touch[0] > 0 || touch[1] > 0 || touch[2] > 0 || touch[3] > 0) return true;
   for (int i = 0; i < int(found[3]); i++)
     if (found[7 + 4 * i] <= 0) return true;
@@ -91,7 +100,7 @@ template <class Scalar> void EventRecorder::find_hits(const WorldState& s, const
   for (std::uint32_t row = 1; row < s.contact_rows(); row++) {
     const Scalar* touch = row_of<Scalar>(s, Buffer::touch, row);
     const double speed = double(touch[speed_at]);
-    if (!(speed > 0 && speed >= least_speed)) continue;
+    if (!(speed > 0 && speed >= least_speed) || sleeps(s, row)) continue;
     const double impulse = double(touch[0]) + double(touch[1]) + double(touch[2]) + double(touch[3]);
     hits_.push_back({meeting<Scalar>(s, row, before), speed, impulse});
   }
@@ -130,7 +139,7 @@ void EventRecorder::record_as(const StepSettings& settings, const WorldState& s,
                               std::span<const std::uint32_t> moving) {
   if (settings.contact_events) follow_contacts<Scalar>(s, before);
   if (settings.hit_events) find_hits<Scalar>(s, before, settings.hit_speed);
-  if (settings.moved_events && before.poses) find_moved<Scalar>(s, *before.poses, moving);
+  if (settings.body_events && before.poses) find_moved<Scalar>(s, *before.poses, moving);
 }
 
 void EventRecorder::record(const StepSettings& settings, const WorldState& s, const Before& before,
@@ -141,6 +150,28 @@ void EventRecorder::record(const StepSettings& settings, const WorldState& s, co
     record_as<float>(settings, s, before, moving);
   else
     record_as<double>(settings, s, before, moving);
+}
+
+void EventRecorder::keep_poses(const WorldState& s) {
+  const AlignedBytes& now = s.tables.bytes(Buffer::pose);
+  poses_.resize(now.size());
+  std::memcpy(poses_.data(), now.data(), now.size());
+}
+
+/// By comparison with who slept after the last step, when that has changed.
+void EventRecorder::follow_sleep(const StepSettings& settings, const WorldState& s) {
+  if (!settings.body_events) return;
+  if (rest_serial_ != s.serial) asleep_.clear();
+  if ((s.sleepers == 0 && asleep_.empty()) || (rest_ == s.rest_version && rest_serial_ == s.serial)) return;
+  rest_ = s.rest_version;
+  rest_serial_ = s.serial;
+  next_asleep_.clear();
+  for (std::uint32_t index = 0; index < s.body_ids.size(); index++)
+    if (s.body_ids.alive(index) && s.asleep(s.body_ids.row(index))) next_asleep_.push_back(s.body_ids.id<BodyId>(index));
+  std::ranges::set_difference(next_asleep_, asleep_, std::back_inserter(slept_));
+  std::ranges::set_difference(asleep_, next_asleep_, std::back_inserter(woken_));
+  std::erase_if(woken_, [&](BodyId body) { return !s.body_ids.valid(body); });  // destroyed, not awake
+  asleep_.swap(next_asleep_);
 }
 
 }  // namespace pcphys

@@ -42,6 +42,7 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 // Rows of tables are `quads_<buffer>` times Real4; slots are arrays of structures of arrays of PC_W lanes,
 // four reals of a lane side by side: 16 or 32 bytes an access, neighbouring lanes adjacent.
 #define PC_INFO(field) pc_info.field
+#define PC_COUNT(field) uint(pc_info.field)
 #define PC_GATHER(buffer, i, k) pc_quad_of(io_##buffer[(i) * quads_##buffer + (k)])
 #define PC_QUAD_AT(i, quads, k) ((i) * (quads) + (k))
 #define PC_ROW(buffer, i) ((i) * quads_##buffer)

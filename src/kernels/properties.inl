@@ -24,6 +24,7 @@ PC_PROPERTY(body, pose, 12, quat, orientation_low, state, 0, "1", "the same of o
 PC_BUFFER(body, velocity_parts, 4, "what belongs to the velocities besides motion")
 PC_PROPERTY(body, velocity_parts, 0, vec3, velocity_half_change, state, 0, "m/s", "velocity in phase with the position = displacement_rate + this")
 PC_PROPERTY(body, velocity_parts, 4, vec3, momentum_half_change, state, 0, "kg m^2/s", "the same of angular_momentum")
+PC_PROPERTY(body, velocity_parts, 7, real, some_left, scratch, 0, "1", "of the ground's row alone: 1 since a body in flight was about to leave the range of numbers (Backend::take_flag)")
 PC_PROPERTY(body, velocity_parts, 8, vec3, velocity_low, state, 0, "m/s", "what rounding dropped from displacement_rate when forces and lasting contacts changed it")
 PC_PROPERTY(body, velocity_parts, 11, real, some_struck, scratch, 0, "1", "of the ground's row alone: 1 since an impact struck some body, until another sweep has looked (Backend::take_flag)")
 PC_PROPERTY(body, velocity_parts, 12, vec3, momentum_low, state, 0, "kg m^2/s", "the same of angular_momentum")
@@ -58,6 +59,12 @@ PC_PROPERTY(body, material, 3, real, friction_rule, input, 1, "1", "mean, geomet
 PC_PROPERTY(body, material, 4, real, rolling_friction, input, 0, "m", "lever of the couple that resists rolling")
 PC_PROPERTY(body, material, 5, real, torsional_friction, input, 0, "m", "the same about the normal")
 PC_PROPERTY(body, material, 6, real, restitution_rule, input, 0, "1", "as friction_rule")
+
+PC_BUFFER(body, rest, 1, "who sleeps (docs/sleeping.md); no kernel reads it")
+PC_PROPERTY(body, rest, 0, real, quiet_time, state, 0, "s", "how long it has been slow, up to StepSettings::sleep_time; hashed where some of these three is not 0")
+PC_PROPERTY(body, rest, 1, real, asleep, state, 0, "1", "1 while it sleeps")
+PC_PROPERTY(body, rest, 2, real, stirred, state, 0, "1", "1 where the host has changed it since the last step and something sleeps that this may wake")
+PC_PROPERTY(body, rest, 3, real, can_sleep, input, 1, "1", "0: it never sleeps, nor does its island")
 
 PC_TABLE(joint, "a pin between two bodies, with an angle constraint")
 PC_BUFFER(joint, joint_frame, 6, "what the host gave")

@@ -18,7 +18,7 @@ void Columns::list(const WorldState& state, const TreeNodes& trees, Islands& isl
   constexpr std::uint32_t none = ~0u;
   column_of_.assign(state.bodies.size(), none);
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
-    if (!state.responds(row) || trees.node(row) > 0) continue;
+    if (!state.responds(row) || trees.node(row) > 0 || state.asleep(row)) continue;
     const std::uint32_t root = islands.root(row);
     if (islands.size(root) < 2) continue;
     if (column_of_[root] == none) {

@@ -68,6 +68,9 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.rounding = Scalar(constants::rest_roundings * epsilon);
   biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
 
+  biased.substeps = Scalar(from.substeps << octave);
+  biased.largest_state = Scalar(constants::largest_state);
+
   const auto change = [&](Phase phase, double before, double after) {
     InfoOf<Scalar>& info = infos[unsigned(phase)];
     info = biased;

@@ -19,10 +19,12 @@ struct InfoInputs {
         h(h),
         last_substep(last_substep),
         push_speed(settings.push_speed),
-        restitution_threshold(settings.restitution_threshold) {}
+        restitution_threshold(settings.restitution_threshold),
+        substeps(settings.substeps) {}
 
   Vec3 gravity;
   double h = 0, last_substep = 0, push_speed = 0, restitution_threshold = 0;
+  std::uint32_t substeps = 1;
   friend bool operator==(const InfoInputs&, const InfoInputs&) = default;
 };
 

@@ -13,7 +13,7 @@ void Loads::find(const WorldState& state, const TreeNodes& trees) {
   uneven_.clear();
   for (std::uint32_t row = 1; row < state.contacts.ends.size(); row++) {
     const auto [a, b] = state.contacts.ends[row];
-    if (!state.responds(a) || !state.responds(b) || trees.node(a) > 0 || trees.node(b) > 0) continue;
+    if (!state.responds(a) || !state.responds(b) || trees.node(a) > 0 || trees.node(b) > 0 || state.asleep(a)) continue;
     const double x = state.tables.get(Buffer::motion, a, 3), y = state.tables.get(Buffer::motion, b, 3);
     if (x >= constants::uneven_masses * y) uneven_.push_back({row, a, x / y});
     if (y >= constants::uneven_masses * x) uneven_.push_back({row, a, -y / x});

@@ -77,7 +77,7 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
       of_bodies_[root] = std::max(of_bodies_[root], whole ? w.octave : std::uint8_t{1});
     }
     for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
-      if (state.stands(row)) continue;
+      if (!state.goes(row)) continue;
       of_bodies_[row] = of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
       refined_ += of_bodies_[row] > 0;
     }
@@ -91,7 +91,7 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   if (!of_bodies_.empty()) {
     used_ = 0;
     for (std::uint32_t row = 1; row < of_bodies_.size(); row++)
-      if (!state.stands(row)) used_ |= 1u << of_bodies_[row];
+      if (state.goes(row)) used_ |= 1u << of_bodies_[row];
   }
   return !std::ranges::equal(before_, of_bodies_);
 }

@@ -125,12 +125,17 @@ class Builder {
 
 void leave_out(const PlanSignature& s, StepPlan& plan) {
   const auto out = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
-  if (!s.bodies) out("integrate", "no body moves");
+  const bool idle = s.sleepers && !s.bodies;
+  constexpr const char* all_sleep = "all bodies sleep";
+  if (s.sleepers && s.bodies) out("sleeping islands", "they are at rest, and nothing has touched them");
+  if (!s.bodies) out("integrate", idle ? all_sleep : "no body moves");
   if (s.bodies && !s.drag) out("drag", "no body has any");
   const bool seed = s.integrator == Integrator::seed;
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
-  if (!s.joints() && !s.trees) out("joints", "the world has no joints");
+  if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
+  if (!s.joints() && !s.trees)
+    out("joints", idle ? all_sleep : s.sleepers ? "no body that is awake has any" : "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
   if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
@@ -140,7 +145,9 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   for (unsigned why = 0; why < unsigned(SecondOrder::count); why++)
     if (s.second_order >> why & 1) out(reason(SecondOrder(why))[0], reason(SecondOrder(why))[1]);
   if (!s.shapes) out("collision", "no two shapes could ever touch");
-  if (!s.contacts()) out("impulses", s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
+  if (s.shapes && idle) out("collision", all_sleep);
+  if (!s.contacts())
+    out("impulses", idle ? all_sleep : s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
@@ -234,6 +241,16 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   b.own(Stage::impulses, true, k, count, false);
 }
 
+/// All sub-steps of bodies in flight, which no kernel needs to look at in between.
+void fly(Builder& b, const PlanSignature& s) {
+  const std::uint32_t last = s.substeps - 1;
+  b.enter(0);
+  b.own(Stage::integrate, false, 0, s.substeps);
+  const Kernel round = s.drag ? Kernel::fly_round_drag : Kernel::fly_round, any = s.drag ? Kernel::fly_drag : Kernel::fly;
+  b.kernel(s.gyroscopic ? any : round, Phase::first, 0);
+  b.own(Stage::impulses, true, last, s.substeps, true);
+}
+
 /// Where nothing moves the host's own kernels have their sub-steps all the same.
 void own_alone(Builder& b, const PlanSignature& s) {
   for (std::uint32_t k = 0; k < s.substeps; k++)
@@ -283,15 +300,24 @@ std::span<const Access> accesses(const PlanEntry& entry) {
 }
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }
 
+bool in_flight(const PlanSignature& s, OwnKernels::Ordered own) {
+  const bool alone = !s.trees && !s.joints() && !s.contacts();
+  return s.bodies && alone && s.octaves == 1 && s.integrator == Integrator::verlet && std::ranges::all_of(own, [](const auto& k) {
+    return k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate);
+  });
+}
+
 StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   StepPlan plan;
   plan.substeps = s.substeps;
   plan.own.assign(own.begin(), own.end());
+  plan.flight = in_flight(s, own);
   leave_out(s, plan);
   if (!s.bodies && own.empty()) return plan;
   Builder b(s, own, plan);
   if (!s.bodies) own_alone(b, s);
-  for (std::uint8_t octave = 0; s.bodies && octave < octave_count; octave++)
+  if (plan.flight) fly(b, s);
+  for (std::uint8_t octave = 0; s.bodies && !plan.flight && octave < octave_count; octave++)
     if (s.octaves >> octave & 1) substeps(b, s, octave);
   for (unsigned octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> (octave_count + octave) & 1) smooth_substeps(b, s, octave);

@@ -19,6 +19,7 @@ struct PlanSignature {
   Integrator integrator = Integrator::verlet;
   std::array<Place, stage_count> places{};  // by Stage
   bool bodies = false;                      // some move
+  bool sleepers = false;                    // some sleep
   bool drag = false;                        // of some body
   bool gyroscopic = false;                  // some body has unequal moments
   bool trees = false;                       // joints that stand in a tree
@@ -43,6 +44,9 @@ struct PlanSignature {
   bool solves_trees() const { return trees && (!pivots_bare || tree_contacts || tree_joints); }
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
+
+/// Whether each body moves by itself: nothing holds or meets it, and no kernel of the host's own looks at it between sub-steps.
+bool in_flight(const PlanSignature& signature, OwnKernels::Ordered own);
 
 /// `own`: kernels of the host's own, in the order in which those of one moment run.
 StepPlan make_plan(const PlanSignature& signature, OwnKernels::Ordered own = {});

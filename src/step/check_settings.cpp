@@ -30,6 +30,10 @@ Status check_settings(const StepSettings& s) {
   if (!std::isfinite(s.hit_speed) || s.hit_speed < 0)
     return Error{ErrorCode::bad_argument,
                  "The speed of hits is " + number(s.hit_speed) + " m/s; it must be finite and not below zero."};
+  for (double x : {s.sleep_speed, s.sleep_spin, s.sleep_time})
+    if (!std::isfinite(x) || x < 0)
+      return Error{ErrorCode::bad_argument,
+                   "Speed, spin and time below which and after which islands sleep must be finite and not below zero."};
   if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8)
     return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(s.lanes) +
                                              " lanes; use 1, 4, 8 (float only), or 0 for the widest that the processor has."};

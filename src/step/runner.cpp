@@ -31,10 +31,14 @@ bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
 std::size_t info_index(const PlanEntry& entry) {
   return std::size_t{octave_of(entry.octave)} * phase_count + std::size_t(entry.phase);
 }
-/// Where contact_impact raises its flag.
-std::uint32_t flag_quad() {
-  static const std::uint32_t quad =
-      std::ranges::find(properties(), std::string_view("some_struck"), &PropertySchema::name)->offset / 4;
+/// Where kernels raise a flag, the last real of a quad.
+std::uint32_t quad_of(std::string_view flag) { return std::ranges::find(properties(), flag, &PropertySchema::name)->offset / 4; }
+std::uint32_t struck_quad() {
+  static const std::uint32_t quad = quad_of("some_struck");
+  return quad;
+}
+std::uint32_t left_quad() {
+  static const std::uint32_t quad = quad_of("some_left");
   return quad;
 }
 
@@ -284,7 +288,7 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState&
     const bool clocked = timings && before && (timer_of(*before) != timer_of(entry) || before->place != entry.place);
     if (clocked) calls_.back().last = true;
     const bool joins = kernel && before && before->kind == PlanEntry::Kind::kernel && before->place == entry.place &&
-                       before->again == 0 && entry.again == 0 && !clocked && !(gl_ && entry.place == Place::cpu);
+                       before->again == 0 && entry.again == 0 && !clocked && !plan.flight && !(gl_ && entry.place == Place::cpu);
     if (!joins) calls_.push_back({&entry, std::uint32_t(runs_.size()), 0, false});
     if (kernel) {
       add_run(entry, state, schedule);
@@ -302,6 +306,7 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState&
   for (const PlanEntry& entry : plan.entries) octave = std::max(octave, octave_of(entry.octave));
   infos_ = phase_count * (1 + octave);
   kept_.clear();
+  if (plan.flight && !gl_) return;  // nothing of it can fail
   for (const Buffer buffer : plan.overwritten)
     if (keeps(buffer)) kept_.push_back(buffer);
 }
@@ -313,10 +318,18 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   if (gl_ && entry.place == Place::cpu && !runs[0].ranges.empty())
     for (const Access& a : accesses(entry))
       if (a.write && of_table(a.buffer)) state.tables.touch(a.buffer);
+  if (bound_.plan->flight && !entry.own) {
+    Status ok = backend.run(runs);
+    if (!ok || runs[0].ranges.empty()) return ok;
+    const Result<bool> left = backend.take_flag(Buffer::velocity_parts, left_quad());
+    if (!left) return left.error();
+    left_ = *left;
+    return ok;
+  }
   if (entry.again == 0) return backend.run(runs);
   if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
   for (std::uint32_t i = 0; i < entry.again; i++) {
-    const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, flag_quad());
+    const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, struck_quad());
     if (!struck) return struck.error();
     if (!*struck) break;
     if (Status ok = backend.run(runs); !ok) return ok;
@@ -332,6 +345,7 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
 }
 
 Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
+  left_ = false;
   for (Device& d : devices_)
     if (d.takes_part)
       if (Status ok = d.backend->set_infos(infos, infos_); !ok) return ok;

@@ -36,6 +36,8 @@ class Runner {
   void undo(WorldState& state);
   /// What a kernel of the host's own would say there. After `prepare`.
   Status check(Place place, const OwnKernel& kernel) { return at(place).backend->prepare(kernel); }
+  /// Whether the last run left some body where it was, since it would have left the range of numbers (StepPlan::flight).
+  bool left() const { return left_; }
   /// The plans that were bound are gone.
   void unbind() { bound_ = {}; }
   /// What the devices hold is not the data of the world that comes.
@@ -104,7 +106,8 @@ class Runner {
   std::uint32_t threads_ = 0;         // that were asked for
   std::array<Device, 2> devices_;     // by Place
   Rollback rollback_;
-  bool gl_ = false;  // takes part
+  bool gl_ = false;    // takes part
+  bool left_ = false;  // see `left`
 };
 
 }  // namespace pcphys

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <numeric>
 
 #include "pcphys/constants.h"
 
@@ -32,8 +31,9 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
   works_.clear();
   if (trees.rows() > 1)
     state.tables.precision() == Precision::f32 ? foresee<float>(state, works_) : foresee<double>(state, works_);
-  rows_.resize(ends.size() - 1);
-  std::iota(rows_.begin(), rows_.end(), 1u);
+  rows_.clear();
+  for (std::uint32_t row = 1; row < ends.size(); row++)
+    if (state.sleepers == 0 || !(state.asleep(ends[row][0]) || state.asleep(ends[row][1]))) rows_.push_back(row);
   colour_rows(state, ends, kind, trees, {});
 }
 
@@ -130,7 +130,7 @@ void TreeSlots::build(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];
     links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index});
-    if (!joint.spring && !solved_.stands_back(row)) joints.push_back(links.back());
+    if (!joint.spring && !solved_.stands_back(row) && !state.asleep(joint)) joints.push_back(links.back());
   }
   std::vector<double> masses(state.bodies.size());
   std::vector<std::uint32_t> ids(state.bodies.size());
@@ -143,7 +143,7 @@ void TreeSlots::build(const WorldState& state) {
   find_parallel(links);
   closing_.assign(forest_.closing().begin(), forest_.closing().end());
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
-    if (state.joints[row].spring) closing_.push_back(row);
+    if (state.joints[row].spring && !state.asleep(state.joints[row])) closing_.push_back(row);
   std::ranges::sort(closing_);
   pivots_ = find_pivots(forest_, state, solved_);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
@@ -163,7 +163,8 @@ void TreeSlots::find_drives(const WorldState& state, std::span<const JointLink> 
   closing_drives_ = false;
   free_springs_ = 0;
   std::size_t driven = 0;
-  for (const JointRecord& joint : state.joints) driven += joint.driven();
+  for (std::uint32_t row = 1; row < state.joints.size(); row++)
+    driven += state.joints[row].driven() && !state.asleep(state.joints[row]);
   for (const std::uint32_t row : closing_) {
     const JointRecord& joint = state.joints[row];
     if (!joint.driven()) continue;
@@ -212,7 +213,7 @@ void Schedule::update_structure(const WorldState& state) {
   drag = gyroscopic = false;
   double lightest = 0, heaviest = 0;  // as inverse masses
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
-    if (state.stands(row)) continue;
+    if (!state.goes(row)) continue;
     rows_.push_back(row);
     drag |= state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0;
     const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4);

@@ -24,6 +24,7 @@
 #include "step/processor_state.h"
 #include "step/runner.h"
 #include "step/schedule.h"
+#include "step/sleepers.h"
 #include "world/range.h"
 #include "world/state.h"
 #include "world/validate.h"
@@ -58,7 +59,11 @@ struct Stepper::Inside {
   const StepPlan* plan = nullptr;
   std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
+  std::uint64_t scheduled_rest = 0;                   // and who slept in it
   bool other = false;                                 // than those of the last step
+  bool regrouped = false;                             // islands may be others than after it
+  Sleepers sleepers;
+  Idle idle;  // the world, if all of it sleeps
   StepInfos infos;
   EventRecorder recorder;
   std::vector<std::uint32_t> outside, leaving;  // rows
@@ -81,13 +86,14 @@ struct Stepper::Inside {
   }
 
   /// What the objects of `schedule` need; contacts are for the caller to say.
-  PlanSignature signature(const Schedule& from) const {
+  PlanSignature signature(const WorldState& world, const Schedule& from) const {
     PlanSignature s;
     s.substeps = settings.substeps;
     s.integrator = settings.integrator;
     s.order = settings.order;
     s.places = {settings.integrate, settings.joints, settings.impulses};
     s.bodies = from.moving > 0;
+    s.sleepers = world.sleepers > 0;
     s.drag = from.drag;
     s.gyroscopic = from.gyroscopic;
     s.trees = from.trees.forest().trees() > 0;
@@ -114,6 +120,7 @@ struct Stepper::Inside {
     own_seen = own.kernels().version();
     plans.clear();
     plan = nullptr;
+    idle = {};
     runner.unbind();
     prepared.reset();
     return ok;
@@ -184,31 +191,66 @@ struct Stepper::Inside {
     if (!ok) return ok;
     lap(Timer::forces);
 
+    if (settings.sleep && idle.holds(s) && own.ordered().empty()) {
+      plan = idle.plan;
+      idle.report_to(report, s);
+      return {};
+    }
     const FlushSubnormals flush;
     if (serial != s.serial) runner.forget();
-    update_structure(s);
+    if (s.rests && !settings.sleep) s.forget_rest();
     detector.forget_strays();
     tries = 0;
     while (ok = attempt(s, dt), !ok || !outside.empty() || strayed) {
-      if (!ok && ok.error().code != ErrorCode::not_finite) return ok;
+      if (!ok && ok.error().code != ErrorCode::not_finite) return put_rest_back(s, ok);
       if (ok) (void)undo(s, {});
       if (strayed) continue;
       // others may have met it: those that leave the range by themselves are to blame, where there are any
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
-      if (leaving.empty()) return ok;
+      if (leaving.empty()) return put_rest_back(s, ok);
       freeze_leaving(s);
     }
-    if (EventRecorder::wanted(settings))
-      recorder.record(settings, s, {runner.before(Buffer::pose), runner.before(Buffer::motion), dt}, schedule.moving_bodies());
+    record_events(s, dt);
+    if (settings.sleep) let_sleep(s, dt);
+    recorder.follow_sleep(settings, s);
     runner.drop();
     return ok;
   }
 
+  void record_events(const WorldState& s, double dt) {
+    if (!EventRecorder::wanted(settings)) return;
+    const AlignedBytes* poses = plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
+    recorder.record(settings, s, {poses, runner.before(Buffer::motion), dt}, schedule.moving_bodies());
+  }
+
+  /// The step was made: what is at rest may fall asleep.
+  void let_sleep(WorldState& s, double dt) {
+    if (const AlignedBytes* before = runner.before(Buffer::pose))
+      report.fell_asleep = sleepers.follow(s, schedule.moving_bodies(), *before, dt, settings, regrouped);
+    if (s.stirred > 0) s.calm();
+    report.asleep = s.sleepers;
+    report.islands_asleep = sleepers.islands(s);
+    if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
+    update_structure(s);
+    PlanSignature nothing = signature(s, schedule);
+    nothing.shapes = detector.possible();
+    idle = {s, find_plan(nothing), report};
+  }
+
+  /// A step that could not be made has woken nobody.
+  Status put_rest_back(WorldState& s, const Status& failed) {
+    if (!runner.before(Buffer::rest)) return failed;
+    runner.undo(s);
+    s.count_rest();
+    return failed;
+  }
+
   void update_structure(WorldState& s) {
-    if (scheduled_serial == s.serial && scheduled == s.structure_version) return;
+    if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) return;
     scheduled_serial = s.serial;
     scheduled = s.structure_version;
+    scheduled_rest = s.rest_version;
     other = true;
     schedule.update_structure(s);
     runner.keep(s, Buffer::joint_impulse);
@@ -230,32 +272,60 @@ struct Stepper::Inside {
   }
 
   void freeze_leaving(WorldState& s) {
+    freeze(s);
+    update_structure(s);
+  }
+  void freeze(WorldState& s) {
     for (const std::uint32_t row : leaving) {
       report.frozen.push_back(s.body_ids.id<BodyId>(s.bodies[row].index));
       s.freeze(row);
     }
     std::ranges::sort(report.frozen);
-    update_structure(s);
+  }
+
+  /// Bodies in flight that their kernel has left where they were: all others have made the step.
+  void freeze_left(WorldState& s) {
+    leaving.clear();
+    for (const std::uint32_t row : schedule.moving_bodies())
+      if (s.tables.get(Buffer::motion, row, 7) == frozen_phase) leaving.push_back(row);
+    freeze(s);
+  }
+
+  /// Pairs and contacts. What sleeps and is stirred or touched wakes, and then has its contacts found, too.
+  Status detect(WorldState& s, double dt, Detector::Found& found) {
+    Status ok;
+    report.woke = 0;
+    if (s.sleepers > 0 && (scheduled_serial != s.serial || scheduled_rest != s.rest_version)) {
+      runner.keep(s, Buffer::rest);
+      report.woke = sleepers.wake_stirred(s);
+    }
+    while (true) {
+      update_structure(s);
+      if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
+      lap(Timer::broad);
+      add_called(s);
+      if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
+      lap(Timer::narrow);
+      if (detector.touched().empty()) return {};
+      runner.keep(s, Buffer::rest);
+      report.woke += sleepers.wake_touched(s, detector.touched());
+      detector.put_back(s);
+    }
   }
 
   /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
   Status attempt(WorldState& s, double dt) {
-    Status ok;
+    Detector::Found found;
     outside.clear();
     strayed = false;
-    if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
-    lap(Timer::broad);
-    add_called(s);
-    Detector::Found found;
-    if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
-    lap(Timer::narrow);
+    Status ok = detect(s, dt, found);
+    if (!ok) return ok;
+    regrouped = found.changed || other || contacts_version != s.contacts_version;
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
     choose_order(fourth, s, schedule.trees, dt);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.points > found.contacts, fourth.trees(),
-                       settings, dt) ||
-        other)
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(), settings, dt) || other)
       schedule.group(octaves.of_bodies());
-    PlanSignature wanted = signature(schedule);
+    PlanSignature wanted = signature(s, schedule);
     wanted.octaves = octaves.used();
     wanted.second_order = fourth.reasons();
     const double h = substep_length(dt, wanted.substeps);
@@ -277,8 +347,13 @@ struct Stepper::Inside {
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
+    if (plan->flight && settings.body_events) recorder.keep_poses(s);
     if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
-    find_outside(s, schedule.moving_bodies(), outside);
+    if (plan->flight) {
+      if (runner.left()) freeze_left(s);
+    } else {
+      find_outside(s, schedule.moving_bodies(), outside);
+    }
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);
@@ -301,6 +376,7 @@ struct Stepper::Inside {
   /// The world as it was: what the step wrote into its tables goes back, and the contacts are the last step's again.
   Status undo(WorldState& s, const Status& failed) {
     runner.undo(s);
+    if (s.rests) s.count_rest();
     detector.put_back(s);
     s.tables.resize(Table::node, 0);  // nothing is pending, not in the row that pads either
     s.tables.resize(Table::node, 1);
@@ -361,9 +437,10 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   schedule.update_structure(world.state());
   Detector detector;
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
-  PlanSignature wanted = in.signature(schedule);
-  wanted.shapes = wanted.free_contacts = detector.possible();
-  wanted.tree_contacts = wanted.shapes && wanted.trees;
+  PlanSignature wanted = in.signature(world.state(), schedule);
+  wanted.shapes = detector.possible();
+  wanted.free_contacts = wanted.shapes && (wanted.bodies || !wanted.sleepers);
+  wanted.tree_contacts = wanted.free_contacts && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
   wanted.touches = EventRecorder::of_contacts(in.settings) && wanted.contacts();

@@ -97,7 +97,11 @@ Vec3 World::gravity() const { return state_->gravity; }
 
 Status World::set_gravity(Vec3 gravity) {
   if (Status ok = check_finite(gravity, "gravity"); !ok) return ok;
-  for (std::uint32_t row = 1; row < state_->bodies.size(); row++) state_->kick(row, gravity - state_->gravity, {});
+  if (gravity == state_->gravity) return {};
+  for (std::uint32_t row = 1; row < state_->bodies.size(); row++) {
+    state_->kick(row, gravity - state_->gravity, {});
+    state_->stir(row);
+  }
   state_->gravity = gravity;
   return {};
 }
@@ -125,8 +129,10 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   write_material(s.tables, row, def.material);
   s.tables.set(Buffer::force, row, 3, def.linear_drag);
   s.tables.set(Buffer::force, row, 7, def.angular_drag);
+  s.tables.set(Buffer::rest, row, rest_can_sleep, def.can_sleep);
   for (const ShapeDef& shape : def.shapes) s.bodies[row].shapes.push_back(new_shape(s, index, shape));
   s.structure_version++;
+  s.stir(row);
   return s.body_ids.id<BodyId>(index);
 }
 
@@ -134,6 +140,7 @@ Status World::destroy(BodyId body) {
   WorldState& s = *state_;
   if (!s.body_ids.valid(body)) return stale("body");
   if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
+  s.stir_neighbours(s.body_ids.row(body.index));
   for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
     if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index) s.remove_joint(row);
   const std::uint32_t row = s.body_ids.row(body.index), last = std::uint32_t(s.bodies.size()) - 1;
@@ -148,6 +155,7 @@ Status World::destroy(BodyId body) {
   s.frozen.erase(body.index);
   s.drop_contacts(row, last);
   s.remove_row(Table::body, s.bodies, s.body_ids, row);
+  if (s.rests) s.count_rest();
   return {};
 }
 
@@ -191,7 +199,7 @@ Status World::set_pose(BodyId body, const Pose& pose) {
   if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
-  s.thaw(row);
+  s.change(row);
   const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.orientation(row));
   const Vec3 w = s.angular_velocity(row);
   s.set_position(row, pose.position);
@@ -215,7 +223,7 @@ Status World::set_velocity(BodyId body, Vec3 velocity) {
   const std::uint32_t row = state_->body_ids.row(body.index);
   if (state_->bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
-  state_->thaw(row);
+  state_->change(row);
   state_->bring_in_phase(row);
   state_->tables.set3(Buffer::motion, row, 0, velocity);
   return {};
@@ -232,7 +240,7 @@ Status World::set_angular_velocity(BodyId body, Vec3 w) {
   const std::uint32_t row = state_->body_ids.row(body.index);
   if (state_->bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
-  state_->thaw(row);
+  state_->change(row);
   state_->bring_in_phase(row);
   state_->set_angular_velocity(row, w);
   return {};
@@ -267,7 +275,7 @@ Status World::set_position_last(BodyId body, Vec3 position) {
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
-  s.thaw(row);
+  s.change(row);
   s.tables.set3(Buffer::motion, row, 0, (1 / s.last_substep) * (s.pose(row).position - position));
   for (std::uint32_t part : {0, 8}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
@@ -295,7 +303,7 @@ Status World::set_orientation_last(BodyId body, Quat last) {
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
-  s.thaw(row);
+  s.change(row);
   // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
   Quat d = s.orientation(row) * conjugate(last);
   if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
@@ -322,7 +330,7 @@ Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
-  s.thaw(row);
+  s.change(row);
   const Vec3 w = s.angular_velocity(row);
   s.set_mass(row, mass);
   s.structure_version++;
@@ -342,7 +350,9 @@ Result<Material> World::material(BodyId body) const {
 Status World::set_material(BodyId body, const Material& material) {
   if (!valid(body)) return stale("body");
   if (Status ok = check(material); !ok) return ok;
-  write_material(state_->tables, state_->body_ids.row(body.index), material);
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  write_material(state_->tables, row, material);
+  state_->stir(row);
   return {};
 }
 
@@ -352,7 +362,7 @@ Status World::set_drag(BodyId body, double linear, double angular) {
   if (Status ok = check_finite(angular, "angular drag of a body"); !ok) return ok;
   if (linear < 0 || angular < 0) return Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
   const std::uint32_t row = state_->body_ids.row(body.index);
-  state_->thaw(row);
+  state_->change(row);
   state_->bring_in_phase(row);
   state_->tables.set(Buffer::force, row, 3, linear);
   state_->tables.set(Buffer::force, row, 7, angular);
@@ -372,6 +382,7 @@ Status World::set_filter(BodyId body, const Filter& filter) {
   for (std::uint32_t shape : state_->bodies[state_->body_ids.row(body.index)].shapes)
     state_->shapes[shape].filter = state_->shapes[shape].def.filter = filter;
   state_->structure_version++;
+  state_->stir(state_->body_ids.row(body.index));
   return {};
 }
 
@@ -381,6 +392,35 @@ Status World::set_collide(BodyId a, BodyId b, bool collide) {
   pair->second.asked = !collide;
   if (!pair->second.any()) state_->no_collide.erase(pair);
   state_->structure_version++;
+  state_->stir_moving(state_->body_ids.row(a.index));
+  state_->stir_moving(state_->body_ids.row(b.index));
+  return {};
+}
+
+// ---- sleeping ------------------------------------------------------------------------------------------
+
+Result<bool> World::is_asleep(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  return state_->asleep(row) && state_->tables.get(Buffer::rest, row, rest_stirred) == 0;
+}
+
+Status World::wake(BodyId body) {
+  if (!valid(body)) return stale("body");
+  state_->stir(state_->body_ids.row(body.index));
+  return {};
+}
+
+Result<bool> World::can_sleep(BodyId body) const {
+  if (!valid(body)) return stale("body");
+  return state_->tables.get(Buffer::rest, state_->body_ids.row(body.index), rest_can_sleep) > 0;
+}
+
+Status World::set_can_sleep(BodyId body, bool can_sleep) {
+  if (!valid(body)) return stale("body");
+  const std::uint32_t row = state_->body_ids.row(body.index);
+  state_->tables.set(Buffer::rest, row, rest_can_sleep, can_sleep);
+  state_->stir_moving(row);
   return {};
 }
 

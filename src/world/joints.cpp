@@ -47,6 +47,10 @@ void write_drive(Tables& t, std::uint32_t row, const JointRecord& joint) {
   t.set(Buffer::joint_drive, row, 9, joint.spring ? joint.spring->rest_length : 0);
 }
 
+void stir_ends(WorldState& s, const JointRecord& joint) {
+  for (const std::uint32_t body : {joint.body_a, joint.body_b}) s.stir_moving(s.body_ids.row(body));
+}
+
 /// Also what the plan needs may change: whether there is anything to drive at all.
 template <class Change> void change_drive(WorldState& s, std::uint32_t row, Change change) {
   JointRecord& joint = s.joints[row];
@@ -54,6 +58,7 @@ template <class Change> void change_drive(WorldState& s, std::uint32_t row, Chan
   change(joint);
   write_drive(s.tables, row, joint);
   if (joint.driven() != before) s.structure_version++;
+  stir_ends(s, joint);
 }
 
 }  // namespace
@@ -89,8 +94,7 @@ std::vector<JointId> World::joints() const { return all_alive<JointId>(*state_, 
 std::vector<SpringId> World::springs() const { return all_alive<SpringId>(*state_, true); }
 
 std::size_t World::joint_count() const {
-  return std::size_t(
-      std::count_if(state_->joints.begin() + 1, state_->joints.end(), [](const JointRecord& j) { return !j.spring; }));
+  return state_->joints.size() - 1 - state_->springs;  // row 0 pads
 }
 
 namespace {
@@ -109,11 +113,13 @@ Status check_ends(const World& world, BodyId a, BodyId b, const char* what) {
 std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<SpringDef>& spring) {
   const std::uint32_t row = std::uint32_t(s.joints.size()), index = s.joint_ids.allocate(row);
   s.joints.push_back({index, def.a.index, def.b.index, def, spring});
+  s.springs += spring.has_value();
   s.tables.resize(Table::joint, row + 1);
   write_frames(s.tables, Buffer::joint_frame, row, def);
   write_drive(s.tables, row, s.joints[row]);
   if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
   s.structure_version++;
+  stir_ends(s, s.joints[row]);
   return index;
 }
 }  // namespace
@@ -140,6 +146,8 @@ Result<SpringId> World::create_spring(const SpringDef& def) {
 }
 
 void WorldState::remove_joint(std::uint32_t row) {
+  stir_ends(*this, joints[row]);
+  springs -= joints[row].spring.has_value();
   if (!joints[row].def.collide) {
     const auto pair = no_collide.find(pair_key(joints[row].body_a, joints[row].body_b));
     pair->second.joints--;
@@ -289,7 +297,7 @@ ForceId new_force(WorldState& s, ForceRecord record) {
   const std::uint32_t index = s.force_ids.allocate(0);
   if (index == s.forces.size()) s.forces.emplace_back();
   const std::uint32_t row = s.body_ids.row(record.body);
-  s.thaw(row);
+  s.change(row);
   if (record.callback) s.callbacks++;
   if (record.callback) s.bring_in_phase(row);  // what it will answer is not known yet
   s.forces[index] = std::move(record);
@@ -317,7 +325,7 @@ Status World::remove(ForceId force) {
   WorldState& s = *state_;
   if (!s.force_ids.valid(force)) return stale("force");
   const std::uint32_t row = s.body_ids.row(s.forces[force.index].body);
-  s.thaw(row);
+  s.change(row);
   std::erase(s.bodies[row].forces, force.index);
   s.drop_force(force.index);
   s.change_forces(row);

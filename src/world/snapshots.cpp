@@ -37,6 +37,12 @@ class StateRows {
   StateRows(const WorldState& s, Table table) : tables_(s.tables), fields_(fields(s.tables, s.own, table, Role::state)) {
     for (const Field& f : fields_) bytes_ += f.bytes;
   }
+  /// Those in the buffer alone, or all others.
+  StateRows within(Buffer buffer, bool within = true) const {
+    StateRows part = *this;
+    std::erase_if(part.fields_, [&](const Field& f) { return (f.buffer == buffer) != within; });
+    return part;
+  }
   std::size_t bytes() const { return bytes_; }  // of a row
   const Tables& tables() const { return tables_; }
   /// what(field, where it begins in the buffer)
@@ -63,11 +69,17 @@ class StateRows {
 
 std::uint64_t hash_world(const WorldState& s) {
   Hash hash;
-  const StateRows bodies(s, Table::body), joints(s, Table::joint), contacts(s, Table::contact);
+  const StateRows all(s, Table::body), bodies = all.within(Buffer::rest, false), rest = all.within(Buffer::rest);
+  const StateRows joints(s, Table::joint), contacts(s, Table::contact);
   for (std::uint32_t i = 1; i < s.body_ids.size(); i++) {
     if (!s.body_ids.alive(i)) continue;
     hash.index(i);
     bodies.hash(hash, s.body_ids.row(i));
+  }
+  for (std::uint32_t i = 0; s.rests && i < s.body_ids.size(); i++) {  // with sleep off there is nothing to add
+    if (!s.body_ids.alive(i) || s.never_rested(s.body_ids.row(i))) continue;
+    hash.index(i);
+    rest.hash(hash, s.body_ids.row(i));
   }
   for (std::uint32_t i = 0; i < s.joint_ids.size(); i++) {
     if (!s.joint_ids.alive(i)) continue;
@@ -91,7 +103,7 @@ std::uint64_t hash_world(const WorldState& s) {
 
 // ---- snapshots -----------------------------------------------------------------------------------------
 
-constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '4'};
+constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '5'};
 
 class Writer {
  public:
@@ -258,6 +270,7 @@ Status World::restore(std::span<const std::byte> snapshot) {
     for (std::uint32_t row = 1; row < s.tables.rows(t.table); row++) read_row(r, s, rows, row);
   }
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) s.follow_mark(row);
+  s.count_rest();
   s.tables.touch_all();
   s.contacts_version++;
   return {};

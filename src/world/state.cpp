@@ -89,6 +89,48 @@ void WorldState::let_settle(std::uint32_t row) {
   settling = constants::settling_steps;
 }
 
+void WorldState::stir(std::uint32_t row) {
+  if (!rests) return;
+  tables.set(Buffer::rest, row, rest_quiet_time, 0);
+  if (sleepers == 0 || goes(row) || tables.get(Buffer::rest, row, rest_stirred) > 0) return;
+  tables.set(Buffer::rest, row, rest_stirred, 1);
+  stirred++;
+  rest_version++;
+}
+
+void WorldState::stir_neighbours(std::uint32_t row) {
+  if (sleepers == 0) return;
+  const auto stir_other = [&](std::uint32_t a, std::uint32_t b) {
+    if (a == row || b == row) stir_moving(a == row ? b : a);
+  };
+  for (const auto& [a, b] : contacts.ends) stir_other(a, b);
+  for (std::uint32_t i = 1; i < joints.size(); i++) stir_other(body_ids.row(joints[i].body_a), body_ids.row(joints[i].body_b));
+}
+
+void WorldState::forget_rest() {
+  for (std::uint32_t row = 0; row < bodies.size(); row++)
+    for (const RestField field : {rest_quiet_time, rest_asleep, rest_stirred}) tables.set(Buffer::rest, row, field, 0);
+  sleepers = stirred = 0;
+  rests = false;
+  rest_version++;
+}
+
+void WorldState::calm() {
+  for (std::uint32_t row = 0; row < bodies.size(); row++) tables.set(Buffer::rest, row, rest_stirred, 0);
+  count_rest();
+}
+
+void WorldState::count_rest() {
+  sleepers = stirred = 0;
+  rests = false;
+  for (std::uint32_t row = 0; row < bodies.size(); row++) {
+    sleepers += tables.get(Buffer::rest, row, rest_asleep) > 0;
+    stirred += tables.get(Buffer::rest, row, rest_stirred) > 0;
+    rests |= !never_rested(row);
+  }
+  rest_version++;
+}
+
 void WorldState::set_angular_velocity(std::uint32_t row, Vec3 w) {
   if (bodies[row].kind == BodyKind::kinematic) {
     tables.set3(Buffer::motion, row, 4, w);
@@ -117,10 +159,6 @@ int middle_axis(Vec3 i) {
   for (int k = 0; k < 3; k++)
     if (values[k] == high && k != smallest) largest = k;
   return 3 - smallest - largest;
-}
-
-namespace {
-constexpr double frozen_phase = -2;  // of a frozen body: what snapshots and hashes know it by
 }
 
 void WorldState::freeze(std::uint32_t row) {

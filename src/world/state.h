@@ -67,6 +67,10 @@ void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointD
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 
+inline constexpr double frozen_phase = -2;        // of a frozen body: what snapshots and hashes know it by
+/// Where its properties stand in a row of Buffer::rest.
+enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, rest_can_sleep, rest_fields };
+
 inline constexpr std::uint32_t settling_at = 15;  // of a body, in its row of Buffer::velocity_parts
 
 struct WorldState {
@@ -80,6 +84,7 @@ struct WorldState {
   IdPool body_ids, joint_ids, force_ids;
   std::vector<BodyRecord> bodies;   // by row
   std::vector<JointRecord> joints;  // by row; row 0 pads
+  std::uint32_t springs = 0;        // how many of them are springs between two points
   std::vector<ShapeRecord> shapes;  // by shape index
   std::vector<std::uint32_t> free_shapes;
   std::vector<ForceRecord> forces;  // by force index
@@ -90,10 +95,13 @@ struct WorldState {
   std::unordered_map<std::uint64_t, NoCollide> no_collide;   // by pair_key; only pairs with a reason
 
   /// Counters that a stepper compares with what it saw last.
-  std::uint64_t structure_version = 1;  // objects, kinds, filters
-  std::uint32_t settling = 0;           // steps for which some body may be settling (Buffer::velocity_parts)
-  std::uint64_t removals = 0;           // of properties and tables of the host's own
-  std::uint64_t contacts_version = 1;   // contacts that no step made: a snapshot was restored
+  std::uint64_t structure_version = 1;      // objects, kinds, filters
+  std::uint32_t settling = 0;               // steps for which some body may be settling (Buffer::velocity_parts)
+  std::uint32_t sleepers = 0, stirred = 0;  // bodies of which that property is not 0
+  bool rests = false;                       // some body has a property of rest that is not as it was made
+  std::uint64_t rest_version = 1;           // who sleeps, and who is stirred
+  std::uint64_t removals = 0;               // of properties and tables of the host's own
+  std::uint64_t contacts_version = 1;       // contacts that no step made: a snapshot was restored
 
   /// Body rows of a contact: the first is the one that moves, so that arms are short.
   std::array<std::uint32_t, 2> ends_of(const ContactKey& key) const;
@@ -114,6 +122,31 @@ struct WorldState {
   void let_settle(std::uint32_t row);
   /// Whether it will still once the next step has begun.
   bool settles(std::uint32_t row) const { return tables.get(Buffer::velocity_parts, row, settling_at) > 1; }
+  /// Whether its properties of rest are those that it was made with.
+  bool never_rested(std::uint32_t row) const {
+    return tables.get3(Buffer::rest, row, rest_quiet_time) == Vec3{};  // the three that are state
+  }
+  bool asleep(std::uint32_t row) const { return sleepers > 0 && tables.get(Buffer::rest, row, rest_asleep) > 0; }
+  /// Of a joint: whether the bodies that it joins do.
+  bool asleep(const JointRecord& joint) const {
+    return sleepers > 0 && (asleep(body_ids.row(joint.body_a)) || asleep(body_ids.row(joint.body_b)));
+  }
+  /// Whether steps move it.
+  bool goes(std::uint32_t row) const { return !stands(row) && !asleep(row); }
+  /// The host has changed it: if it sleeps, it is to wake; if it stands, whatever it touches.
+  void stir(std::uint32_t row);
+  /// The same of one that does not stand: what touches one that does may sleep on.
+  void stir_moving(std::uint32_t row) {
+    if (!stands(row)) stir(row);
+  }
+  /// What it touches and is joined to is to wake, since it goes.
+  void stir_neighbours(std::uint32_t row);
+  /// Nobody sleeps, and nobody has rested.
+  void forget_rest();
+  /// The step has looked at who was stirred.
+  void calm();
+  /// Counts who sleeps and who is stirred, after their rows came from elsewhere.
+  void count_rest();
   /// Removes a joint or spring.
   void remove_joint(std::uint32_t row);
   /// Removes the contacts of a body and follows the row of another that took its place.
@@ -132,6 +165,11 @@ struct WorldState {
   void freeze(std::uint32_t row);
   /// As it was made; its velocity is for the caller to set.
   void thaw(std::uint32_t row);
+  /// Before the host changes it: one that was frozen thaws, one that sleeps is to wake.
+  void change(std::uint32_t row) {
+    stir(row);
+    thaw(row);
+  }
   /// Freezes or thaws a body as its state says, which a snapshot has just brought.
   void follow_mark(std::uint32_t row);
 

@@ -1,0 +1,4 @@
+// Flight where some body has drag.
+#define PC_DRAG
+#include "fly.inl"
+#undef PC_DRAG

@@ -1,0 +1,74 @@
+// Who sleeps (docs/sleeping.md): whole islands, once all of their bodies have been slow for a time, until something wakes them. Found on the
+// host from the tables, whatever the places of the stages, so it is the same for all of them.
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pcphys/step.h"
+#include "plan/octaves.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+/// A world of which everything sleeps, and what such a step reports: known without a look at any body.
+class Idle {
+ public:
+  Idle() = default;
+  Idle(const WorldState& state, const StepPlan& plan, const StepReport& report)
+      : plan(&plan),
+        serial_(state.serial),
+        structure_(state.structure_version),
+        rest_(state.rest_version),
+        contacts_(state.contacts_version),
+        substeps_(report.substeps),
+        points_(report.points),
+        islands_(report.islands_asleep) {}
+
+  /// Whether nothing has been changed since. (Nothing else moves what sleeps.)
+  bool holds(const WorldState& s) const {
+    return serial_ == s.serial && rest_ == s.rest_version && structure_ == s.structure_version &&
+           contacts_ == s.contacts_version && s.callbacks == 0;
+  }
+  void report_to(StepReport& report, const WorldState& s) const {
+    report.substeps = substeps_;
+    report.contacts = s.contact_rows() - 1;
+    report.points = points_;
+    report.asleep = s.sleepers;
+    report.islands_asleep = islands_;
+  }
+
+  const StepPlan* plan = nullptr;
+
+ private:
+  std::uint64_t serial_ = 0, structure_ = 0, rest_ = 0, contacts_ = 0;
+  std::uint32_t substeps_ = 0, points_ = 0, islands_ = 0;
+};
+
+class Sleepers {
+ public:
+  /// Before the contacts of a step: wakes the islands of bodies that the host has changed, and those that touch one that stands. Returns
+  /// how many bodies woke.
+  std::uint32_t wake_stirred(WorldState& state);
+  /// With the contacts of a step: wakes the islands of these bodies.
+  std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
+  /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep. `before`: the poses that
+  /// the step began with. `changed`: islands are others than after the last step. Returns how many bodies fell asleep.
+  std::uint32_t follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes& before, double dt,
+                       const StepSettings& settings, bool changed);
+  /// How many islands sleep.
+  std::uint32_t islands(const WorldState& state);
+
+ private:
+  void build(const WorldState& state);
+  std::uint32_t wake_marked(WorldState& state);
+  void mark_kept_awake(const WorldState& state);
+  std::uint32_t lay_down(WorldState& state, std::span<const std::uint32_t> moved);
+
+  Islands islands_;
+  std::vector<char> awake_;                 // by the root of an island
+  std::uint64_t serial_ = 0, counted_ = 0;  // the world and its rest_version that count_ is of
+  std::uint32_t count_ = 0;
+};
+
+}  // namespace pcphys
