@@ -1,5 +1,6 @@
 // Kernels of the host's own as data: what Stepper::add_kernel takes. Written with pcphys/write_kernel.h.
 #pragma once
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +19,27 @@ struct KernelRows {
 };
 using KernelLoop = void (*)(const KernelRows&);
 
+/// The pairs that a pair kernel's C++ side is to run over; its arguments as in KernelRows.
+struct KernelPairs {
+  static constexpr std::uint32_t tile = 64, most_chunks = 32;
+
+  std::byte* const* columns;
+  const std::size_t* strides;
+  std::byte* const* totals;     // of each sum, where that of the first of `selves` goes, one after the other
+  bool apply;                   // not to sum, but to put totals into properties, once all of them are there
+  const std::uint32_t* selves;  // null: begin to end themselves
+  std::uint32_t begin, end;     // in `selves`
+  const std::uint32_t* order;   // of all rows; null: 1 to count
+  const std::uint32_t* places;  // of a row in it
+  std::uint32_t count, chunk;   // rows in it; how many of them are summed in one go, a multiple of `tile`
+  // within a cut-off: rows that may be near a row, near[first[row]] to near[first[row + 1]]; null: all are
+  const std::uint32_t *first, *near;
+  const std::byte* centres;  // positions
+  std::size_t centre_stride;
+  double cutoff_squared;
+};
+using PairsLoop = void (*)(const KernelPairs&);
+
 /// A kernel as it was written. Without `body` it has no GLSL, without loops no C++: it then runs where it can.
 struct KernelText {
   const char* name = "";
@@ -26,6 +48,7 @@ struct KernelText {
   const char* file = "";
   int line = 0;
   KernelLoop f32 = nullptr, f64 = nullptr;
+  PairsLoop pairs32 = nullptr, pairs64 = nullptr;  // in their place, of a pair kernel
 };
 
 struct KernelParameter {
@@ -46,6 +69,8 @@ struct KernelDef {
   bool after = false;
   bool once_a_step = false;
   std::vector<KernelParameter> parameters = {};
+  /// Of pairs of bodies: only those whose positions are no further apart [m]. Without one, all.
+  std::optional<double> cutoff = {};
   /// Names of kernels of the same moment that run before this one. What follows by itself: of a property first the one that writes it
   /// anew, then those that change it, then those that read it; and else the order in which they were added.
   std::vector<std::string> follows = {};

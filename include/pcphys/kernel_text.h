@@ -11,6 +11,12 @@
 #define PC_IN(T) const T
 #define PC_OUT(T) T&
 #define PC_PARAM(T) const T
+#define PC_SELF(T) const T
+#define PC_OTHER(T) const T
+#define PC_SUM(T) T&
+#define PC_ADD(T) T&
+#define PC_MIN(T) T&
+#define PC_MAX(T) T&
 #define PC_REAL(x) Real(x)
 #define PC_ANY(mask) (mask)
 #define precise

@@ -21,6 +21,7 @@
 
 #include "pcphys/kernel.h"
 #include "pcphys/kernel_text.h"
+#include "pcphys/pair_loop.h"
 
 namespace pcphys {
 
@@ -30,11 +31,6 @@ template <auto Run, class... Arguments> struct RowLoop<Run, void (*)(Arguments..
   static void run(const KernelRows& k) { run(k, std::index_sequence_for<Arguments...>()); }
 
  private:
-  template <class T> static T load(const std::byte* p) {
-    T value;
-    std::memcpy(&value, p, sizeof value);
-    return value;
-  }
   template <class Argument, class T> static void store(std::byte* p, const T& value) {
     if constexpr (std::is_reference_v<Argument>) std::memcpy(p, &value, sizeof value);
   }
@@ -48,6 +44,8 @@ template <auto Run, class... Arguments> struct RowLoop<Run, void (*)(Arguments..
     }
   }
 };
+
+template <class... Arguments> consteval std::size_t count_arguments(void (*)(Arguments...)) { return sizeof...(Arguments); }
 }  // namespace detail
 
 #define PCPHYS_KERNEL_SIDE(side, signature, ...)            \
@@ -82,5 +80,26 @@ template <auto Run, class... Arguments> struct RowLoop<Run, void (*)(Arguments..
 #define PCPHYS_KERNEL(Name, signature, ...) PCPHYS_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
 /// C++ alone: anything that C++ can say.
 #define PCPHYS_CPU_KERNEL(Name, signature, ...) PCPHYS_KERNEL_TEXT(Name, signature, #signature, nullptr, __VA_ARGS__)
+
+#define PCPHYS_PAIR_KERNEL_TEXT(Name, signature, declared, body, ...)                                                  \
+  struct Name {                                                                                                        \
+    PCPHYS_KERNEL_SIDE(f32, signature, __VA_ARGS__)                                                                    \
+    PCPHYS_KERNEL_SIDE(f64, signature, __VA_ARGS__)                                                                    \
+    static ::pcphys::KernelText text() {                                                                               \
+      constexpr auto kinds = ::pcphys::detail::pair_arguments<::pcphys::detail::count_arguments(&f32::run)>(declared); \
+      return {#Name,                                                                                                   \
+              declared,                                                                                                \
+              body,                                                                                                    \
+              __FILE__,                                                                                                \
+              __LINE__,                                                                                                \
+              nullptr,                                                                                                 \
+              nullptr,                                                                                                 \
+              &::pcphys::detail::PairLoop<&f32::run, kinds, f32::Real>::run,                                           \
+              &::pcphys::detail::PairLoop<&f64::run, kinds, f64::Real>::run};                                          \
+    }                                                                                                                  \
+  };
+/// The same of a body and each other one.
+#define PCPHYS_PAIR_KERNEL(Name, signature, ...) PCPHYS_PAIR_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
+#define PCPHYS_CPU_PAIR_KERNEL(Name, signature, ...) PCPHYS_PAIR_KERNEL_TEXT(Name, signature, #signature, nullptr, __VA_ARGS__)
 
 }  // namespace pcphys

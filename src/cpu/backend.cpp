@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cpu/kernels.h"
+#include "cpu/own_runs.h"
 #include "cpu/workers.h"
 #include "step/backend.h"
 #include "world/memory.h"
@@ -67,7 +68,7 @@ class CpuBackend final : public Backend {
     const std::size_t info_bytes = kernels_.f64 ? sizeof(InfoOf<double>) : sizeof(InfoOf<float>);
     for (const KernelRun& r : runs) {
       if (r.own) {
-        run_own(r, infos_ + r.info * info_bytes, shared);
+        own_.run(r, buffers_, infos_ + r.info * info_bytes, workers_);
         continue;
       }
       const auto part = of_lanes_[r.lanes]->run[std::size_t(r.kernel)];
@@ -85,7 +86,7 @@ class CpuBackend final : public Backend {
   }
   Status finish() override { return {}; }
   Status prepare(const OwnKernel& kernel) override {
-    if (kernel.loop) return {};
+    if (kernel.in_cpp()) return {};
     return Error{ErrorCode::unavailable,
                  "The kernel \"" + kernel.name + "\" has no C++ side; put its stage on gl, or write it with PCPHYS_KERNEL."};
   }
@@ -103,43 +104,12 @@ class CpuBackend final : public Backend {
       });
   }
 
-  /// A kernel of the host's own: where each of its arguments stands.
-  void run_own(const KernelRun& run, const std::byte* info, bool shared) {
-    const OwnKernel& k = *run.own;
-    std::array<std::byte*, OwnKernel::most_arguments> columns;
-    std::array<std::size_t, OwnKernel::most_arguments> strides{};
-    for (std::size_t i = 0; i < k.arguments.size(); i++) {
-      const OwnArgument& a = k.arguments[i];
-      if (a.given) {
-        columns[i] =
-            const_cast<std::byte*>(info) + (a.name == "h" ? info_field::h : info_field::gravity_x) * (kernels_.f64 ? 8 : 4);
-      } else if (a.kind == OwnArgument::Kind::parameter) {
-        columns[i] = const_cast<std::byte*>(k.parameters.data()) + a.place;
-      } else {
-        columns[i] = static_cast<std::byte*>(buffers_[std::size_t(a.buffer)]) + a.offset;
-        strides[i] = a.row_bytes;
-      }
-    }
-    const auto* rows =
-        k.table == Table::body ? static_cast<const std::uint32_t*>(buffers_[std::size_t(Buffer::bodies)]) : nullptr;
-    const auto piece = [&](std::uint32_t begin, std::uint32_t end) {
-      k.loop({columns.data(), strides.data(), rows, begin, end});
-    };
-    for (const Range& range : run.ranges) {
-      if (!shared) {
-        piece(range.begin, range.end);
-        continue;
-      }
-      workers_->run(range.end - range.begin, grain,
-                    [&](std::uint32_t begin, std::uint32_t end) { piece(range.begin + begin, range.begin + end); });
-    }
-  }
-
   const CpuKernels& kernels_;
   std::array<const CpuKernels*, most_lanes + 1> of_lanes_{};  // null: none, or not asked for
   const Workers* workers_;
   std::vector<void*> buffers_ = std::vector<void*>(buffer_count);  // by Buffer
   std::array<AlignedBytes, buffer_count> scratch_;
+  OwnRuns own_;
   const std::byte* infos_ = nullptr;
 };
 

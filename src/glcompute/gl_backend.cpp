@@ -61,17 +61,26 @@ class GlBackend final : public Backend {
   void release();
   Status bind(const KernelRun& run);
   Status bind_buffers(std::span<const Access> accesses, std::string_view kernel, std::size_t info);
+  Status bind_buffer(Buffer buffer, std::uint32_t binding, std::string_view kernel);
+  Status bind_info(std::size_t info);
   Status bind_own(const OwnKernel& kernel, std::size_t info);
+  void set_parameters(const OwnKernel& kernel, const OwnProgram& program);
+  Status bind_with_sums(const OwnKernel& kernel, std::span<const Buffer> buffers);
+  Status run_in_two(const KernelRun& run);
+  void run_pairs(const KernelRun& run, const OwnProgram& program, const Range& range, std::uint32_t chunks);
+  void start_reduction(const OwnProgram& program, const Range& range, std::uint32_t room);
+  void reduce(const KernelRun& run, const OwnProgram& program, std::uint32_t room);
   KernelProgram& program_of(const KernelRun& run) { return programs_[run.lanes == 1][std::size_t(run.kernel)]; }
   std::int32_t range_of(const KernelRun& run);
   void dispatch_all(const KernelRun& run);
-  void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end);
+  void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, std::uint32_t rows = 1);
 
   std::unique_ptr<GlContext> context_;
   ProgramCache cache_;
   SourceOptions options_;
   std::vector<GlBuffer> buffers_ = std::vector<GlBuffer>(buffer_count);  // by Buffer
   std::unordered_map<std::uint64_t, OwnProgram> own_programs_;           // by serial
+  GlBuffer sums_;                                                        // between the two programs of a kernel of the host's own
   std::array<std::array<KernelProgram, kernel_count>, 2> programs_{};    // of `gl_width` lanes, and of one
   std::uint32_t info_buffer_ = 0;
   std::size_t info_bytes_ = 0, info_stride_ = 0, info_count_ = 0, info_capacity_ = 0;
@@ -106,7 +115,11 @@ GlBackend::~GlBackend() {
       for (const auto& programs : programs_)
         for (const KernelProgram& program : programs)
           if (program.id != 0) glDeleteProgram(program.id);
-      for (const auto& [serial, program] : own_programs_) glDeleteProgram(program.id);
+      for (const auto& [serial, program] : own_programs_) {
+        glDeleteProgram(program.id);
+        if (program.totals.id != 0) glDeleteProgram(program.totals.id);
+      }
+      sums_.release();
       glDeleteBuffers(1, &info_buffer_);
     }
   }
@@ -180,17 +193,24 @@ void GlBackend::release() {
 }
 
 Status GlBackend::bind_buffers(std::span<const Access> accesses, std::string_view kernel, std::size_t info) {
+  std::uint32_t binding = 0;
+  for (const Access& access : accesses)
+    if (Status status = bind_buffer(access.buffer, binding++, kernel); !status) return status;
+  return bind_info(info);
+}
+
+Status GlBackend::bind_buffer(Buffer buffer, std::uint32_t binding, std::string_view kernel) {
+  if (!at(buffer).attached())
+    return Error{ErrorCode::bad_argument, "The kernel `" + std::string(kernel) + "` uses the buffer `" +
+                                              std::string(label_of(buffer)) + "`, which was neither attached nor reserved."};
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, at(buffer).id());
+  return {};
+}
+
+Status GlBackend::bind_info(std::size_t info) {
   if (info >= info_count_)
     return Error{ErrorCode::bad_argument,
                  "There is no info block " + std::to_string(info) + "; set_infos gave " + std::to_string(info_count_) + "."};
-  std::uint32_t binding = 0;
-  for (const Access& access : accesses) {
-    if (!at(access.buffer).attached())
-      return Error{ErrorCode::bad_argument, "The kernel `" + std::string(kernel) + "` uses the buffer `" +
-                                                std::string(label_of(access.buffer)) +
-                                                "`, which was neither attached nor reserved."};
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding++, at(access.buffer).id());
-  }
   glBindBufferRange(GL_UNIFORM_BUFFER, 0, info_buffer_, GLintptr(info * info_stride_), GLsizeiptr(info_bytes_));
   return {};
 }
@@ -224,11 +244,16 @@ Status GlBackend::prepare(const OwnKernel& kernel) {
   return {};
 }
 
-/// Values of parameters go with each run: they are few, and may have changed.
 Status GlBackend::bind_own(const OwnKernel& kernel, std::size_t info) {
   if (Status status = bind_buffers(kernel.accesses, kernel.name, info); !status) return status;
   const OwnProgram& program = own_programs_.at(kernel.serial);
   glUseProgram(program.id);
+  set_parameters(kernel, program);
+  return {};
+}
+
+/// Values of parameters go with each run: they are few, and may have changed.
+void GlBackend::set_parameters(const OwnKernel& kernel, const OwnProgram& program) {
   std::size_t i = 0;
   for (const OwnArgument& a : kernel.arguments)
     for (std::uint32_t c = 0; c < components(a.type); c++) {
@@ -245,7 +270,89 @@ Status GlBackend::bind_own(const OwnKernel& kernel, std::size_t info) {
       else
         glUniform1d(location, value);
     }
+}
+
+// ---- pairs and reductions -----------------------------------------------------------------------------
+Status GlBackend::bind_with_sums(const OwnKernel& kernel, std::span<const Buffer> buffers) {
+  std::uint32_t binding = 0;
+  for (const Buffer buffer : buffers)
+    if (Status status = bind_buffer(buffer, binding++, kernel.name); !status) return status;
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, sums_.id());
   return {};
+}
+
+Status GlBackend::run_in_two(const KernelRun& run) {
+  const OwnKernel& k = *run.own;
+  const bool pairs = k.form == OwnKernel::Form::pair;
+  const OwnProgram& program = own_programs_.at(k.serial);
+  std::size_t words = 0;
+  for (const OwnArgument& a : k.arguments)
+    if (a.summed()) words += std::size_t{components(a.type)} * number_words(a.type, k.real_bytes);
+  for (const Range& range : run.ranges) {
+    const std::uint32_t count = range.end - range.begin, chunk = pair_chunk(run.others);
+    if (pairs && count == 0) continue;
+    const std::uint32_t chunks = !pairs || k.cutoff ? 1 : (run.others + chunk - 1) / chunk;
+    // a reduction: of each block of rows, and of the levels above
+    const std::size_t values = pairs ? std::size_t{count} * chunks : std::size_t{count} / (reduction_block / 2) + reduction_block;
+    if (Status status =
+            sums_.resize("sums of a kernel of the host's own", values * words * 4, context_->report().limits.storage_block_bytes);
+        !status)
+      return status;
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // others may still read or write there
+    if (Status status = bind_with_sums(k, k.read); !status) return status;
+    if (Status status = bind_info(run.info); !status) return status;
+    glUseProgram(program.id);
+    set_parameters(k, program);
+    if (pairs)
+      run_pairs(run, program, range, chunks);
+    else
+      start_reduction(program, range, std::uint32_t(values));
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    if (Status status = bind_with_sums(k, k.written); !status) return status;
+    glUseProgram(program.totals.id);
+    if (pairs) {
+      glUniform4ui(program.totals.work, chunks, 0, count, range.begin);
+      dispatch(program.totals.range, range.begin, range.end);
+    } else {
+      reduce(run, program, std::uint32_t(values));
+    }
+    writes_pending_ = true;
+    barrier_due_ = false;
+  }
+  return {};
+}
+
+void GlBackend::run_pairs(const KernelRun& run, const OwnProgram& program, const Range& range, std::uint32_t chunks) {
+  const OwnKernel& k = *run.own;
+  if (k.cutoff) {
+    const double squared = *k.cutoff * *k.cutoff;
+    if (options_.precision == Precision::f64)
+      glUniform1d(program.cutoff_squared, squared);
+    else
+      glUniform1f(program.cutoff_squared, GLfloat(squared));
+  }
+  glUniform4ui(program.work, run.others, pair_chunk(run.others), range.end - range.begin, range.begin);
+  dispatch(program.range, range.begin, range.end, chunks);
+}
+
+void GlBackend::start_reduction(const OwnProgram& program, const Range& range, std::uint32_t room) {
+  glUniform4ui(program.work, 0, 0, room, range.begin);
+  dispatch(program.range, range.begin, range.end);
+}
+
+/// Level by level, until one value is left, which goes into its property.
+void GlBackend::reduce(const KernelRun& run, const OwnProgram& program, std::uint32_t room) {
+  const auto blocks_of = [](std::uint32_t count) { return (count + reduction_block - 1) / reduction_block; };
+  std::uint32_t first = 0, count = blocks_of(run.ranges[0].end - run.ranges[0].begin);
+  for (bool last = false; !last;) {
+    last = count <= reduction_block;
+    glUniform4ui(program.totals.work, first, count, room, first + count);
+    glUniform2ui(program.totals.range, 0, last);
+    glDispatchCompute(std::max(blocks_of(count), 1u), 1, 1);
+    first += count;
+    count = blocks_of(count);
+    if (!last) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+  }
 }
 
 std::int32_t GlBackend::range_of(const KernelRun& run) {
@@ -253,12 +360,12 @@ std::int32_t GlBackend::range_of(const KernelRun& run) {
 }
 
 /// Long ranges go in pieces of as many work groups as the device takes; pieces need no barrier.
-void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end) {
+void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, std::uint32_t rows) {
   const std::uint64_t piece = std::uint64_t(context_->report().limits.work_group_count) * local_size;
   for (std::uint64_t k = begin; k < end; k += piece) {
     const std::uint32_t stop = std::uint32_t(std::min<std::uint64_t>(end, k + piece));
     glUniform2ui(range_location, std::uint32_t(k), stop);
-    glDispatchCompute((stop - std::uint32_t(k) + local_size - 1) / local_size, 1, 1);
+    glDispatchCompute((stop - std::uint32_t(k) + local_size - 1) / local_size, rows, 1);
   }
 }
 
@@ -277,6 +384,12 @@ void GlBackend::dispatch_all(const KernelRun& run) {
 Status GlBackend::run(std::span<const KernelRun> runs) {
   for (const KernelRun& run : runs) {
     barrier_due_ |= run.barrier;
+    if (run.own && run.own->form != OwnKernel::Form::element) {
+      Status status = hold();
+      if (status) status = run_in_two(run);
+      if (!status) return release(), status;
+      continue;
+    }
     if (std::ranges::all_of(run.ranges, [](const Range& r) { return r.begin >= r.end; })) continue;
     if (Status status = hold(); !status) return status;
     if (Status status = bind(run); !status) {

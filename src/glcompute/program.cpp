@@ -170,12 +170,20 @@ Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& opt
   if (!source) return source.error();
   const Result<std::uint32_t> program = link_program(*source, kernel.name, cache);
   if (!program) return program.error();
-  OwnProgram own{*program, glGetUniformLocation(*program, "pc_range"), {}};
+  const auto location = [](GLuint id, const std::string& name) { return glGetUniformLocation(id, name.c_str()); };
+  OwnProgram own{
+      *program, location(*program, "pc_range"), location(*program, "pc_work"), location(*program, "pc_cutoff_squared"), {}, {}};
   for (const OwnArgument& a : kernel.arguments)
-    for (std::uint32_t c = 0; c < components(a.type); c++) {
-      const bool here = a.kind == OwnArgument::Kind::parameter && !a.given;
-      own.parameters.push_back(here ? glGetUniformLocation(*program, ("pc_" + a.name + "_" + std::to_string(c)).c_str()) : -1);
-    }
+    for (std::uint32_t c = 0; c < components(a.type); c++)
+      own.parameters.push_back(a.of_property() || a.given ? -1 : location(own.id, "pc_" + a.name + "_" + std::to_string(c)));
+  if (kernel.form == OwnKernel::Form::element) return own;
+  const Result<ProgramSource> totals = own_totals_source(kernel, options);
+  const Result<std::uint32_t> second = totals ? link_program(*totals, kernel.name, cache) : Result<std::uint32_t>(totals.error());
+  if (!second) {
+    glDeleteProgram(own.id);
+    return second.error();
+  }
+  own.totals = {*second, location(*second, "pc_range"), location(*second, "pc_work")};
   return own;
 }
 

@@ -19,10 +19,15 @@ struct KernelProgram {
   std::uint32_t id = 0;
   std::int32_t range = -1;  // location of the uniform pc_range
 };
+/// Of a kernel of the host's own: one program, or two of pairs and reductions.
 struct OwnProgram {
   std::uint32_t id = 0;
-  std::int32_t range = -1;
+  std::int32_t range = -1, work = -1, cutoff_squared = -1;  // locations; see own_source.cpp
   std::vector<std::int32_t> parameters;  // location of each component of each argument in turn; -1: not used, or no parameter
+  struct Totals {
+    std::uint32_t id = 0;
+    std::int32_t range = -1, work = -1;
+  } totals;
 };
 Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache);
 Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, const ProgramCache& cache);

@@ -32,6 +32,10 @@ struct ProgramSource {
 Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options);
 /// Of a kernel of the host's own; errors of its text name its own file and lines.
 Result<ProgramSource> own_kernel_source(const OwnKernel& kernel, const SourceOptions& options);
+/// Its second program, where it is of pairs or makes one value of all rows.
+Result<ProgramSource> own_totals_source(const OwnKernel& kernel, const SourceOptions& options);
+/// Of 32 bits, that a number takes between the two.
+std::uint32_t number_words(PropertyType type, std::size_t real_bytes);
 Result<ProgramSource> probe_source(Precision precision);
 
 /// Whether GLSL sees a buffer as single reals: the solver's rows in double, see PC_AT in prelude.glsl.

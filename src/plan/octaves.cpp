@@ -57,7 +57,7 @@ void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, b
 }
 
 bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
-                     std::span<const std::uint32_t> fourth, const StepSettings& settings, double dt) {
+                     std::span<const std::uint32_t> fourth, bool together, const StepSettings& settings, double dt) {
   wanted_.clear();
   const std::uint8_t highest = settings.integrator == Integrator::seed ? 0 : highest_octave(settings);
   loads_.want(state, settings, dt, highest, wanted_);
@@ -71,14 +71,16 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   if (!wanted_.empty() || !fourth.empty()) of_bodies_.assign(state.bodies.size(), 0);
   if (!wanted_.empty()) {
     islands_.build(state);
+    std::uint8_t highest_of_all = 0;
     for (const Wanted& w : wanted_) {
       const std::uint32_t root = islands_.root(w.body);
       const bool whole = w.any_size || islands_.size(root) <= constants::large_island;
       of_bodies_[root] = std::max(of_bodies_[root], whole ? w.octave : std::uint8_t{1});
+      highest_of_all = std::max(highest_of_all, of_bodies_[root]);
     }
     for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
       if (!state.goes(row)) continue;
-      of_bodies_[row] = of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
+      of_bodies_[row] = together ? highest_of_all : of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
       refined_ += of_bodies_[row] > 0;
     }
   }

@@ -49,9 +49,9 @@ class Octaves {
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
   /// Of a step of `dt`. `faces`: some contact has more than one point, so that something may stand on something. False: they are
-  /// those of the step before. `fourth`: the trees of fourth order.
+  /// those of the step before. `fourth`: the trees of fourth order. `together`: all bodies act on each other, and have one octave.
   bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
-              std::span<const std::uint32_t> fourth, const StepSettings& settings, double dt);
+              std::span<const std::uint32_t> fourth, bool together, const StepSettings& settings, double dt);
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "pcphys/constants.h"
 #include "world/validate.h"
 
 namespace pcphys {
@@ -32,7 +33,12 @@ constexpr TypeWord type_words[] = {{"Real", PropertyType::real},       {"Vec3", 
                                    {"Quad", PropertyType::vec4},       {"Mat3", PropertyType::mat3},
                                    {"float", PropertyType::float32},   {"double", PropertyType::float64},
                                    {"int", PropertyType::int32},       {"uint", PropertyType::uint32}};
-constexpr std::string_view kind_words[] = {"PC_IN", "PC_INOUT", "PC_OUT", "PC_PARAM"};
+constexpr std::string_view kind_words[] = {"PC_IN",    "PC_INOUT", "PC_OUT", "PC_PARAM", "PC_SELF",
+                                           "PC_OTHER", "PC_SUM",   "PC_ADD", "PC_MIN",   "PC_MAX"};
+
+std::string without(std::string_view name, std::string_view suffix) {
+  return std::string(name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name);
+}
 
 /// Words and signs of a signature.
 class Tokens {
@@ -73,6 +79,9 @@ Status parse(OwnKernel& k, std::string_view signature) {
     argument.kind = OwnArgument::Kind(kind - kind_words);
     argument.type = type->type;
     argument.name = tokens.next();
+    argument.property = argument.name;
+    if (argument.kind == OwnArgument::Kind::self) argument.property = without(argument.name, "_self");
+    if (argument.kind == OwnArgument::Kind::other) argument.property = without(argument.name, "_other");
     if (contains(k.arguments, argument.name, &OwnArgument::name))
       return bad(k, "names " + quoted(argument.name) + " twice in its signature; PC_INOUT reads and writes.");
     k.arguments.push_back(std::move(argument));
@@ -100,30 +109,48 @@ bool find_property(const WorldState& s, std::string_view name, Found& found) {
   return false;
 }
 
+void use(OwnKernel& k, Buffer buffer, bool write) {
+  if (k.form != OwnKernel::Form::element) {
+    std::vector<Buffer>& bound = write ? k.written : k.read;
+    if (!contains(bound, buffer)) bound.push_back(buffer);
+  }
+  const auto known = std::ranges::find(k.accesses, buffer, &Access::buffer);
+  if (known == k.accesses.end())
+    k.accesses.push_back({buffer, write});
+  else
+    known->write |= write;
+}
+
 Status bind_property(const WorldState& s, OwnKernel& k, OwnArgument& a) {
   Found f;
-  if (!find_property(s, a.name, f))
-    return Error{ErrorCode::unknown_name, "The kernel " + quoted(k.name) + " uses the property " + quoted(a.name) +
+  if (!find_property(s, a.property, f))
+    return Error{ErrorCode::unknown_name, "The kernel " + quoted(k.name) + " uses the property " + quoted(a.property) +
                                               ", which the world does not have; add it first (World::add_property), or make it a "
                                               "PC_PARAM."};
   if (f.type != a.type)
     return Error{ErrorCode::wrong_type, "The kernel " + quoted(k.name) + " declares " + quoted(a.name) + " as " +
                                             std::string(name(a.type)) + "; the property is of type " + std::string(name(f.type)) +
                                             "."};
-  if (f.table != k.table)
-    return bad(k, "runs over another table than that of its property " + quoted(a.name) + "; all of them must be of one table.");
-  if (a.writes() && !f.own && std::ranges::find(writable, a.name) == std::end(writable))
+  // a total goes into a table of one row, and every kernel may read there
+  const bool total = k.form == OwnKernel::Form::reduction && a.summed();
+  a.single = f.table != k.table && f.table >= Table::count && s.tables.rows(f.table) == 2 && (total || !a.writes());
+  if (total && !a.single)
+    return bad(k, "makes one value of all rows, " + quoted(a.name) +
+                      ", which is a property of many; add it to a table of one row (World::add_table(name, 1)).");
+  if (f.table != k.table && !a.single)
+    return bad(k, "runs over another table than that of its property " + quoted(a.property) +
+                      "; all of them must be of one table, or what is read of a table of one row.");
+  if (k.form == OwnKernel::Form::pair && a.kind == OwnArgument::Kind::in && !a.single)
+    return bad(k, "is of pairs and says PC_IN of " + quoted(a.name) + "; say of which body: PC_SELF(T) " + a.name +
+                      ", or PC_OTHER(T) " + a.name + "_other.");
+  if (a.writes() && !f.own && std::ranges::find(writable, a.property) == std::end(writable))
     return bad(k, "writes " + quoted(a.name) +
                       ", from which the library derives others; of its properties kernels may write force, torque, "
                       "displacement_rate and angular_momentum.");
   a.buffer = f.buffer;
   a.offset = f.offset;
   a.row_bytes = std::uint32_t(s.tables.row_bytes(f.buffer));
-  const auto bound = std::ranges::find(k.accesses, a.buffer, &Access::buffer);
-  if (bound == k.accesses.end())
-    k.accesses.push_back({a.buffer, a.writes()});
-  else
-    bound->write |= a.writes();
+  use(k, a.buffer, a.writes());
   return {};
 }
 
@@ -139,25 +166,105 @@ Status bind_parameter(OwnKernel& k, OwnArgument& a, const std::vector<KernelPara
   return set(k, *value);
 }
 
+// ---- pairs and reductions ----------------------------------------------------------------------------
+Status find_form(OwnKernel& k) {
+  using Kind = OwnArgument::Kind;
+  using Form = OwnKernel::Form;
+  const auto has = [&](auto... kinds) {
+    return std::ranges::any_of(k.arguments, [&](const OwnArgument& a) { return ((a.kind == kinds) || ...); });
+  };
+  if (has(Kind::self, Kind::other))
+    k.form = Form::pair;
+  else if (has(Kind::sum, Kind::least, Kind::most))
+    k.form = Form::reduction;
+  if (k.form != Form::element && has(Kind::inout, Kind::out))
+    return bad(k,
+               "is of pairs, or makes one value of all rows; what it writes is then a sum (PC_ADD, PC_SUM) or, of all rows, "
+               "PC_SUM, PC_MIN or PC_MAX, and neither PC_INOUT nor PC_OUT.");
+  if (k.form == Form::pair && has(Kind::least, Kind::most))
+    return bad(k, "is of pairs and says PC_MIN or PC_MAX; pairs are summed: PC_ADD or PC_SUM.");
+  if (k.form != Form::pair && has(Kind::add))
+    return bad(k, "says PC_ADD, which is for sums over pairs: declare what is read as PC_SELF and PC_OTHER.");
+  for (const OwnArgument& a : k.arguments) {
+    if (a.kind == Kind::other && a.name == a.property)
+      return bad(k, "says PC_OTHER of " + quoted(a.name) + "; the name of the other's ends in _other: " + a.name + "_other.");
+    const bool ordered = components(a.type) == 1 || a.type == PropertyType::vec3 || a.type == PropertyType::vec4;
+    if (a.summed() && (a.type == PropertyType::quat || (a.kind >= Kind::least && !ordered)))
+      return Error{ErrorCode::wrong_type, "The kernel " + quoted(k.name) + " makes a sum, least or most of " + quoted(a.name) +
+                                              ", of type " + std::string(name(a.type)) +
+                                              ", which has none; sums are of numbers, vectors and matrices, PC_MIN and PC_MAX of "
+                                              "numbers and vectors."};
+  }
+  if ((k.form == Form::pair ? k.loop != nullptr : k.pairs != nullptr))
+    return bad(k, k.form == Form::pair ? "is of pairs; write it with PCPHYS_PAIR_KERNEL."
+                                       : "names no PC_SELF and no PC_OTHER; write it with PCPHYS_KERNEL.");
+  if (!k.cutoff) return {};
+  if (k.form != Form::pair || k.table != Table::body)
+    return bad(k, "has a cut-off (KernelDef::cutoff), which is for pairs of bodies alone.");
+  if (!(*k.cutoff > 0 && *k.cutoff <= constants::largest_state))
+    return bad(k, "has a cut-off of " + std::to_string(*k.cutoff) +
+                      " m; it must be above zero and finite. Without one all pairs are visited.");
+  return {};
+}
+
+/// Which rows are visited, and in which order; each pair's or row's place.
+void use_lists(OwnKernel& k) {
+  if (k.form == OwnKernel::Form::reduction) {
+    if (k.table == Table::body) use(k, Buffer::moving_by_id, false);
+    if (k.table == Table::joint) use(k, Buffer::joints_by_id, false);
+    return;
+  }
+  if (k.table == Table::body) use(k, Buffer::bodies, false);
+  if (k.form == OwnKernel::Form::element) return;
+  if (k.table == Table::body) k.written.push_back(Buffer::bodies);
+  if (k.cutoff) {
+    for (const Buffer b : {Buffer::near_first, Buffer::near_rows, Buffer::pose}) use(k, b, false);
+  } else if (k.table == Table::body) {
+    use(k, Buffer::bodies_by_id, false);
+  }
+}
+
+Status check_blocks(const OwnKernel& k) {
+  const bool element = k.form == OwnKernel::Form::element;
+  const std::size_t blocks = element ? k.accesses.size() : 1 + std::max(k.read.size(), k.written.size());
+  if (blocks <= most_buffers) return {};
+  std::string list;
+  for (const OwnArgument& a : k.arguments)
+    if (a.of_property() && (element || a.writes() == (k.written.size() > k.read.size())))
+      list += (list.empty() ? "" : ", ") + a.name;
+  for (const Access& a : k.accesses)
+    if (!of_table(a.buffer)) list += element ? ", and the list of bodies" : ", " + std::string(schema(a.buffer).doc);
+  if (!element) list += ", and its sums";
+  return bad(k, "needs " + std::to_string(blocks) + " storage blocks (" + list +
+                    "); a GPU has eight for a program. Properties of the library that stand in one buffer share a block "
+                    "(docs/properties.md); a vec4 or a mat3 may hold several of your own.");
+}
+
 /// Whether a must run before b, of one moment.
 bool precedes(const OwnKernel& a, const OwnKernel& b) {
   if (std::ranges::find(b.follows, a.name) != b.follows.end()) return true;
   if (std::ranges::find(a.follows, b.name) != a.follows.end()) return false;
-  const auto rank = [](OwnArgument::Kind kind) {
-    return kind == OwnArgument::Kind::out ? 0 : kind == OwnArgument::Kind::inout ? 1 : 2;
-  };
+  const auto rank = [](const OwnArgument& argument) { return argument.anew() ? 0 : argument.writes() ? 1 : 2; };
   for (const OwnArgument& x : a.arguments)
     for (const OwnArgument& y : b.arguments)
-      if (x.kind != OwnArgument::Kind::parameter && y.kind != OwnArgument::Kind::parameter && x.name == y.name && x.writes() &&
-          rank(x.kind) < rank(y.kind))
-        return true;
+      if (x.of_property() && y.of_property() && x.property == y.property && x.writes() && rank(x) < rank(y)) return true;
   return false;
 }
 bool same_moment(const OwnKernel& a, const OwnKernel& b) {
+  const bool last[] = {a.form == OwnKernel::Form::reduction, b.form == OwnKernel::Form::reduction};
+  if (last[0] || last[1]) return last[0] && last[1];
   return a.stage == b.stage && a.after == b.after && a.once_a_step == b.once_a_step;
 }
 
 }  // namespace
+
+std::uint32_t pair_chunk(std::uint32_t count) {
+  constexpr std::uint32_t tile = KernelPairs::tile, filled = 1u << 18;  // pairs of a body and a chunk that fill a GPU
+  const std::uint32_t most = std::clamp(filled / std::max(count, 1u), 1u, KernelPairs::most_chunks);
+  std::uint32_t chunk = tile;
+  while (std::uint64_t{chunk} * most < count) chunk *= 2;
+  return chunk;
+}
 
 Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef& def) {
   static std::atomic<std::uint64_t> serials{0};
@@ -168,18 +275,22 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   k->file = def.text.file;
   k->line = def.text.line;
   k->real_bytes = s.tables.real_bytes();
-  k->loop = s.tables.precision() == Precision::f32 ? def.text.f32 : def.text.f64;
+  const bool single = s.tables.precision() == Precision::f32;
+  k->loop = single ? def.text.f32 : def.text.f64;
+  k->pairs = single ? def.text.pairs32 : def.text.pairs64;
+  k->cutoff = def.cutoff;
   k->stage = def.stage;
   k->after = def.after;
   k->once_a_step = def.once_a_step;
   k->follows = def.follows;
   if (k->name.empty()) return bad(*k, "has no name.");
-  if (k->body.empty() && !k->loop) return bad(*k, "has neither a C++ nor a GLSL side; write it with PCPHYS_KERNEL.");
+  if (k->body.empty() && !k->in_cpp()) return bad(*k, "has neither a C++ nor a GLSL side; write it with PCPHYS_KERNEL.");
   const Result<Table> table = s.table_of(def.over);
   if (!table) return table.error();
   k->table = *table;
-  if (k->table == Table::body) k->accesses.push_back({Buffer::bodies, false});
   Status ok = parse(*k, def.text.signature);
+  if (ok) ok = find_form(*k);
+  if (ok) use_lists(*k);
   for (OwnArgument& a : k->arguments) {
     if (!ok) break;
     ok = a.kind == OwnArgument::Kind::parameter ? bind_parameter(*k, a, def.parameters) : bind_property(s, *k, a);
@@ -188,30 +299,23 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   for (const KernelParameter& p : def.parameters)
     if (!contains(k->arguments, p.name, &OwnArgument::name))
       return bad(*k, "is given the parameter " + quoted(p.name) + ", which its signature does not have.");
-  if (k->accesses.size() > most_buffers) {
-    std::string list;
-    for (const OwnArgument& a : k->arguments)
-      if (a.kind != OwnArgument::Kind::parameter) list += (list.empty() ? "" : ", ") + a.name;
-    return bad(*k, "needs " + std::to_string(k->accesses.size()) + " storage blocks (" + list +
-                       (k->table == Table::body ? ", and the list of bodies" : "") +
-                       "); a GPU has eight for a program. Properties of the library that stand in one buffer share a block "
-                       "(docs/properties.md); a vec4 or a mat3 may hold several of your own.");
-  }
+  if (ok = check_blocks(*k); !ok) return ok.error();
   const bool forces = k->writes(Buffer::force);
   if (forces && (k->table != Table::body || k->stage != Stage::integrate || k->after))
     return bad(*k, "writes force or torque, which the stage integrate takes up; run it before that stage.");
   if (std::ranges::none_of(k->accesses, &Access::write))
-    return bad(*k, "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
+    return bad(*k, k->form == OwnKernel::Form::pair ? "writes nothing; declare what it sums as PC_ADD or PC_SUM."
+                                                    : "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
   return k;
 }
 
 Status check_properties(const WorldState& s, const OwnKernel& k) {
   for (const OwnArgument& a : k.arguments) {
     Found f;
-    if (a.kind == OwnArgument::Kind::parameter) continue;
-    if (!find_property(s, a.name, f) || f.buffer != a.buffer || f.type != a.type || f.table != k.table)
+    if (!a.of_property()) continue;
+    if (!find_property(s, a.property, f) || f.buffer != a.buffer || f.type != a.type || (f.table != k.table && !a.single))
       return Error{ErrorCode::stale_id,
-                   "The kernel " + quoted(k.name) + " uses the property " + quoted(a.name) +
+                   "The kernel " + quoted(k.name) + " uses the property " + quoted(a.property) +
                        ", which was removed; remove the kernel too (Stepper::remove_kernel), and add it again where "
                        "there is a new one of that name. The world is as it was."};
   }
@@ -237,6 +341,15 @@ Status set(OwnKernel& k, const KernelParameter& value) {
     write_number(k.parameters.data() + a->place + c * number_bytes(a->type, k.real_bytes), a->type, k.real_bytes,
                  value.value.x[c]);
   return {};
+}
+
+bool OwnKernels::pairs_of_bodies() const {
+  return std::ranges::any_of(kernels_, [](const auto& k) { return k->form == OwnKernel::Form::pair && k->table == Table::body; });
+}
+double OwnKernels::cutoff() const {
+  double largest = 0;
+  for (const auto& k : kernels_) largest = std::max(largest, k->cutoff.value_or(0));
+  return largest;
 }
 
 OwnKernel* OwnKernels::find(std::string_view name) const {
@@ -274,11 +387,11 @@ Status OwnKernels::add(std::shared_ptr<OwnKernel> kernel) {
     if (!same_moment(*other, *kernel)) continue;
     for (const OwnArgument& a : other->arguments)
       for (const OwnArgument& b : kernel->arguments)
-        if (a.kind == OwnArgument::Kind::out && b.kind == OwnArgument::Kind::out && a.name == b.name &&
-            !contains(kernel->follows, other->name) && !contains(other->follows, kernel->name))
+        if (a.anew() && b.anew() && a.property == b.property && !contains(kernel->follows, other->name) &&
+            !contains(other->follows, kernel->name))
           return bad(
               *kernel,
-              "and " + quoted(other->name) + " both write " + quoted(a.name) +
+              "and " + quoted(other->name) + " both write " + quoted(a.property) +
                   " anew at the same moment; say which follows which (KernelDef::follows), or let one change it (PC_INOUT).");
   }
   kernels_.push_back(std::move(kernel));

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,8 +16,9 @@
 namespace pcphys {
 
 struct OwnArgument {
-  enum class Kind : std::uint8_t { in, inout, out, parameter };
-  std::string name;
+  enum class Kind : std::uint8_t { in, inout, out, parameter, self, other, sum, add, least, most };
+  std::string name;      // in the kernel's text
+  std::string property;  // that it names: without _other, or _self
   Kind kind = Kind::in;
   PropertyType type = PropertyType::real;
   // of a property
@@ -24,23 +26,35 @@ struct OwnArgument {
   std::uint32_t offset = 0, row_bytes = 0;
   // of a parameter: where it stands in OwnKernel::parameters; one of the library's own is known by its name
   std::uint32_t place = 0;
-  bool given = false;  // by the library: h, gravity
-  bool writes() const { return kind == Kind::inout || kind == Kind::out; }
+  bool given = false;   // by the library: h, gravity
+  bool single = false;  // of a table of one row, which is not the kernel's
+  bool of_property() const { return kind != Kind::parameter; }
+  bool summed() const { return kind >= Kind::sum; }
+  bool writes() const { return kind == Kind::inout || kind == Kind::out || summed(); }
+  /// Whatever it was before.
+  bool anew() const { return kind == Kind::out || (summed() && kind != Kind::add); }
 };
 
 struct OwnKernel {
   static constexpr std::size_t most_arguments = 32;
+  /// Of one row; of a row and each other one; of all rows to one value.
+  enum class Form : std::uint8_t { element, pair, reduction };
 
   std::uint64_t serial = 0;  // another for each kernel of the process
   std::string name, body, file;
   int line = 0;
+  Form form = Form::element;
   KernelLoop loop = nullptr;
+  PairsLoop pairs = nullptr;
+  bool in_cpp() const { return loop || pairs; }
+  std::optional<double> cutoff;  // of pairs
   Table table = Table::body;
   Stage stage = Stage::integrate;
   bool after = false, once_a_step = false;
   std::vector<std::string> follows;
   std::vector<OwnArgument> arguments;
   std::vector<Access> accesses;       // each buffer once; of bodies the list of those that move first
+  std::vector<Buffer> read, written;  // of pairs and reductions, which are two programs: what each of them binds
   std::size_t real_bytes = 4;         // of the world
   std::vector<std::byte> parameters;  // in the world's precision, each from a multiple of `parameter_bytes` on
   static constexpr std::size_t parameter_bytes = 12 * 8;
@@ -51,6 +65,12 @@ struct OwnKernel {
     return false;
   }
 };
+
+/// How many of `count` others a pair kernel sums in one go: a function of the number alone, so that sums are the same everywhere;
+/// the fewer there are, the more work groups share them.
+std::uint32_t pair_chunk(std::uint32_t count);
+/// Rows that a level of a reduction makes one of.
+inline constexpr std::uint32_t reduction_block = 64;
 
 /// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers), unknown_name, wrong_type.
 Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& state, const KernelDef& def);
@@ -74,6 +94,10 @@ class OwnKernels {
   using Ordered = std::span<const std::shared_ptr<OwnKernel>>;
   Ordered ordered() const { return ordered_; }
   bool empty() const { return kernels_.empty(); }
+  /// Whether bodies act on each other in some, whatever their islands.
+  bool pairs_of_bodies() const;
+  /// The largest cut-off; 0: none has any.
+  double cutoff() const;
   /// Counts the changes.
   std::uint64_t version() const { return version_; }
 

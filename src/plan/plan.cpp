@@ -38,15 +38,18 @@ class Builder {
   void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count, bool once_a_step) {
     for (const auto& k : own_) {
       if (k->stage != stage || k->after != after || k->once_a_step != once_a_step) continue;
+      if (k->form == OwnKernel::Form::reduction) continue;
       if (once_a_step && substep != (after ? count - 1 : 0)) continue;
       // rows that are no bodies are of no octave
       if (k->table != Table::body && octave_ != std::countr_zero(signature_.octaves)) continue;
-      Place place = signature_.places[std::size_t(stage)];
-      if (k->body.empty()) place = Place::cpu;
-      if (!k->loop) place = Place::gl;
-      add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, k.get(), 0}, k->accesses,
-          Domain::body);
+      add(*k, substep);
     }
+  }
+  /// Those that make one value of all rows, when the step is made.
+  void totals() {
+    enter(0);
+    for (const auto& k : own_)
+      if (k->form == OwnKernel::Form::reduction) add(*k, plan_.entries.empty() ? 0 : plan_.entries.back().substep);
   }
   void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count) {
     own(stage, after, substep, count, true);
@@ -71,6 +74,12 @@ class Builder {
   Known& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
   static bool is_rows(Buffer b) { return !of_table(b) && schema(b).reals > 0; }
 
+  void add(const OwnKernel& k, std::uint32_t substep) {
+    Place place = signature_.places[std::size_t(k.stage)];
+    if (k.body.empty()) place = Place::cpu;
+    if (!k.in_cpp()) place = Place::gl;
+    add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, &k, 0}, k.accesses, Domain::body);
+  }
   void add(PlanEntry entry, std::span<const Access> accesses, Domain domain) {
     const Place place = entry.place;
     for (const Access& a : accesses) {
@@ -321,6 +330,7 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
     if (s.octaves >> octave & 1) substeps(b, s, octave);
   for (unsigned octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> (octave_count + octave) & 1) smooth_substeps(b, s, octave);
+  b.totals();
   if (!plan.entries.empty()) b.results(plan.entries.back().substep);
   return plan;
 }

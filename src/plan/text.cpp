@@ -18,7 +18,7 @@ namespace {
 std::string_view buffer_name(Buffer buffer, const OwnKernel* user) {
   if (!is_own(buffer)) return schema(buffer).name;
   for (const OwnArgument& a : user->arguments)
-    if (a.kind != OwnArgument::Kind::parameter && a.buffer == buffer) return a.name;
+    if (a.of_property() && a.buffer == buffer) return a.property;
   return {};
 }
 }  // namespace

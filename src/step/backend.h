@@ -31,7 +31,8 @@ struct KernelRun {
   std::uint32_t lanes;  // one of `width_for`
   std::span<const Range> ranges;
   const OwnKernel* own =
-      nullptr;  // a kernel of the host's own in its place; over rows themselves where its table is not of bodies
+      nullptr;               // a kernel of the host's own in its place; over rows themselves where its table is not of bodies
+  std::uint32_t others = 0;  // of pairs: all rows of the table
 };
 
 class Backend {

@@ -24,7 +24,7 @@ Timer timer_of(const PlanEntry& entry) {
 
 bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
   if (s.integrate == place || s.joints == place || s.impulses == place) return true;
-  return std::ranges::any_of(own.ordered(), [&](const auto& k) { return place == Place::gl ? !k->loop : k->body.empty(); });
+  return std::ranges::any_of(own.ordered(), [&](const auto& k) { return place == Place::gl ? !k->in_cpp() : k->body.empty(); });
 }
 
 /// The numbers of a class are those of its octave, whatever the order.
@@ -56,6 +56,11 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::contact_paths: return &schedule.contacts.paths();
     case Buffer::contact_ends: return &schedule.contacts.ends();
     case Buffer::contact_order: return &schedule.contacts.order();
+    case Buffer::bodies_by_id: return &schedule.own.bodies;
+    case Buffer::moving_by_id: return &schedule.own.moving;
+    case Buffer::joints_by_id: return &schedule.own.joints;
+    case Buffer::near_first: return &schedule.own.near.first;
+    case Buffer::near_rows: return &schedule.own.near.rows;
     default: return nullptr;
   }
 }
@@ -107,6 +112,9 @@ std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule&
     return schedule.joints.version() + 1;
   if (buffer == Buffer::contact_ends || buffer == Buffer::contact_order || buffer == Buffer::contact_paths)
     return schedule.contacts.version() + 1;
+  if (buffer == Buffer::bodies_by_id || buffer == Buffer::moving_by_id || buffer == Buffer::joints_by_id)
+    return schedule.own.version + 1;
+  if (buffer == Buffer::near_first || buffer == Buffer::near_rows) return schedule.own.near.version + 1;
   return schedule.trees.version() + 1;
 }
 
@@ -266,16 +274,22 @@ void Runner::add_run(const PlanEntry& entry, const WorldState& state, const Sche
 
 void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule) {
   const std::size_t first = ranges_.size();
-  if (entry.own->table == Table::body)
+  const OwnKernel& k = *entry.own;
+  if (k.form == OwnKernel::Form::reduction)
+    ranges_.push_back(k.table == Table::body    ? Range{0, schedule.moving}
+                      : k.table == Table::joint ? Range{0, state.tables.rows(k.table) - 1}
+                                                : Range{1, state.tables.rows(k.table)});
+  else if (k.table == Table::body)
     for (const Range& range : schedule.ranges(entry.octave)) ranges_.push_back(range);
   else
-    ranges_.push_back({1, state.tables.rows(entry.own->table)});
+    ranges_.push_back({1, state.tables.rows(k.table)});
   runs_.push_back({Kernel::begin,
                    entry.barrier,
                    std::uint32_t(info_index(entry)),
                    1,
                    {static_cast<const Range*>(nullptr), ranges_.size() - first},
-                   entry.own});
+                   &k,
+                   state.tables.rows(k.table) - 1});
 }
 
 void Runner::prepare_calls(const StepPlan& plan, bool timings, const WorldState& state, const Schedule& schedule) {

@@ -210,6 +210,7 @@ void TreeSlots::pack(std::uint32_t width) {
 
 void Schedule::update_structure(const WorldState& state) {
   rows_.clear();
+  own.forget();
   drag = gyroscopic = false;
   double lightest = 0, heaviest = 0;  // as inverse masses
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {

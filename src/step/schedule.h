@@ -10,6 +10,7 @@
 #include "plan/pivots.h"
 #include "plan/tree_paths.h"
 #include "step/backend.h"
+#include "step/own_lists.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -153,7 +154,8 @@ class Schedule {
   std::span<const Range> ranges(unsigned octave) const { return std::span(body_ranges_).subspan(octave, 1); }
   bool grouped() const { return body_ranges_.size() > 1; }
   /// Counts the changes of all that stands here, but for how it is packed.
-  std::uint64_t changes() const { return changes_; }
+  std::uint64_t changes() const { return changes_ + own.version + own.near.version; }
+  std::span<const std::uint32_t> rows_that_move() const { return rows_; }
 
   std::vector<std::uint32_t> bodies;  // rows that move; those of an octave padded with row 0 to a multiple of `padding`
   std::uint32_t moving = 0;           // without the padding
@@ -163,6 +165,7 @@ class Schedule {
   std::uint64_t bodies_version = 0;
   ColouredSlots joints, contacts;  // joints: those that stand in no tree
   TreeSlots trees;
+  OwnLists own;  // of kernels of the host's own
 
   static constexpr std::uint32_t padding = 32;  // the widest backend
 

@@ -128,7 +128,7 @@ struct Stepper::Inside {
   /// Compiles it where it is to run, while it can still be refused.
   Status check_kernel(const WorldState& s, const OwnKernel& kernel) {
     const Place stage_place = std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
-    const Place place = kernel.body.empty() ? Place::cpu : !kernel.loop ? Place::gl : stage_place;
+    const Place place = kernel.body.empty() ? Place::cpu : !kernel.in_cpp() ? Place::gl : stage_place;
     if (stage_place == Place::gl && kernel.body.empty()) return {};  // runs on the CPU; the plan shows what goes to and fro
     if (place == Place::cpu) return {};
     if (Status ok = prepare(s.tables.precision()); !ok) return ok;
@@ -200,6 +200,7 @@ struct Stepper::Inside {
     if (serial != s.serial) runner.forget();
     if (s.rests && !settings.sleep) s.forget_rest();
     detector.forget_strays();
+    schedule.own.near.forget_strays();
     tries = 0;
     while (ok = attempt(s, dt), !ok || !outside.empty() || strayed) {
       if (!ok && ok.error().code != ErrorCode::not_finite) return put_rest_back(s, ok);
@@ -323,7 +324,9 @@ struct Stepper::Inside {
     regrouped = found.changed || other || contacts_version != s.contacts_version;
     if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
     choose_order(fourth, s, schedule.trees, dt);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(), settings, dt) || other)
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
+                       own.kernels().pairs_of_bodies(), settings, dt) ||
+        other)
       schedule.group(octaves.of_bodies());
     PlanSignature wanted = signature(s, schedule);
     wanted.octaves = octaves.used();
@@ -332,6 +335,7 @@ struct Stepper::Inside {
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
+    if (ok = order_own(s, dt); !ok) return undo(s, ok);
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
     if (const std::uint32_t rows = schedule.trees.nodes().rows();
@@ -357,7 +361,7 @@ struct Stepper::Inside {
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);
-    strayed = before && ++tries < most_tries && detector.find_strays(s, *before);
+    strayed = before && ++tries < most_tries && find_strays(s, *before);
     if (strayed) return {};
     s.last_substep = h;
     if (s.settling > 0) s.settling--;
@@ -371,6 +375,19 @@ struct Stepper::Inside {
     report.tree_contacts_as_rows = schedule.contacts.beside_trees();
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
     return {};
+  }
+
+  /// Who comes when in pair kernels and reductions.
+  Status order_own(const WorldState& s, double dt) {
+    OwnLists& lists = schedule.own;
+    lists.order(s, schedule.rows_that_move(), own.kernels());
+    const double cutoff = own.kernels().cutoff();
+    if (cutoff == 0) return {};
+    return lists.near.find(s, schedule.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
+  }
+  bool find_strays(const WorldState& s, const AlignedBytes& before) {
+    const bool near = own.kernels().cutoff() > 0 && schedule.own.near.find_strays(s, schedule.rows_that_move());
+    return detector.find_strays(s, before) || near;
   }
 
   /// The world as it was: what the step wrote into its tables goes back, and the contacts are the last step's again.

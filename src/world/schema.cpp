@@ -24,6 +24,11 @@ constexpr BufferSchema buffer_schemas[] = {
     {"tree_ends", Table::joint, 0, "body row and joint row of a node"},
     {"tree_order", Table::node, 0, "row of a node in the table of nodes"},
     {"contact_paths", Table::contact, 0, "of contacts with trees the way from the roots to their bodies"},
+    {"bodies_by_id", Table::body, 0, "all bodies in the order of their ids"},
+    {"moving_by_id", Table::body, 0, "bodies that move, in the order of their ids"},
+    {"joints_by_id", Table::joint, 0, "joints in the order of their ids"},
+    {"near_first", Table::body, 0, "where the list of a body's neighbours begins"},
+    {"near_rows", Table::body, 0, "lists of neighbours"},
 #define PC_ROWS(domain, buffer, reals) {#buffer, Table::domain, reals, "scratch of the solver"},
 #include "kernels/kernels.inl"
 #undef PC_ROWS

@@ -42,6 +42,11 @@ enum class Buffer : std::uint16_t {
   tree_ends,
   tree_order,
   contact_paths,
+  bodies_by_id,
+  moving_by_id,
+  joints_by_id,
+  near_first,
+  near_rows,
 #define PC_ROWS(domain, buffer, reals) buffer,
 #include "kernels/kernels.inl"
 #undef PC_ROWS

@@ -1,0 +1,309 @@
+// Programs of kernels of the host's own. Those of pairs and reductions are two each: one reads, and leaves sums in a block of their
+// own; the next puts them together and writes properties. So everything is read before anything is written, and the order of sums is
+// that of the CPU (pcphys/pair_loop.h, cpu/own_runs.cpp).
+#include <algorithm>
+
+#include "glcompute/own_text.h"
+#include "glcompute/source_text.h"
+
+namespace pcphys {
+namespace {
+
+using Arguments = const std::function<bool(const OwnArgument&)>&;
+
+std::string number(std::uint64_t value) { return std::to_string(value); }
+bool any(const OwnArgument&) { return true; }
+bool of_other(const OwnArgument& a) { return a.kind == OwnArgument::Kind::other; }
+bool not_of_other(const OwnArgument& a) { return !of_other(a); }
+
+std::string element_main(const OwnKernel& k, std::uint32_t local_size) {
+  const OwnText own(k);
+  std::string text = "layout(local_size_x = " + number(local_size) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  text += "  uint pc_k = gl_GlobalInvocationID.x + pc_range.x;\n  if (pc_k >= pc_range.y) return;\n";
+  text += k.table == Table::body ? "  uint pc_row = io_bodies[pc_k];\n" : "  uint pc_row = pc_k;\n";
+  text += own.load(any, "pc_row");
+  for (const OwnArgument& a : k.arguments)
+    if (a.writes())
+      text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+        return "  " + a.name + part + " = " + own.place(a, c, "pc_row") + ";\n";
+      });
+  text += "  " + own.call();
+  for (const OwnArgument& a : k.arguments)
+    if (a.writes())
+      text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+        return "  " + own.place(a, c, "pc_row") + " = " + a.name + part + ";\n";
+      });
+  return text + "}\n";
+}
+
+// ---- sums between two programs ------------------------------------------------------------------------
+/// Statements for each number of what is summed: `each` with argument, suffix, and the word where it stands.
+using EachNumber = std::function<std::string(const OwnArgument&, const std::string&, const std::string&)>;
+std::string for_sums(const OwnKernel& k, const EachNumber& each) {
+  std::string text;
+  std::uint32_t word = 0;
+  for (const OwnArgument& a : k.arguments) {
+    if (!a.summed()) continue;
+    text += OwnText::for_parts(a.type, [&](std::uint32_t, const std::string& part) {
+      const std::string at = number(word) + "u";
+      word += number_words(a.type, k.real_bytes);
+      return each(a, part, at);
+    });
+  }
+  return text;
+}
+std::string declare_sums(const OwnKernel& k, const std::string& prefix) {
+  std::string text;
+  for (const OwnArgument& a : k.arguments)
+    if (a.summed()) text += "  " + OwnText::precise(a) + OwnText::type(a.type) + " " + prefix + a.name + ";\n";
+  return text;
+}
+std::string clear(const OwnKernel& k, const std::string& prefix) {
+  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string&) {
+    return "  " + prefix + a.name + part + " = " + OwnText::number_type(a.type) + "(0);\n";
+  });
+}
+std::string combined(const OwnArgument& a, const std::string& x, const std::string& y) {
+  if (a.kind == OwnArgument::Kind::least) return y + " < " + x + " ? " + y + " : " + x;
+  if (a.kind == OwnArgument::Kind::most) return x + " < " + y + " ? " + y + " : " + x;
+  return x + " + " + y;
+}
+std::string combine(const OwnKernel& k, const std::string& into, const std::string& with) {
+  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string&) {
+    const std::string x = into + a.name + part;
+    return "  " + x + " = " + combined(a, x, with + a.name + part) + ";\n";
+  });
+}
+bool wide(const OwnKernel& k, PropertyType type) { return number_words(type, k.real_bytes) == 2; }
+/// Value `index` of the block of sums; words of neighbours stand side by side.
+std::string put(const OwnKernel& k, const std::string& prefix, const std::string& index) {
+  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
+    return "  pc_put(" + word + ", " + index + ", " + prefix + a.name + part + ");\n";
+  });
+}
+std::string get(const OwnKernel& k, const std::string& prefix, const std::string& index) {
+  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
+    const char* form = a.type == PropertyType::int32    ? "int"
+                       : a.type == PropertyType::uint32 ? "uint"
+                       : wide(k, a.type)                ? "double"
+                                                        : "float";
+    return "  " + prefix + a.name + part + " = pc_get_" + form + "(" + word + ", " + index + ");\n";
+  });
+}
+/// The block, and numbers in it as bits. `stride`: how many values there is room for.
+std::string sums_block(const OwnKernel& k, std::size_t binding) {
+  std::string text = "layout(std430, binding = " + number(binding) + ") restrict buffer Block_sums { uint io_sums[]; };\n";
+  text += "uint pc_stride;\n";
+  text += "void pc_put(uint word, uint pc_i, uint x) { io_sums[word * pc_stride + pc_i] = x; }\n";
+  text += "void pc_put(uint word, uint pc_i, int x) { io_sums[word * pc_stride + pc_i] = uint(x); }\n";
+  text += "void pc_put(uint word, uint pc_i, float x) { io_sums[word * pc_stride + pc_i] = floatBitsToUint(x); }\n";
+  text += "uint pc_get_uint(uint word, uint pc_i) { return io_sums[word * pc_stride + pc_i]; }\n";
+  text += "int pc_get_int(uint word, uint pc_i) { return int(io_sums[word * pc_stride + pc_i]); }\n";
+  text += "float pc_get_float(uint word, uint pc_i) { return uintBitsToFloat(io_sums[word * pc_stride + pc_i]); }\n";
+  const bool doubles = std::ranges::any_of(k.arguments, [&](const OwnArgument& a) { return a.summed() && wide(k, a.type); });
+  if (!doubles) return text;
+  text +=
+      "void pc_put(uint word, uint pc_i, double x) { uvec2 b = unpackDouble2x32(x); pc_put(word, pc_i, b.x); "
+      "pc_put(word + 1u, pc_i, b.y); }\n";
+  text +=
+      "double pc_get_double(uint word, uint pc_i) { return packDouble2x32(uvec2(pc_get_uint(word, pc_i), "
+      "pc_get_uint(word + 1u, pc_i))); }\n";
+  return text;
+}
+
+const std::string uniforms = "uniform uvec2 pc_range;\nuniform uvec4 pc_work;\n";
+std::string begin_main(std::uint32_t local_size) {
+  return "layout(local_size_x = " + number(local_size) + ") in;\n" + uniforms + "void main() {\n";
+}
+const std::string own_row = "  uint pc_k = gl_GlobalInvocationID.x + pc_range.x;\n  bool pc_here = pc_k < pc_range.y;\n";
+std::string row_of(const OwnKernel& k, Buffer list) {
+  const std::string place = "pc_here ? pc_k : pc_range.x";
+  if (k.table != Table::body && k.table != Table::joint) return "  uint pc_row = " + place + ";\n";
+  return "  uint pc_row = io_" + std::string(schema(list).name) + "[" + place + "];\n";
+}
+
+// ---- pairs --------------------------------------------------------------------------------------------
+std::string shared_name(const OwnArgument& a, std::uint32_t c) { return "pc_tile_" + a.name + "_" + number(c); }
+std::string shared_tiles(const OwnKernel& k) {
+  std::string text;
+  for (const OwnArgument& a : k.arguments)
+    for (std::uint32_t c = 0; of_other(a) && c < components(a.type); c++)
+      text += "shared " + OwnText::number_type(a.type) + " " + shared_name(a, c) + "[" + number(KernelPairs::tile) + "];\n";
+  return text;
+}
+
+/// pc_work: others, how many in one go, bodies, the first of these.
+std::string all_pairs_main(const OwnKernel& k) {
+  const OwnText own(k);
+  const bool bodies = k.table == Table::body;
+  const std::string tile = number(KernelPairs::tile) + "u";
+  std::string text = shared_tiles(k) + begin_main(KernelPairs::tile) + own_row + row_of(k, Buffer::bodies);
+  text += own.load(not_of_other, "pc_row") + declare_sums(k, "pc_sum_") + declare_sums(k, "pc_part_") + clear(k, "pc_sum_");
+  text += bodies ? "  uint pc_place = io_bodies_by_id[pc_row];\n" : "  uint pc_place = pc_row - 1u;\n";
+  text += "  uint pc_lane = gl_LocalInvocationID.x;\n  uint pc_begin = gl_WorkGroupID.y * pc_work.y;\n";
+  text += "  uint pc_end = min(pc_begin + pc_work.y, pc_work.x);\n";
+  text += "  for (uint pc_at = pc_begin; pc_at < pc_end; pc_at += " + tile + ") {\n";
+  text += "  uint pc_count = min(pc_end - pc_at, " + tile +
+          ");\n  uint pc_self = pc_place - pc_at;\n  barrier();\n  if (pc_lane < pc_count) {\n";
+  text += bodies ? "  uint pc_other = io_bodies_by_id[pc_work.x + 1u + pc_at + pc_lane];\n"
+                 : "  uint pc_other = pc_at + pc_lane + 1u;\n";
+  for (const OwnArgument& a : k.arguments)
+    for (std::uint32_t c = 0; of_other(a) && c < components(a.type); c++)
+      text += "  " + shared_name(a, c) + "[pc_lane] = " + own.place(a, c, "pc_other") + ";\n";
+  text += "  }\n  barrier();\n" + clear(k, "pc_part_") +
+          "  for (uint pc_j = 0u; pc_j < pc_count; pc_j++) {\n  if (pc_j == pc_self) continue;\n";
+  for (const OwnArgument& a : k.arguments) {
+    if (!of_other(a)) continue;
+    text += "  " + own.type(a.type) + " pc_in_" + a.name + ";\n";
+    text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+      return "  pc_in_" + a.name + part + " = " + shared_name(a, c) + "[pc_j];\n";
+    });
+  }
+  text += clear(k, "") + "  " + own.call() + combine(k, "pc_part_", "") + "  }\n" + combine(k, "pc_sum_", "pc_part_") + "  }\n";
+  text += "  pc_stride = pc_work.z * gl_NumWorkGroups.y;\n";
+  return text + "  if (pc_here) {\n" + put(k, "pc_sum_", "gl_WorkGroupID.y * pc_work.z + pc_k - pc_work.w") + "  }\n}\n";
+}
+
+std::string near_pairs_main(const OwnKernel& k) {
+  const OwnText own(k);
+  const std::string length = number(quads(Buffer::pose)) + "u";
+  std::string text = "uniform Real pc_cutoff_squared;\n" + begin_main(KernelPairs::tile) + own_row + "  if (!pc_here) return;\n";
+  text += row_of(k, Buffer::bodies) + own.load(not_of_other, "pc_row") + declare_sums(k, "pc_sum_") + clear(k, "pc_sum_");
+  text += "  Real4 pc_centre = io_pose[pc_row * " + length + "];\n";
+  text +=
+      "  for (uint pc_at = io_near_first[pc_row]; pc_at < io_near_first[pc_row + 1u]; pc_at++) {\n  uint pc_other = "
+      "io_near_rows[pc_at];\n";
+  text += "  Real4 pc_place = io_pose[pc_other * " + length + "];\n";
+  for (const char* axis : {"x", "y", "z"})
+    text += std::string("  precise Real pc_d") + axis + " = pc_place." + axis + " - pc_centre." + axis + ";\n";
+  text +=
+      "  precise Real pc_apart = pc_dx * pc_dx + pc_dy * pc_dy + pc_dz * pc_dz;\n  if (!(pc_apart <= pc_cutoff_squared)) "
+      "continue;\n";
+  text += own.load(of_other, "pc_other") + clear(k, "") + "  " + own.call() + combine(k, "pc_sum_", "") + "  }\n";
+  return text + "  pc_stride = pc_work.z;\n" + put(k, "pc_sum_", "pc_k - pc_work.w") + "}\n";
+}
+
+/// pc_work: how many sums a body has, -, bodies, the first of these.
+std::string pair_totals_main(const OwnKernel& k) {
+  const OwnText own(k);
+  const std::string stride = "pc_work.z";
+  std::string text = begin_main(KernelPairs::tile) + own_row + "  if (!pc_here) return;\n" + row_of(k, Buffer::bodies);
+  text += "  uint pc_i = pc_k - pc_work.w;\n  pc_stride = pc_work.z * pc_work.x;\n" + declare_sums(k, "pc_sum_") +
+          declare_sums(k, "pc_part_");
+  text += "  for (uint pc_step = 1u; pc_step < pc_work.x; pc_step *= 2u)\n";
+  text += "  for (uint pc_c = 0u; pc_c + pc_step < pc_work.x; pc_c += 2u * pc_step) {\n";
+  text += get(k, "pc_sum_", "pc_c * pc_work.z + pc_i") + get(k, "pc_part_", "(pc_c + pc_step) * pc_work.z + pc_i") +
+          combine(k, "pc_sum_", "pc_part_");
+  text += put(k, "pc_sum_", "pc_c * pc_work.z + pc_i") + "  }\n" + get(k, "pc_sum_", "pc_i");
+  for (const OwnArgument& a : k.arguments) {
+    if (!a.summed()) continue;
+    text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+      const std::string place = own.place(a, c, "pc_row"), sum = "pc_sum_" + a.name + part;
+      if (a.kind != OwnArgument::Kind::add) return "  " + place + " = " + sum + ";\n";
+      return "  " + a.name + part + " = " + place + ";\n  " + a.name + part + " = " + a.name + part + " + " + sum + ";\n  " +
+             place + " = " + a.name + part + ";\n";
+    });
+  }
+  return text + "}\n";
+}
+
+// ---- all rows to one value ----------------------------------------------------------------------------
+std::string shared_values(const OwnKernel& k) {
+  return for_sums(k, [&](const OwnArgument& a, const std::string&, const std::string& word) {
+    return "shared " + OwnText::number_type(a.type) + " pc_shared_" + word + "[" + number(reduction_block) + "];\n";
+  });
+}
+/// A value of each invocation of the first `count` to one, that of the first; in `sum_`.
+std::string reduce_block(const OwnKernel& k) {
+  std::string text = for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
+    return "  pc_shared_" + word + "[pc_lane] = pc_sum_" + a.name + part + ";\n";
+  });
+  text += "  for (uint pc_step = 1u; pc_step < " + number(reduction_block) + "u; pc_step *= 2u) {\n  barrier();\n";
+  text += "  if (pc_lane % (2u * pc_step) == 0u && pc_lane + pc_step < pc_count) {\n";
+  text += for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
+    const std::string sum = "pc_sum_" + a.name + part, values = "pc_shared_" + word;
+    return "  " + sum + " = " + combined(a, sum, values + "[pc_lane + pc_step]") + ";\n  " + values + "[pc_lane] = " + sum +
+           ";\n";
+  });
+  return text + "  }\n  }\n";
+}
+
+/// pc_work: -, -, room for values, the first row's place.
+std::string values_main(const OwnKernel& k) {
+  const OwnText own(k);
+  const Buffer list = k.table == Table::joint ? Buffer::joints_by_id : Buffer::moving_by_id;
+  std::string text = shared_values(k) + begin_main(reduction_block) + own_row + row_of(k, list);
+  text += "  uint pc_lane = gl_LocalInvocationID.x;\n  uint pc_count = min(pc_range.y - (pc_k - pc_lane), " +
+          number(reduction_block) + "u);\n";
+  text += own.load(any, "pc_row") + declare_sums(k, "pc_sum_") + clear(k, "") + "  " + own.call();
+  text += for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string&) {
+    return "  pc_sum_" + a.name + part + " = " + a.name + part + ";\n";
+  });
+  text += reduce_block(k) + "  pc_stride = pc_work.z;\n  if (pc_lane == 0u) {\n";
+  return text + put(k, "pc_sum_", "(pc_k - pc_work.w) / " + number(reduction_block) + "u") + "  }\n}\n";
+}
+
+/// pc_work: the first value, how many, room for values, where the next level goes. pc_range.y: not 0 of the last level.
+std::string levels_main(const OwnKernel& k) {
+  const OwnText own(k);
+  std::string text = shared_values(k) + begin_main(reduction_block);
+  text += "  uint pc_k = gl_GlobalInvocationID.x, pc_lane = gl_LocalInvocationID.x;\n";
+  text += "  uint pc_count = min(pc_work.y - min(pc_k - pc_lane, pc_work.y), " + number(reduction_block) + "u);\n";
+  text += "  pc_stride = pc_work.z;\n" + declare_sums(k, "pc_sum_") + clear(k, "pc_sum_");
+  text += "  if (pc_lane < pc_count) {\n" + get(k, "pc_sum_", "pc_work.x + pc_k") + "  }\n" + reduce_block(k);
+  text +=
+      "  if (pc_lane == 0u) {\n  if (pc_range.y == 0u) {\n" + put(k, "pc_sum_", "pc_work.w + gl_WorkGroupID.x") + "  } else {\n";
+  for (const OwnArgument& a : k.arguments) {
+    if (!a.summed()) continue;
+    if (a.kind != OwnArgument::Kind::sum) text += "  if (pc_count > 0u) {\n";
+    text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+      return "  " + own.place(a, c, "1u") + " = pc_sum_" + a.name + part + ";\n";
+    });
+    if (a.kind != OwnArgument::Kind::sum) text += "  }\n";
+  }
+  return text + "  }\n  }\n}\n";
+}
+
+std::vector<Access> accesses(std::span<const Buffer> buffers, bool write) {
+  std::vector<Access> list;
+  for (const Buffer b : buffers) list.push_back({b, write && of_table(b)});
+  return list;
+}
+
+std::string first_main(const OwnKernel& k, const SourceOptions& options) {
+  if (k.form == OwnKernel::Form::element) return element_main(k, options.local_size);
+  if (k.form == OwnKernel::Form::reduction) return values_main(k);
+  return k.cutoff ? near_pairs_main(k) : all_pairs_main(k);
+}
+
+}  // namespace
+
+std::uint32_t number_words(PropertyType type, std::size_t real_bytes) { return number_bytes(type, real_bytes) == 8 ? 2 : 1; }
+
+Result<ProgramSource> own_kernel_source(const OwnKernel& k, const SourceOptions& options) {
+  const OwnText own(k);
+  const bool element = k.form == OwnKernel::Form::element;
+  SourceText text(options.precision);
+  text.add(source_head(options));
+  if (Status status = text.include("prelude.glsl"); !status) return status.error();
+  text.add("#line 1 0\nstruct Mat3 { Vec3 x; Vec3 y; Vec3 z; };\n");
+  text.add(own.blocks(element ? std::span<const Access>(k.accesses) : accesses(k.read, false)));
+  if (!element) text.add(sums_block(k, k.read.size()));
+  text.add(own.variables() + info_declaration() + own.function());
+  if (Status status = text.add_text(k.body, k.file, std::uint32_t(k.line)); !status) return status.error();
+  text.add("\n#line 1 0\n" + first_main(k, options));
+  return text.take();
+}
+
+Result<ProgramSource> own_totals_source(const OwnKernel& k, const SourceOptions& options) {
+  const OwnText own(k);
+  SourceText text(options.precision);
+  text.add(source_head(options));
+  if (Status status = text.include("prelude.glsl"); !status) return status.error();
+  text.add("#line 1 0\nstruct Mat3 { Vec3 x; Vec3 y; Vec3 z; };\n" + own.blocks(accesses(k.written, true)) +
+           sums_block(k, k.written.size()) + own.variables());
+  text.add(k.form == OwnKernel::Form::pair ? pair_totals_main(k) : levels_main(k));
+  return text.take();
+}
+
+}  // namespace pcphys
