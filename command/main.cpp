@@ -48,6 +48,8 @@ int main(int argc, char** argv) {
     add_run_options(*command, run_options);
     add_output_options(*command, run_options);
   }
+  run_command->add_option("--events", run_options.events,
+                          "write what happened in each step to this file, a line of JSON an event");
   run_command->add_option("--gltf", run_options.gltf, "write the motion as glTF 2.0 to this file (.gltf or .glb)");
   run_command->add_flag("--hash", run_options.hash, "print nothing but the hash of the final state");
   run_command->add_flag("--poses", run_options.poses, "add the final pose and velocity of every body to the JSON");

@@ -175,10 +175,10 @@ void add_output_options(CLI::App& app, RunOptions& options) {
 
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   Setup setup;
-  for (const Status& status :
-       {check_numbers(options), check_choice("sleep", options.sleep, {"on", "off"}), check_choice("narrow", options.narrow, {"native", "fcl"}),
-        check_choice("integrator", options.integrator, {"verlet", "seed"}),
-        check_choice("timings", options.timings, {"on", "off"})})
+  for (const Status& status : {check_numbers(options), check_choice("sleep", options.sleep, {"on", "off"}),
+                               check_choice("narrow", options.narrow, {"native", "fcl"}),
+                               check_choice("integrator", options.integrator, {"verlet", "seed"}),
+                               check_choice("timings", options.timings, {"on", "off"})})
     if (!status) return status.error();
   if (auto status = set_places(options, setup.settings); !status) return status.error();
   if (auto status = set_precision(options, setup); !status) return status.error();
@@ -197,6 +197,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.settings.threads =
       options.threads > 0 ? std::uint32_t(options.threads) : std::clamp(std::thread::hardware_concurrency(), 1u, 256u);
   setup.settings.device = int(options.device);
+  setup.settings.contact_events = setup.settings.hit_events = setup.settings.body_events = !options.events.empty();
   setup.settings.sleep = options.sleep == "on";
   setup.settings.timings = options.timings == "on";
   setup.dt = *dt;

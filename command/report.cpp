@@ -200,8 +200,7 @@ std::string to_text(const Simulation& simulation, const Outcome& outcome) {
   for (const LeftOut& item : simulation.stepper.plan().left_out)
     text += "left out          " + item.what + ": " + item.why + "\n";
   text += format("contacts          %u with %u points\n", outcome.last.contacts, outcome.last.points);
-  if (s.sleep)
-    text += format("asleep            %u bodies in %u islands\n", outcome.last.asleep, outcome.last.islands_asleep);
+  if (s.sleep) text += format("asleep            %u bodies in %u islands\n", outcome.last.asleep, outcome.last.islands_asleep);
   text += format("overlap           max %.3f mm, mean %.3f mm, peak %.3f mm\n", mm * end.penetration.max,
                  mm * end.penetration.mean(), mm * outcome.peaks.penetration);
   if (simulation.world.joint_count() > 0)

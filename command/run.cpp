@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "event_lines.h"
 #include "gltf.h"
 #include "output.h"
 #include "report.h"
@@ -12,7 +13,7 @@ namespace pcphys::command {
 namespace {
 
 struct Files {
-  OutputFile json, csv, gltf;
+  OutputFile json, csv, gltf, events;
 
   static Result<Files> open(const RunOptions& options) {
     const bool gltf = options.gltf.ends_with(".gltf") || options.gltf.ends_with(".glb");
@@ -23,8 +24,8 @@ struct Files {
       const std::string& path;
       OutputFile& file;
     };
-    for (const Choice& choice :
-         {Choice{options.json, files.json}, Choice{options.csv, files.csv}, Choice{options.gltf, files.gltf}}) {
+    for (const Choice& choice : {Choice{options.json, files.json}, Choice{options.csv, files.csv},
+                                 Choice{options.gltf, files.gltf}, Choice{options.events, files.events}}) {
       auto file = OutputFile::open(choice.path);
       if (!file) return file.error();
       choice.file = std::move(*file);
@@ -32,16 +33,32 @@ struct Files {
     if (files.json.standard_output() && (files.csv.standard_output() || options.hash))
       return Error{ErrorCode::bad_argument,
                    "--json - prints nothing but JSON, which holds the hash too; leave out --hash and give --csv a file."};
+    if (files.events.standard_output() && (files.json.standard_output() || files.csv.standard_output() || options.hash))
+      return Error{ErrorCode::bad_argument,
+                   "--events - prints nothing but events; leave out --hash and give --json and --csv files."};
     return files;
   }
 };
 
+/// What is noted of each step, where it is wanted.
+struct Notes {
+  std::unique_ptr<StepRows> rows;
+  std::unique_ptr<GltfRecorder> gltf;
+  std::unique_ptr<EventLines> events;
+
+  void add(std::uint64_t step, double ms, const StepReport& report, const Simulation& simulation) {
+    if (rows) rows->add(step, ms, report);
+    if (gltf) gltf->record(simulation.world, step, double(step) * simulation.setup.dt);
+    if (events) events->add(step, simulation.stepper.events());
+  }
+};
+
 /// Steps the simulation, and shows every step to those who want to see it.
-Status make_steps(Simulation& simulation, Outcome& outcome, StepRows* rows, GltfRecorder* gltf) {
+Status make_steps(Simulation& simulation, Outcome& outcome, Notes& notes) {
   const Setup& setup = simulation.setup;
   Watch watch(simulation, outcome);
   Progress progress(setup.scene, setup.steps);
-  if (gltf) gltf->record(simulation.world, 0, 0);
+  if (notes.gltf) notes.gltf->record(simulation.world, 0, 0);
   for (std::uint64_t step = 1; step <= setup.steps; ++step) {
     const double begin = now();
     const StepReport& report = simulation.stepper.step(simulation.world, setup.dt);
@@ -52,8 +69,7 @@ Status make_steps(Simulation& simulation, Outcome& outcome, StepRows* rows, Gltf
     }
     if (step > setup.warmup) outcome.times.add(ms, report);
     if (step == setup.steps) outcome.last = report;
-    if (rows) rows->add(step, ms, report);
-    if (gltf) gltf->record(simulation.world, step, double(step) * setup.dt);
+    notes.add(step, ms, report, simulation);
     watch.after(step);
     progress.show(step);
   }
@@ -62,15 +78,18 @@ Status make_steps(Simulation& simulation, Outcome& outcome, StepRows* rows, Gltf
 }
 
 Status write_results(const RunOptions& options, Files& files, const Simulation& simulation, const Outcome& outcome,
-                     const StepRows& rows, const GltfRecorder* gltf) {
-  if (auto status = files.csv.write(rows.text()); !status) return status;
-  if (gltf)
-    if (auto status = files.gltf.write(gltf->file(options.gltf.ends_with(".glb"))); !status) return status;
+                     const Notes& notes) {
+  if (notes.rows)
+    if (auto status = files.csv.write(notes.rows->text()); !status) return status;
+  if (notes.events)
+    if (auto status = files.events.write(notes.events->text()); !status) return status;
+  if (notes.gltf)
+    if (auto status = files.gltf.write(notes.gltf->file(options.gltf.ends_with(".glb"))); !status) return status;
   if (files.json)
     if (auto status = files.json.write(to_json(simulation, outcome, options.poses).dump(2) + "\n"); !status) return status;
   if (options.hash)
     std::cout << hash_text(outcome.hash) << "\n";
-  else if (!files.json && !files.csv.standard_output())
+  else if (!files.json && !files.csv.standard_output() && !files.events.standard_output())
     std::cout << to_text(simulation, outcome);
   return {};
 }
@@ -94,14 +113,15 @@ int run(const RunOptions& options) {
   if (!simulation) return fail(simulation.error());
 
   Outcome outcome;
-  StepRows rows(*simulation);
-  std::unique_ptr<GltfRecorder> gltf;
-  if (files->gltf) gltf = std::make_unique<GltfRecorder>(simulation->scene, setup->steps);
-  if (auto status = make_steps(*simulation, outcome, files->csv ? &rows : nullptr, gltf.get()); !status) {
+  Notes notes;
+  if (files->csv) notes.rows = std::make_unique<StepRows>(*simulation);
+  if (files->gltf) notes.gltf = std::make_unique<GltfRecorder>(simulation->scene, setup->steps);
+  if (files->events) notes.events = std::make_unique<EventLines>();
+  if (auto status = make_steps(*simulation, outcome, notes); !status) {
     if (status.error().code == ErrorCode::buffer_full) write_overflow(*files, *simulation, outcome, options);
     return fail(status.error());
   }
-  if (auto status = write_results(options, *files, *simulation, outcome, rows, gltf.get()); !status) return fail(status.error());
+  if (auto status = write_results(options, *files, *simulation, outcome, notes); !status) return fail(status.error());
   const std::string trouble = unsound(outcome);
   if (trouble.empty()) return exit_ok;
   std::cerr << "pcphys: the run of " << setup->scene << " is not sound: " << trouble << ".\n";

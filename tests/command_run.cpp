@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <map>
+#include <sstream>
 
 #include "command_support.h"
 
@@ -104,6 +106,30 @@ TEST_CASE("run: files, and nothing beside JSON on standard output") {
   CHECK(std::count(rows.begin(), rows.end(), '\n') == 13);
   const auto columns = std::count(rows.begin(), rows.begin() + std::ptrdiff_t(rows.find('\n')), ',');
   CHECK(std::count(rows.begin(), rows.end(), ',') == 13 * columns);
+}
+
+TEST_CASE("run: events, a line of JSON each, the same on GL") {
+  const std::string scene = "run balls --count 5 --steps 60 --events -";
+  const Ran ran = command(scene);
+  REQUIRE_MESSAGE(ran.code == 0, ran.error);
+  std::istringstream lines(ran.out);
+  std::map<std::string, int> counts;
+  for (std::string line; std::getline(lines, line);) {
+    const Json event = Json::parse(line, nullptr, false);
+    REQUIRE_MESSAGE(event.is_object(), line);
+    const std::string kind = event["event"];
+    counts[kind]++;
+    CHECK(event["step"].is_number_integer());
+    CHECK(event["bodies"].is_array());
+    if (kind == "hit") CHECK(event["speed"].get<double>() >= 1);
+    if (kind == "hit" || kind == "begun") CHECK(event["point"].size() == 3);
+  }
+  CHECK(counts["moved"] == 60);
+  CHECK(counts["begun"] > 0);
+  CHECK(counts["ended"] > 0);
+  CHECK(counts["hit"] > 0);
+  if (has_gl()) CHECK(command(scene + " --backend gl").out == ran.out);
+  CHECK(command(scene + " --hash").code == 2);
 }
 
 TEST_CASE("run: a table for people when no JSON is asked for") {

@@ -55,8 +55,9 @@ constexpr Call step_calls[] = {
     {Kernel::tree_flush, 1},
     {Kernel::contact_solve, 1},
 };
-constexpr Call last_calls[] = {{Kernel::contact_restitution, 1}, {Kernel::contact_store, 1}, {Kernel::synchronise, 1},
-                               {Kernel::restagger, 1},           {Kernel::joint_keep, 1},    {Kernel::tree_keep, 1}};
+constexpr Call last_calls[] = {
+    {Kernel::contact_restitution, 1}, {Kernel::contact_touch, 1}, {Kernel::contact_store, 1}, {Kernel::synchronise, 1},
+    {Kernel::restagger, 1},           {Kernel::joint_keep, 1},    {Kernel::tree_keep, 1}};
 constexpr Call drag_calls[] = {{Kernel::begin_drag, 0},    {Kernel::integrate_drag, 0},   {Kernel::remember, 0},
                                {Kernel::advance_round, 0}, {Kernel::synchronise_drag, 1}, {Kernel::restagger_drag, 1}};
 constexpr Call seed_calls[] = {

@@ -345,6 +345,7 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
   rows[std::size_t(Table::body)] = body_count;
   rows[std::size_t(Table::joint)] = 1 + coloured_joints + tree_joints();
   rows[std::size_t(Table::contact)] = 1 + (colour_count * contact_blocks + tree_colour_count * tree_blocks) * 32;
+  rows[std::size_t(Table::touch)] = rows[std::size_t(Table::contact)];
   for (std::size_t i = 0; i < buffer_count; i++) {
     const Buffer buffer = Buffer(i);
     if (is_tree_rows(buffer) || table_of(buffer) == Table::node) continue;  // as many as nodes, below

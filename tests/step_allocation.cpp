@@ -125,6 +125,13 @@ TEST_CASE("no allocation in 100 steps of scenes that move") {
   check_none("chain", 20, Precision::f32, 0, 10, 100);
 }
 
+TEST_CASE("no allocation for events") {
+  StepSettings settings;
+  settings.contact_events = settings.hit_events = settings.body_events = true;
+  check_none("balls", 200, Precision::f32, settings, 60, 100);
+  check_none("ragdolls", 4, Precision::f64, settings, 60, 100);
+}
+
 // GL drivers allocate as they like, so the CPU plays the device: what is counted is what pcphys does for two places,
 // such as the copies that a failed step is put back from.
 TEST_CASE("no allocation where a device takes part") {

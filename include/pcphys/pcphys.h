@@ -1,6 +1,7 @@
 // Everything a host needs.
 #pragma once
 #include "pcphys/device.h"
+#include "pcphys/events.h"
 #include "pcphys/hull.h"
 #include "pcphys/plan.h"
 #include "pcphys/result.h"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pcphys/constants.h"
+#include "pcphys/events.h"
 #include "pcphys/kernel.h"
 #include "pcphys/plan.h"
 #include "pcphys/result.h"
@@ -47,6 +48,12 @@ struct StepSettings {
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
   double contact_margin = 0;           // contacts are kept up to this gap [m]; 0: up to margin_share of the smaller shape
   std::size_t max_pairs = 1u << 24;    // more is an error that says how many there are
+
+  /// What Stepper::events tells of; nothing is spent on the rest (docs/events.md).
+  bool contact_events = false;  // begun and ended
+  bool hit_events = false;
+  bool body_events = false;  // moved, fell asleep, woke
+  double hit_speed = 1;      // contacts that meet slower are no hits [m/s]
 
   void set_all(Place place) { integrate = joints = impulses = place; }
 };
@@ -96,6 +103,9 @@ class Stepper {
 
   /// Moves the world on by dt [s]. The report stands until the next call.
   const StepReport& step(World& world, double dt);
+
+  /// What happened in the last step, of what the settings ask for; empty if it failed. It stands until the next call of `step`.
+  StepEvents events() const;
 
   /// A kernel of the host's own runs in every step of this world from now on; a stepper has kernels of one world at a time. Errors:
   /// bad_argument (signature, more than eight buffers, order), unknown_name, wrong_type, name_taken, unavailable; device_error where

@@ -81,6 +81,12 @@ PC_FN Real pc_impact_mass(Real mass, Real light, Mask central) {
   return pc_select(central, pc_select(mass > PC_REAL(0.0), pc_inverse_or_zero(light), PC_REAL(0.0)), mass);
 }
 
+// What has bounced does not bounce again at the end of the step: its place holds the impulse (contact_touch) in place of the approach.
+PC_FN void pc_keep_impact(PC_IO Slot m, uint i, Real impulse, Real share) {
+  Real before = PC_LD(contact_rows, m, ROW_APPROACH + i); precise Real all = pc_max(before, PC_REAL(0.0)) + impulse * share;
+  PC_ST(contact_rows, m, ROW_APPROACH + i, pc_select(impulse > PC_REAL(0.0), all, before));
+}
+
 // Whose impacts are looked for: 1 where they bounce or meet in flight.
 PC_FN Mask pc_impact_always(PC_IO Slot m) { return PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0); }
 PC_FN Mask pc_impact_mine(PC_IO Slot m) {
@@ -212,9 +218,6 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   // another sweep is to follow; what is stopped slowly is for the next sub-step
   Mask strikes = pc_and(hits, pc_max(pc_max(c0.bounces, c1.bounces), pc_max(c2.bounces, c3.bounces)) > zero);
   PC_RAISE(strikes, velocity_parts, 2u);
-  // what has bounced does not bounce again at the end of the step
-  PC_ST(contact_rows, m, ROW_APPROACH, pc_select(j0 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH))); PC_ST(contact_rows, m, ROW_APPROACH + 1u, pc_select(j1 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 1u)));
-  PC_ST(contact_rows, m, ROW_APPROACH + 2u, pc_select(j2 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 2u))); PC_ST(contact_rows, m, ROW_APPROACH + 3u, pc_select(j3 > zero, zero, PC_LD(contact_rows, m, ROW_APPROACH + 3u)));
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
   Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
   BodyState before_a = a; BodyState before_b = b;
@@ -225,6 +228,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, impulse, couple);
   Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(impulse, share), pc_scale(couple, share));
+  pc_keep_impact(PC_PASS m, 0u, j0, share); pc_keep_impact(PC_PASS m, 1u, j1, share); pc_keep_impact(PC_PASS m, 2u, j2, share); pc_keep_impact(PC_PASS m, 3u, j3, share);
   Real strike = pc_select(strikes, PC_REAL(1.0), zero);
   pc_set_back(PC_PASS ia, before_a, a, t, hits, strike); pc_set_back(PC_PASS ib, before_b, b, t, hits, strike);
 }

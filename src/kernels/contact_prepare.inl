@@ -81,7 +81,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_MU_KINETIC, material.v.y);
   PC_ST(contact_rows, m, ROW_RADIUS, radius);
   PC_ST(contact_rows, m, ROW_E, material.v.z);
-  PC_ST(contact_rows, m, ROW_APPROACH, approach0); PC_ST(contact_rows, m, ROW_APPROACH + 1u, approach1); PC_ST(contact_rows, m, ROW_APPROACH + 2u, approach2); PC_ST(contact_rows, m, ROW_APPROACH + 3u, approach3);
+  PC_ST(contact_rows, m, ROW_APPROACH, pc_min(approach0, zero)); PC_ST(contact_rows, m, ROW_APPROACH + 1u, pc_min(approach1, zero)); PC_ST(contact_rows, m, ROW_APPROACH + 2u, pc_min(approach2, zero)); PC_ST(contact_rows, m, ROW_APPROACH + 3u, pc_min(approach3, zero));
 
   PC_ST(contact_rows, m, ROW_IMPACT, material.s); PC_ST(contact_rows, m, ROW_SCALE, one);
   PC_ST(contact_rows, m, ROW_SHARE, share_a); pc_st3_rows(PC_PASS m, ROW_PATH, path);

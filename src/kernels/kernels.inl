@@ -83,5 +83,6 @@ PC_KERNEL(tree_contact_warm, tree_contact, impulses, PC_READ(contact_paths) PC_R
 PC_KERNEL(tree_contact_prepare, tree_contact, impulses, PC_READ(contact_paths) PC_READ(node_operator) PC_READ(motion) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_rows) PC_WRITE(contact_impulses) PC_WRITE(contact_reach))
 PC_KERNEL(tree_contact_solve, tree_contact, impulses, PC_READ(contact_paths) PC_READ(contact_rows) PC_READ(inertia) PC_READ(delta) PC_WRITE(contact_impulses) PC_WRITE(motion) PC_WRITE(node_pending) PC_WRITE(contact_reach))
 PC_KERNEL(contact_restitution, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(delta) PC_WRITE(motion))
+PC_KERNEL(contact_touch, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(touch))
 PC_KERNEL(contact_store, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(contact))
 #endif

@@ -138,6 +138,11 @@ PC_PROPERTY(contact, contact, 30, real, contact_restitution, derived, 0, "1", ""
 PC_PROPERTY(contact, contact, 31, real, impact_time, derived, 0, "s", "after the step's start, of shapes that meet in flight; 0: they are close; -1: a body hangs on joints")
 PC_PROPERTY(contact, contact, 32, quat, mean_impulse, state, 0, "N s", "slow mean of normal_impulse where a body stands in a joint tree, else what it was a sub-step before")
 
+PC_TABLE(touch, "what a step did to each contact: rows are those of the table of contacts; only where StepSettings asks for events (docs/events.md)")
+PC_BUFFER(touch, touch, 2, "")
+PC_PROPERTY(touch, touch, 0, quat, touch_impulse, scratch, 0, "N s", "along the normal, of the four points: of impacts and bounces all, of the rest the largest of a sub-step")
+PC_PROPERTY(touch, touch, 4, real, touch_speed, scratch, 0, "m/s", "at which the points that were pressed had approached, the largest; 0: none was")
+
 PC_TABLE(shape, "what bodies collide with; read by the broad and narrow phase")
 PC_BUFFER(shape, shape, 3, "")
 PC_PROPERTY(shape, shape, 0, vec3, size, input, 0, "m", "sphere (radius), capsule and cylinder (radius, half length), box half extents, hull (radius, inner radius)")

@@ -56,12 +56,12 @@ class Builder {
     own(stage, after, substep, count, false);
   }
 
-  /// What the host reads after a step: every buffer that holds state, or that the host's own kernels wrote; and of what both
+  /// What the host reads after a step: every buffer that holds state, or that events are made of, or that the host's own kernels wrote; and of what both
   /// sides wrote the last version, since the next step begins with the host's.
   void results(std::uint32_t substep) {
     for (std::size_t b = 0; b < buffers_.size(); b++)
-      if (of_table(Buffer(b)) &&
-          (is_own(Buffer(b)) || holds(Buffer(b), Role::state) || buffers_[b].host_wrote || buffers_[b].own_wrote))
+      if (of_table(Buffer(b)) && (is_own(Buffer(b)) || holds(Buffer(b), Role::state) || Buffer(b) == Buffer::touch ||
+                                  buffers_[b].host_wrote || buffers_[b].own_wrote))
         leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
   }
 
@@ -286,6 +286,7 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < count; k++) substep(b, s, with, k, count);
   if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
+  if (s.contacts() && s.touches) b.kernel(Kernel::contact_touch, Phase::relax, last);
   if (s.contacts()) b.kernel(Kernel::contact_store, Phase::last, last);
   b.kernel(with.synchronise, Phase::relax, last);
   if (octave > 0) {

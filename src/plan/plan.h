@@ -38,6 +38,7 @@ struct PlanSignature {
   bool placed = false;                      // some contact is of a body that was just placed
   bool impacts = false;                     // or is between shapes that meet in flight
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
+  bool touches = false;                     // the host asks for events of contacts
   bool joints() const { return free_joints || tree_joints; }
   bool contacts() const { return free_contacts || tree_contacts; }
   /// Pins of pivots that nothing else acts on have nothing to solve.

@@ -27,6 +27,9 @@ Status check_settings(const StepSettings& s) {
     if (!std::isfinite(x) || x < 0)
       return Error{ErrorCode::bad_argument,
                    "Push speed, restitution threshold and contact margin must be finite and not below zero."};
+  if (!std::isfinite(s.hit_speed) || s.hit_speed < 0)
+    return Error{ErrorCode::bad_argument,
+                 "The speed of hits is " + number(s.hit_speed) + " m/s; it must be finite and not below zero."};
   for (double x : {s.sleep_speed, s.sleep_spin, s.sleep_time})
     if (!std::isfinite(x) || x < 0 || s.sleep_time == 0)
       return Error{ErrorCode::bad_argument,

@@ -193,7 +193,7 @@ bool Runner::keeps(Buffer buffer) const {
   if (is_own(buffer)) return true;
   const bool lasts = holds(buffer, Role::state) || holds(buffer, Role::input);
   const Table table = schema(buffer).table;
-  return (lasts || gl_) && table != Table::contact && table != Table::node;
+  return (lasts || gl_) && table != Table::contact && table != Table::node && table != Table::touch;
 }
 
 void Runner::keep(const WorldState& state, Buffer buffer) {

@@ -10,6 +10,7 @@
 
 #include "collision/detector.h"
 #include "collision/hook.h"
+#include "events/event_recorder.h"
 #include "pcphys/constants.h"
 #include "pcphys/step.h"
 #include "plan/fourth_order.h"
@@ -65,6 +66,7 @@ struct Stepper::Inside {
   Sleepers sleepers;
   Idle idle;  // the world, if all of it sleeps
   StepInfos infos;
+  EventRecorder recorder;
   std::vector<std::uint32_t> outside, leaving;  // rows
   bool strayed = false;                         // some body went further than it was looked for
   bool suspect = false;                         // a kernel of the host's own may have written what is no number
@@ -191,9 +193,17 @@ struct Stepper::Inside {
       if (leaving.empty()) return put_rest_back(s, ok);
       freeze_leaving(s);
     }
+    record_events(s, dt);
     if (settings.sleep) let_sleep(s, dt);
+    recorder.follow_sleep(settings, s);
     runner.drop();
     return ok;
+  }
+
+  void record_events(const WorldState& s, double dt) {
+    if (!EventRecorder::wanted(settings)) return;
+    const AlignedBytes* poses = plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
+    recorder.record(settings, s, {poses, runner.before(Buffer::motion), dt}, schedule.moving_bodies());
   }
 
   /// The step was made: what is at rest may fall asleep.
@@ -314,10 +324,13 @@ struct Stepper::Inside {
     wanted.placed = found.placed && wanted.free_contacts;
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
+    wanted.touches = EventRecorder::of_contacts(settings) && wanted.contacts();
+    if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
     plan = &find_plan(wanted);
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
 
+    if (plan->flight && settings.body_events) recorder.keep_poses(s);
     ran = true;
     runner.watch(watched);
     if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
@@ -396,6 +409,7 @@ const StepReport& Stepper::step(World& world, double dt) {
   static const StepReport blank;
   const std::uint64_t made = in.report.step;
   in.report = blank;
+  in.recorder.clear();
   const bool clocked = in.settings.timings;
   Clock::time_point start;
   if (clocked) start = in.began = Clock::now();
@@ -407,6 +421,8 @@ const StepReport& Stepper::step(World& world, double dt) {
   if (clocked) in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   return in.report;
 }
+
+StepEvents Stepper::events() const { return inside_->recorder.events(); }
 
 const StepPlan& Stepper::plan() const { return inside_->plan ? *inside_->plan : inside_->no_plan; }
 
@@ -426,6 +442,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.tree_contacts = wanted.free_contacts && wanted.trees;
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
+  wanted.touches = EventRecorder::of_contacts(in.settings) && wanted.contacts();
   FourthOrder order;
   in.choose_order(order, world.state(), schedule.trees, dt);
   wanted.octaves = order.classes(schedule.moving);

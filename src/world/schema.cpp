@@ -82,7 +82,15 @@ bool holds(Buffer buffer, Role role) {
 }
 
 std::string_view name(Table table) {
-  constexpr std::string_view names[] = {"body", "joint", "node", "contact", "shape"};
+  constexpr std::string_view names[] = {
+#define PC_TABLE(table, doc) #table,
+#define PC_BUFFER(table, buffer, quads, doc)
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
+#include "kernels/properties.inl"
+#undef PC_TABLE
+#undef PC_BUFFER
+#undef PC_PROPERTY
+  };
   return names[std::size_t(table)];
 }
 std::string_view name(Stage stage) {
