@@ -1,4 +1,4 @@
-#include "step/sleepers.h"
+#include "plan/sleepers.h"
 
 #include <algorithm>
 #include <array>
