@@ -1,0 +1,354 @@
+// One step, readable on a screen: forces, contacts, schedule, plan, run.
+#pragma once
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "collision/detector.h"
+#include "collision/hook.h"
+#include "events/event_recorder.h"
+#include "pcphys/constants.h"
+#include "pcphys/step.h"
+#include "plan/fourth_order.h"
+#include "plan/infos.h"
+#include "plan/island_class.h"
+#include "plan/octaves.h"
+#include "plan/plan.h"
+#include "plan/sleepers.h"
+#include "plan/step_infos.h"
+#include "step/called_forces.h"
+#include "step/check_settings.h"
+#include "step/own_work.h"
+#include "step/plans.h"
+#include "step/processor_state.h"
+#include "step/runner.h"
+#include "step/schedule.h"
+#include "world/range.h"
+#include "world/state.h"
+#include "world/validate.h"
+
+namespace pcphys {
+
+struct Stepper::Inside {
+  using Clock = std::chrono::steady_clock;
+  static constexpr int most_tries = 8;
+
+  StepSettings settings;
+  bool checked = false;               // the settings
+  std::optional<Precision> prepared;  // for worlds of this one, by the settings
+  Detector detector;
+  Schedule schedule;
+  Octaves octaves;
+  FourthOrder fourth;
+  Runner runner;
+  StepReport report;
+  Plans plans;
+  OwnWork own;                 // kernels of the host's own
+  std::uint64_t own_seen = 0;  // of which changes plans know
+  const StepPlan* plan = nullptr;
+  std::uint64_t serial = 0, contacts_version = 0;     // of the world of the last step
+  std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
+  std::uint64_t scheduled_rest = 0;                   // and who slept in it
+  bool other = false;                                 // than those of the last step
+  bool regrouped = false;                             // islands may be others than after it
+  Sleepers sleepers;
+  Idle idle;  // the world, if all of it sleeps
+  StepInfos infos;
+  EventRecorder recorder;
+  std::vector<std::uint32_t> outside, leaving;  // rows
+  bool strayed = false;                         // some body went further than it was looked for
+  bool suspect = false;                         // a kernel of the host's own may have written what is no number
+  bool watched = false;                         // of this step: such kernels one by one
+  bool ran = false;                             // as far as its plan
+  Status written;                               // whether what the host's own kernels left is finite
+  int tries = 0;                                // of this step
+  Vec3 sound_gravity;                           // the last that was looked at
+  CalledForces called;
+  StepPlan no_plan;
+  Clock::time_point began;
+
+  void lap(Timer timer) {
+    if (!settings.timings) return;
+    const auto now = Clock::now();
+    report.ms[std::size_t(timer)] += std::chrono::duration<double, std::milli>(now - began).count();
+    began = now;
+  }
+
+  Detector::Options detection() const {
+    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs, settings.lanes};
+  }
+
+  /// Plans are of the kernels of the host's own that there are, and so are the places that take part.
+  Status follow_own(WorldState& s) {
+    const Status ok = own.follow(s);
+    if (own_seen == own.kernels().version()) return ok;
+    own_seen = own.kernels().version();
+    plans.clear();
+    plan = nullptr;
+    idle = {};
+    runner.unbind();
+    prepared.reset();
+    return ok;
+  }
+  /// Compiles it where it is to run, while it can still be refused.
+  Status check_kernel(const WorldState& s, const OwnKernel& kernel) {
+    const Place stage_place = std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
+    const Place place = kernel.body.empty() ? Place::cpu : !kernel.in_cpp() ? Place::gl : stage_place;
+    if (stage_place == Place::gl && kernel.body.empty()) return {};  // runs on the CPU; the plan shows what goes to and fro
+    if (place == Place::cpu) return {};
+    if (Status ok = prepare(s.tables.precision()); !ok) return ok;
+    return runner.check(place, kernel);
+  }
+
+  const void* fill(const WorldState& s, double h) {
+    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep), octaves_of(octaves.used()));
+  }
+
+  Status prepare(Precision precision) {
+    prepared.reset();
+    Status ok = runner.prepare(settings, precision, own.kernels());
+    if (ok) prepared = precision;
+    return ok;
+  }
+
+  Status step(World& world, double dt) {
+    WorldState& s = world.state();
+    Status ok = check_dt(dt);
+    if (ok) ok = follow_own(s);
+    if (ok && !checked) ok = check_settings(settings);
+    checked = bool(ok);
+    if (ok && !(s.gravity == sound_gravity)) {
+      ok = check_finite(s.gravity, "gravity of the world");
+      if (ok) sound_gravity = s.gravity;
+    }
+    if (ok && prepared != s.tables.precision()) ok = prepare(s.tables.precision());
+    if (ok) ok = called.ask(world);
+    if (!ok) return ok;
+    lap(Timer::forces);
+
+    if (settings.sleep && idle.holds(s) && own.ordered().empty()) {
+      plan = idle.plan;
+      idle.report_to(report, s);
+      return {};
+    }
+    const FlushSubnormals flush;
+    if (serial != s.serial) runner.forget();
+    if (s.rests && !settings.sleep) s.forget_rest();
+    detector.forget_strays();
+    schedule.own.near.forget_strays();
+    tries = 0;
+    watched = false;
+    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed || suspect || !written) {
+      if (!ok && (ran || ok.error().code != ErrorCode::not_finite)) return put_rest_back(s, ok);
+      if (ok) (void)undo(s, {});
+      if (strayed) continue;
+      // the step anew, to see which kernel of the host's own it came from, if one it was
+      watched |= suspect;
+      if (suspect) continue;
+      if (!written) return put_rest_back(s, written);
+      // others may have met it: those that leave the range by themselves are to blame, where there are any
+      find_leaving(s, schedule.moving_bodies(), dt, leaving);
+      if (leaving.empty()) leaving = outside;
+      if (leaving.empty()) return put_rest_back(s, ok);
+      freeze_leaving(s);
+    }
+    record_events(s, dt);
+    if (settings.sleep) let_sleep(s, dt);
+    recorder.follow_sleep(settings, s);
+    runner.drop();
+    return ok;
+  }
+
+  void record_events(const WorldState& s, double dt) {
+    if (!EventRecorder::wanted(settings)) return;
+    const AlignedBytes* poses = plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
+    recorder.record(settings, s, {poses, runner.before(Buffer::motion), dt}, schedule.moving_bodies());
+  }
+
+  /// The step was made: what is at rest may fall asleep.
+  void let_sleep(WorldState& s, double dt) {
+    const AlignedBytes* before = plan->flight ? nullptr : runner.before(Buffer::pose);  // in flight some places keep none
+    sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, regrouped, report);
+    if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
+    update_structure(s);
+    PlanSignature nothing = signature(settings, s, schedule);
+    nothing.shapes = detector.possible();
+    idle = {s, plans.find(nothing, own.ordered()), report};
+  }
+
+  /// A step that could not be made has woken nobody.
+  Status put_rest_back(WorldState& s, const Status& failed) {
+    if (!runner.before(Buffer::rest)) return failed;
+    runner.undo(s);
+    s.count_rest();
+    return failed;
+  }
+
+  void update_structure(WorldState& s) {
+    if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) return;
+    scheduled_serial = s.serial;
+    scheduled = s.structure_version;
+    scheduled_rest = s.rest_version;
+    other = true;
+    schedule.update_structure(s);
+    runner.keep(s, Buffer::joint_impulse);
+    schedule.trees.solved().write(s);
+    write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+    octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
+    fourth.forget();
+  }
+
+  void update_contacts(const WorldState& s) {
+    schedule.update_contacts(s);
+    octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven);
+    fourth.forget_contacts();
+  }
+
+  /// Which trees move in fourth order in a step of dt.
+  void choose_order(FourthOrder& order, const WorldState& s, const TreeSlots& trees, double dt) const {
+    order.choose(s, trees.forest(), trees.solved(), trees.closing(), !own.ordered().empty(), settings, dt);
+  }
+
+  void freeze_leaving(WorldState& s) {
+    freeze(s);
+    update_structure(s);
+  }
+  void freeze(WorldState& s) {
+    for (const std::uint32_t row : leaving) {
+      report.frozen.push_back(s.body_ids.id<BodyId>(s.bodies[row].index));
+      s.freeze(row);
+    }
+    std::ranges::sort(report.frozen);
+  }
+
+  /// Bodies in flight that their kernel has left where they were: all others have made the step.
+  void freeze_left(WorldState& s) {
+    leaving.clear();
+    for (const std::uint32_t row : schedule.moving_bodies())
+      if (s.tables.get(Buffer::motion, row, 7) == frozen_phase) leaving.push_back(row);
+    freeze(s);
+  }
+
+  /// Pairs and contacts. What sleeps and is stirred or touched wakes, and then has its contacts found, too.
+  Status detect(WorldState& s, double dt, Detector::Found& found) {
+    Status ok;
+    report.woke = 0;
+    if (s.sleepers > 0 && (scheduled_serial != s.serial || scheduled_rest != s.rest_version)) {
+      runner.keep(s, Buffer::rest);
+      report.woke = sleepers.wake_stirred(s);
+    }
+    while (true) {
+      update_structure(s);
+      if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
+      lap(Timer::broad);
+      called.add(s, runner);
+      if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
+      lap(Timer::narrow);
+      if (detector.touched().empty()) return {};
+      runner.keep(s, Buffer::rest);
+      report.woke += sleepers.wake_touched(s, detector.touched());
+      detector.put_back(s);
+    }
+  }
+
+  /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
+  Status attempt(WorldState& s, double dt) {
+    Detector::Found found;
+    outside.clear();
+    strayed = suspect = ran = false;
+    written = {};
+    Status ok = detect(s, dt, found);
+    if (!ok) return ok;
+    regrouped = found.changed || other || contacts_version != s.contacts_version;
+    if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
+    choose_order(fourth, s, schedule.trees, dt);
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
+                       own.kernels().pairs_of_bodies(), settings, dt) ||
+        other)
+      schedule.group(octaves.of_bodies());
+    PlanSignature wanted = signature(settings, s, schedule);
+    wanted.octaves = octaves.used();
+    wanted.second_order = fourth.reasons();
+    const double h = substep_length(dt, wanted.substeps);
+    wanted.shapes = detector.possible();
+    wanted.free_contacts = schedule.contacts.any_without_trees();
+    wanted.tree_contacts = schedule.contacts.any_with_trees();
+    if (ok = order_own(s, dt); !ok) return undo(s, ok);
+    if (other) s.tables.resize(Table::node, 1);
+    remember(s);
+    if (const std::uint32_t rows = schedule.trees.nodes().rows();
+        (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
+      s.tables.resize(Table::node, rows);
+    wanted.restitution = found.restitution;
+    wanted.placed = found.placed && wanted.free_contacts;
+    wanted.impacts = found.impacts;
+    wanted.rolling = found.rolling;
+    wanted.touches = EventRecorder::of_contacts(settings) && wanted.contacts();
+    if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
+    plan = &plans.find(wanted, own.ordered());
+    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
+    lap(Timer::plan);
+
+    if (plan->flight && settings.body_events) recorder.keep_poses(s);
+    ran = true;
+    runner.watch(watched);
+    if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
+    const bool left = plan->flight && runner.left();
+    if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
+    if (own.hosts()) written = own.check_written(s);
+    suspect = own.hosts() && !watched && (left || !outside.empty() || !written);
+    if (suspect || !written) return {};
+    if (left) freeze_left(s);
+    if (!outside.empty()) return {};
+    // what others sent further than it was looked for is looked for anew
+    const AlignedBytes* before = runner.before(Buffer::pose);
+    strayed = before && ++tries < most_tries && find_strays(s, *before);
+    if (strayed) return {};
+    s.last_substep = h;
+    if (s.settling > 0) s.settling--;
+    report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
+    report.refined = octaves.refined();
+    report.fourth_order = octaves.fourth_order();
+    report.pairs = found.pairs;
+    report.contacts = found.contacts;
+    report.points = found.points;
+    report.joints_as_rows = schedule.joints.constraints() - schedule.joints.with_trees() - schedule.trees.free_springs();
+    report.tree_contacts_as_rows = schedule.contacts.beside_trees();
+    report.colours = found.contacts ? schedule.contacts.colours() : 0;
+    return {};
+  }
+
+  /// Who comes when in pair kernels and reductions.
+  Status order_own(const WorldState& s, double dt) {
+    OwnLists& lists = schedule.own;
+    lists.order(s, own.kernels());
+    const double cutoff = own.kernels().cutoff();
+    if (cutoff == 0) return {};
+    return lists.near.find(s, schedule.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
+  }
+  bool find_strays(const WorldState& s, const AlignedBytes& before) {
+    const bool near = own.kernels().cutoff() > 0 && schedule.own.near.find_strays(s, schedule.rows_that_move());
+    return detector.find_strays(s, before) || near;
+  }
+
+  /// The world as it was: what the step wrote into its tables goes back, and the contacts are the last step's again.
+  Status undo(WorldState& s, const Status& failed) {
+    runner.undo(s);
+    if (s.rests) s.count_rest();
+    detector.put_back(s);
+    s.tables.resize(Table::node, 0);  // nothing is pending, not in the row that pads either
+    s.tables.resize(Table::node, 1);
+    s.contacts_version++;
+    return failed;
+  }
+
+  void remember(const WorldState& s) {
+    serial = s.serial;
+    contacts_version = s.contacts_version;
+    other = false;
+  }
+};
+
+}  // namespace pcphys
