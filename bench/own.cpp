@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "examples/magnet.h"
 #include "pcphys/pcphys.h"
 #include "pcphys/write_kernel.h"
 
@@ -24,17 +25,6 @@ constexpr double dt = 1e-6;  // bodies stay where they are
 constexpr double cutoff = 2;
 constexpr int operations = 20;  // of a pair of magnets: 9 products, 9 sums and differences, a division and a root
 
-PCPHYS_PAIR_KERNEL(magnet,
-                   (PC_SELF(Vec3) position, PC_SELF(Real) pole, PC_OTHER(Vec3) position_other, PC_OTHER(Real) pole_other,
-                    PC_ADD(Vec3) force, PC_PARAM(Real) strength, PC_PARAM(Real) softening),
-                   {
-                     Vec3 away = pc_sub(position_other, position);
-                     precise Real r2 = pc_dot(away, away) + softening;
-                     precise Real r3 = r2 * pc_sqrt(r2);
-                     precise Real poles = pole * pole_other;
-                     precise Real pull = poles * strength;
-                     force = pc_scale(away, pc_div(pull, r3));
-                   })
 PCPHYS_KERNEL(sum_mass, (PC_IN(Real) mass, PC_SUM(Real) total), { total = mass; })
 
 struct Variant {
