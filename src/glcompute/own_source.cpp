@@ -16,9 +16,9 @@ bool any(const OwnArgument&) { return true; }
 bool of_other(const OwnArgument& a) { return a.kind == OwnArgument::Kind::other; }
 bool not_of_other(const OwnArgument& a) { return !of_other(a); }
 
-std::string element_main(const OwnKernel& k, std::uint32_t local_size) {
+std::string element_main(const OwnKernel& k) {
   const OwnText own(k);
-  std::string text = "layout(local_size_x = " + number(local_size) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint pc_k = gl_GlobalInvocationID.x + pc_range.x;\n  if (pc_k >= pc_range.y) return;\n";
   text += k.table == Table::body ? "  uint pc_row = io_bodies[pc_k];\n" : "  uint pc_row = pc_k;\n";
   text += own.load(any, "pc_row");
@@ -270,8 +270,8 @@ std::vector<Access> accesses(std::span<const Buffer> buffers, bool write) {
   return list;
 }
 
-std::string first_main(const OwnKernel& k, const SourceOptions& options) {
-  if (k.form == OwnKernel::Form::element) return element_main(k, options.local_size);
+std::string first_main(const OwnKernel& k) {
+  if (k.form == OwnKernel::Form::element) return element_main(k);
   if (k.form == OwnKernel::Form::reduction) return values_main(k);
   return k.cutoff ? near_pairs_main(k) : all_pairs_main(k);
 }
@@ -291,7 +291,7 @@ Result<ProgramSource> own_kernel_source(const OwnKernel& k, const SourceOptions&
   if (!element) text.add(sums_block(k, k.read.size()));
   text.add(own.variables() + info_declaration() + own.function());
   if (Status status = text.add_text(k.body, k.file, std::uint32_t(k.line)); !status) return status.error();
-  text.add("\n#line 1 0\n" + first_main(k, options));
+  text.add("\n#line 1 0\n" + first_main(k));
   return text.take();
 }
 
