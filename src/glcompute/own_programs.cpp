@@ -54,6 +54,16 @@ void apply_pairs(const KernelRun& run, const OwnProgram& program, const Range& r
   dispatch(program.totals.range, range.begin, range.end, limits);
 }
 
+// ---- joints with their bodies -------------------------------------------------------------------------
+void make_terms(const KernelRun& run, const OwnProgram& program, const GlLimits& limits) {
+  glUniform4ui(program.work, 0, 0, run.others + 1, 0);
+  dispatch(program.range, run.ranges[0].begin, run.ranges[0].end, limits);
+}
+void add_terms(const KernelRun& run, const OwnProgram& program, const GlLimits& limits) {
+  glUniform4ui(program.totals.work, 0, 0, run.others + 1, 0);
+  dispatch(program.totals.range, run.ranges[1].begin, run.ranges[1].end, limits);
+}
+
 // ---- reductions ---------------------------------------------------------------------------------------
 /// Of each block of rows, and of the levels above.
 std::size_t reduction_values(std::uint32_t count) { return std::size_t{count} / (reduction_block / 2) + reduction_block; }
@@ -106,45 +116,56 @@ Result<std::int32_t> OwnPrograms::bind(const OwnKernel& kernel, std::size_t info
 }
 
 Status OwnPrograms::run_in_two(const KernelRun& run, GlMemory& memory) {
-  const bool pairs = run.own->form == OwnKernel::Form::pair;
+  const OwnKernel& k = *run.own;
+  const OwnProgram& program = of(k);
+  const GlLimits& limits = memory.limits();
+  if (k.form == OwnKernel::Form::joined)
+    return run_in_two(
+        run, std::size_t{run.others} + 1, memory, [&] { make_terms(run, program, limits); },
+        [&] { add_terms(run, program, limits); });
   for (const Range& range : run.ranges) {
-    if (pairs && range.begin == range.end) continue;
-    if (Status status = run_in_two(run, range, memory); !status) return status;
+    const std::uint32_t count = range.end - range.begin;
+    Status status;
+    if (k.form == OwnKernel::Form::reduction)
+      status = run_in_two(
+          run, reduction_values(count), memory, [&] { start_reduction(program, range, limits); },
+          [&] { reduce(program, range); });
+    else if (count > 0)
+      status = run_in_two(
+          run, std::size_t{count} * chunks_of(run), memory, [&] { sum_pairs(run, program, range, limits); },
+          [&] { apply_pairs(run, program, range, limits); });
+    if (!status) return status;
   }
   return {};
 }
 
-Status OwnPrograms::run_in_two(const KernelRun& run, const Range& range, GlMemory& memory) {
+template <class First, class Second>
+Status OwnPrograms::run_in_two(const KernelRun& run, std::size_t values, GlMemory& memory, First first, Second second) {
   const OwnKernel& k = *run.own;
   const OwnProgram& program = of(k);
-  const bool pairs = k.form == OwnKernel::Form::pair;
   std::size_t words = 0;
   for (const OwnArgument& a : k.arguments)
     if (a.summed()) words += std::size_t{components(a.type)} * number_words(a.type, k.real_bytes);
-  const std::uint32_t count = range.end - range.begin;
-  const std::size_t values = pairs ? std::size_t{count} * chunks_of(run) : reduction_values(count);
-  if (Status status = sums_.resize("sums of a kernel of the host's own", values * words * 4, memory.limits().storage_block_bytes);
-      !status)
-    return status;
+  Status status = sums_.resize("sums of a kernel of the host's own", values * words * 4, memory.limits().storage_block_bytes);
+  if (!status) return status;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // others may still read or write there
-  if (Status status = bind_with_sums(k, k.read, memory); !status) return status;
-  if (Status status = memory.bind_info(run.info); !status) return status;
+  status = memory.bind(k.first, k.name);
+  if (status) status = memory.bind_info(run.info);
+  if (!status) return status;
+  bind_sums(k.first);
   glUseProgram(program.id);
   set_parameters(k, program);
-  pairs ? sum_pairs(run, program, range, memory.limits()) : start_reduction(program, range, memory.limits());
+  first();
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-  if (Status status = bind_with_sums(k, k.written, memory); !status) return status;
+  if (status = memory.bind(k.second, k.name); !status) return status;
+  bind_sums(k.second);
   glUseProgram(program.totals.id);
-  pairs ? apply_pairs(run, program, range, memory.limits()) : reduce(program, range);
+  second();
   return {};
 }
 
-Status OwnPrograms::bind_with_sums(const OwnKernel& kernel, std::span<const Buffer> buffers, GlMemory& memory) const {
-  std::uint32_t binding = 0;
-  for (const Buffer buffer : buffers)
-    if (Status status = memory.bind(buffer, binding++, kernel.name); !status) return status;
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, sums_.id());
-  return {};
+void OwnPrograms::bind_sums(std::span<const Access> beside) const {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, GLuint(beside.size()), sums_.id());
 }
 
 }  // namespace pcphys

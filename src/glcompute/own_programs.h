@@ -19,13 +19,15 @@ class OwnPrograms {
 
   /// Of one row: what it needs to run; where its program has pc_range.
   Result<std::int32_t> bind(const OwnKernel& kernel, std::size_t info, GlMemory& memory) const;
-  /// Of pairs, or all rows to one value: both programs, with the barriers before and between them.
+  /// Of all other forms: both programs, with the barriers before and between them.
   Status run_in_two(const KernelRun& run, GlMemory& memory);
 
  private:
   const OwnProgram& of(const OwnKernel& kernel) const { return programs_.at(kernel.serial); }
-  Status run_in_two(const KernelRun& run, const Range& range, GlMemory& memory);
-  Status bind_with_sums(const OwnKernel& kernel, std::span<const Buffer> buffers, GlMemory& memory) const;
+  /// `values`: how many of each sum stand between the two.
+  template <class First, class Second>
+  Status run_in_two(const KernelRun& run, std::size_t values, GlMemory& memory, First first, Second second);
+  void bind_sums(std::span<const Access> beside) const;
 
   std::unordered_map<std::uint64_t, OwnProgram> programs_;  // by serial
   GlBuffer sums_;                                           // between two programs

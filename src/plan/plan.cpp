@@ -40,8 +40,9 @@ class Builder {
       if (k->stage != stage || k->after != after || k->once_a_step != once_a_step) continue;
       if (k->form == OwnKernel::Form::reduction) continue;
       if (once_a_step && substep != (after ? count - 1 : 0)) continue;
-      // rows that are no bodies are of no octave
-      if (k->table != Table::body && octave_ != std::countr_zero(signature_.octaves)) continue;
+      // rows that are no bodies are of no octave, but for joints with theirs
+      const bool of_bodies = k->table == Table::body || k->form == OwnKernel::Form::joined;
+      if (!of_bodies && octave_ != std::countr_zero(signature_.octaves)) continue;
       add(*k, substep);
     }
   }

@@ -52,17 +52,17 @@ void stop_gathering(WorldState& s) {
 namespace {
 
 /// Of an argument the first row that is not finite; 0: none.
-std::uint32_t bad_row(const WorldState& s, const OwnKernel& k, const OwnArgument& a) {
-  const std::uint32_t rows = a.single ? 2 : s.tables.rows(k.table);
+std::uint32_t bad_row(const WorldState& s, const OwnArgument& a) {
+  const std::uint32_t rows = a.single ? 2 : s.tables.rows(a.table);
   const std::uint32_t row = find_not_finite(s.tables, a.buffer, a.offset, a.type, 1, rows);
   return row < rows ? row : 0;
 }
-std::string object(const WorldState& s, const OwnKernel& k, const OwnArgument& a, std::uint32_t row) {
+std::string object(const WorldState& s, const OwnArgument& a, std::uint32_t row) {
   if (a.single) return "the total of all rows";
-  if (k.table == Table::body) return "body " + std::to_string(s.bodies[row].index);
-  if (k.table == Table::joint) return "joint " + std::to_string(s.joints[row].index);
+  if (a.table == Table::body) return "body " + std::to_string(s.bodies[row].index);
+  if (a.table == Table::joint) return "joint " + std::to_string(s.joints[row].index);
   for (const OwnTable& t : s.own.tables)
-    if (t.used && t.table == k.table) return "row " + std::to_string(row) + " of \"" + t.name + "\"";
+    if (t.used && t.table == a.table) return "row " + std::to_string(row) + " of \"" + t.name + "\"";
   return "row " + std::to_string(row);
 }
 
@@ -70,9 +70,9 @@ std::string object(const WorldState& s, const OwnKernel& k, const OwnArgument& a
 
 Status check_written(const WorldState& s, const OwnKernel& k) {
   for (const OwnArgument& a : k.arguments)
-    if (const std::uint32_t row = a.writes() ? bad_row(s, k, a) : 0)
+    if (const std::uint32_t row = a.writes() ? bad_row(s, a) : 0)
       return Error{ErrorCode::not_finite,
-                   "The kernel \"" + k.name + "\" gave " + object(s, k, a, row) + " a \"" + a.property +
+                   "The kernel \"" + k.name + "\" gave " + object(s, a, row) + " a \"" + a.property +
                        "\" that is no finite number; look for a division by zero or a root of what is below "
                        "it. The world is as before the step."};
   return {};
@@ -80,13 +80,13 @@ Status check_written(const WorldState& s, const OwnKernel& k) {
 
 bool reads_finite(const WorldState& s, const OwnKernel& k) {
   return std::ranges::none_of(k.arguments,
-                              [&](const OwnArgument& a) { return a.of_property() && !a.writes() && bad_row(s, k, a) != 0; });
+                              [&](const OwnArgument& a) { return a.of_property() && !a.writes() && bad_row(s, a) != 0; });
 }
 
 Status OwnWork::check_written(const WorldState& s) const {
   for (const auto& k : ordered())
     for (const OwnArgument& a : k->arguments)
-      if (a.writes() && is_own(a.buffer) && !of_library(*k) && bad_row(s, *k, a) != 0) return pcphys::check_written(s, *k);
+      if (a.writes() && is_own(a.buffer) && !of_library(*k) && bad_row(s, a) != 0) return pcphys::check_written(s, *k);
   return {};
 }
 
