@@ -17,7 +17,9 @@ void OwnLists::order(const WorldState& s, const OwnKernels& kernels, OctaveOf of
     return std::ranges::any_of(kernels.ordered(), [&](const auto& k) { return ((k->form == forms) || ...); });
   };
   if (!ordered_ && some(Form::pair, Form::reduction)) order_rows(s);
-  if (!joined_ && some(Form::joined)) find_joined(s, of_bodies);
+  if (grouped_ || !some(Form::joined)) return;
+  if (!joined_) find_joined(s);
+  group_joined(of_bodies);
 }
 
 void OwnLists::order_rows(const WorldState& s) {
@@ -40,40 +42,40 @@ void OwnLists::order_rows(const WorldState& s) {
     if (list->empty()) list->push_back(0);  // a device wants something to bind
 }
 
-void OwnLists::find_joined(const WorldState& s, OctaveOf of_bodies) {
+void OwnLists::find_joined(const WorldState& s) {
   joined_ = true;
-  version++;
-  struct Joint {
-    std::uint32_t row, a, b, octave;
-  };
-  std::vector<Joint> found;
+  by_id_.clear();
   for (std::uint32_t row = 1; row < s.joints.size(); row++) {
     const std::uint32_t a = s.body_ids.row(s.joints[row].body_a), b = s.body_ids.row(s.joints[row].body_b);
-    if (!s.goes(a) && !s.goes(b)) continue;
-    // both that go are of one island, and so of one octave
-    found.push_back({row, a, b, of_bodies.octaves.empty() ? 0u : of_bodies.octaves[s.goes(a) ? a : b]});
+    if (s.goes(a) || s.goes(b)) by_id_.push_back({row, a, b, s.goes(a) ? a : b});
   }
-  std::ranges::sort(found, {}, [&](const Joint& j) { return s.joints[j.row].index; });
+  std::ranges::sort(by_id_, {}, [&](const Joined& j) { return s.joints[j.row].index; });
   const std::size_t rows = s.bodies.size();
-  body_joints.assign(rows + 1 + 2 * found.size(), 0);
-  for (const Joint& j : found)
+  body_joints.assign(rows + 1 + 2 * by_id_.size(), 0);
+  for (const Joined& j : by_id_)
     for (const std::uint32_t body : {j.a, j.b}) body_joints[body + 1]++;
   body_joints[0] = std::uint32_t(rows) + 1;
   for (std::size_t row = 0; row < rows; row++) body_joints[row + 1] += body_joints[row];
   std::vector<std::uint32_t> next(body_joints.begin(), body_joints.begin() + std::ptrdiff_t(rows));
-  for (const Joint& j : found) {
+  for (const Joined& j : by_id_) {
     body_joints[next[j.a]++] = 2 * j.row;
     body_joints[next[j.b]++] = 2 * j.row + 1;
   }
+}
+
+/// Both bodies that go are of one island, and so of one octave.
+void OwnLists::group_joined(OctaveOf of_bodies) {
+  grouped_ = true;
+  version++;
   joined.clear();
   joined_ranges_.clear();
-  for (std::uint32_t octave = 0; octave < of_bodies.count; octave++) {
+  for (unsigned octave = 0; octave < of_bodies.count; octave++) {
     const auto begin = std::uint32_t(joined.size() / 3);
-    for (const Joint& j : found)
-      if (j.octave == octave) joined.insert(joined.end(), {j.row, j.a, j.b});
+    for (const Joined& j : by_id_)
+      if (of_bodies.is(j.goes, octave)) joined.insert(joined.end(), {j.row, j.a, j.b});
     joined_ranges_.push_back({begin, std::uint32_t(joined.size() / 3)});
   }
-  if (joined.empty()) joined.push_back(0);
+  if (joined.empty()) joined.push_back(0);  // a device wants something to bind
 }
 
 }  // namespace pcphys

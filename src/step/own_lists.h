@@ -17,11 +17,11 @@ class OwnLists {
  public:
   /// Follows a change of objects.
   void forget() {
-    ordered_ = joined_ = false;
+    ordered_ = joined_ = grouped_ = false;
     near.forget();
   }
   /// Follows a change of octaves.
-  void forget_octaves() { joined_ = false; }
+  void forget_octaves() { grouped_ = false; }
   /// What these kernels need, once for each change.
   void order(const WorldState& state, const OwnKernels& kernels, OctaveOf of_bodies);
 
@@ -40,10 +40,16 @@ class OwnLists {
   Neighbours near;
 
  private:
+  struct Joined {
+    std::uint32_t row, a, b, goes;  // goes: that of a and b which does
+  };
   void order_rows(const WorldState& state);
-  void find_joined(const WorldState& state, OctaveOf of_bodies);
-  bool ordered_ = false, joined_ = false;
-  std::vector<Range> joined_ranges_;
+  void find_joined(const WorldState& state);
+  void group_joined(OctaveOf of_bodies);
+
+  std::vector<Joined> by_id_;
+  std::vector<Range> joined_ranges_;                         // by octave
+  bool ordered_ = false, joined_ = false, grouped_ = false;  // they are of the objects, and octaves, that there are
 };
 
 }  // namespace pcphys
