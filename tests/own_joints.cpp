@@ -97,8 +97,10 @@ World linked_chains(Precision precision) {
   return world;
 }
 void add_all(Stepper& stepper, World& world) {
-  must(stepper.add_kernel(
-      world, {.text = spring_damper::text(), .over = joint_table, .parameters = {{"stiffness", 5.0}, {"damping", 0.1}}}));
+  must(stepper.add_kernel(world, {.text = spring_damper::text(),
+                                  .over = joint_table,
+                                  .once_a_step = true,
+                                  .parameters = {{"stiffness", 5.0}, {"damping", 0.1}}}));
   must(stepper.add_kernel(world, {.text = pull_anchors::text(), .over = joint_table}));
   must(stepper.add_kernel(
       world, {.text = conduction::text(), .over = joint_table, .stage = Stage::impulses, .parameters = {{"rate", 0.01}}}));

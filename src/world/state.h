@@ -67,7 +67,7 @@ void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointD
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 
-inline constexpr double frozen_phase = -2;        // of a frozen body: what snapshots and hashes know it by
+inline constexpr double frozen_phase = -2;  // of a frozen body: what snapshots and hashes know it by
 /// Where its properties stand in a row of Buffer::rest.
 enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, rest_can_sleep, rest_fields };
 
@@ -192,6 +192,7 @@ struct WorldState {
   /// Of constants and callbacks. Where kernels of the host's own make forces (`gathered`), they begin with these.
   struct Gathered {
     Buffer force, torque;
+    bool holds = false;  // there are columns for what some of them make once a step, too (pc_held_force, pc_held_torque)
   };
   std::optional<Gathered> gathered;
   Vec3 given_force(std::uint32_t row) const {
