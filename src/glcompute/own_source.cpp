@@ -3,6 +3,7 @@
 // that of the CPU (pcphys/pair_loop.h, cpu/own_runs.cpp).
 #include <algorithm>
 
+#include "glcompute/compile_log.h"
 #include "glcompute/own_text.h"
 #include "glcompute/source_text.h"
 
@@ -322,6 +323,12 @@ std::string second_main(const OwnKernel& k) {
   return k.form == OwnKernel::Form::joined ? ends_main(k) : pair_totals_main(k);
 }
 
+/// A text of one line has no lines to speak of: its statements are counted instead.
+Status add_body(const OwnKernel& k, SourceText& text) {
+  if (k.body.find('\n') != k.body.npos) return text.add_text(k.body, k.file, std::uint32_t(k.line));
+  return text.add_text(by_statement(k.body), k.file + ":" + number(std::uint64_t(k.line)) + " statement by statement", 1);
+}
+
 }  // namespace
 
 std::uint32_t number_words(PropertyType type, std::size_t real_bytes) { return number_bytes(type, real_bytes) == 8 ? 2 : 1; }
@@ -336,7 +343,7 @@ Result<ProgramSource> own_kernel_source(const OwnKernel& k, const SourceOptions&
   text.add(own.blocks(element ? k.accesses : k.first));
   if (!element) text.add(sums_block(k, k.first.size()));
   text.add(own.variables() + info_declaration() + own.function());
-  if (Status status = text.add_text(k.body, k.file, std::uint32_t(k.line)); !status) return status.error();
+  if (Status status = add_body(k, text); !status) return status.error();
   text.add("\n#line 1 0\n" + first_main(k));
   return text.take();
 }

@@ -6,11 +6,13 @@
 #include <cstring>
 #include <vector>
 
+#include "glcompute/compile_log.h"
+
 namespace pcphys {
 namespace {
 
 Error refused(const std::string& label, const std::string& log, const ProgramSource& source) {
-  std::string message = "The GL driver refused the program `" + label + "`: " + log + " (files:";
+  std::string message = "The GL driver refused the program `" + label + "`: " + with_quotes(log, source) + " (files:";
   for (std::size_t i = 0; i < source.files.size(); i++) message += ' ' + std::to_string(i) + ' ' + source.files[i];
   return {ErrorCode::device_error, message + ")."};
 }
