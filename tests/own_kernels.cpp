@@ -143,6 +143,66 @@ TEST_CASE("every type is read and written alike on both sides") {
   }
 }
 
+TEST_CASE("forces made once a step are held: those of each sub-step begin with them") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    // beside a callback, which is asked once a step for the same force
+    World asked(WorldDef{precision, {}}), made(WorldDef{precision, {}});
+    for (World* world : {&asked, &made}) must(world->add_property<Vec3>("home", {1, 2, 3}, "m", body_table, Role::input));
+    const BodyId a = must(asked.create_body(ball({0, 5, 0}))), b = must(made.create_body(ball({0, 5, 0})));
+    (void)must(asked.add_force(a, [](const World& w, BodyId id) {
+      return Wrench{6.0 * (Vec3{1, 2, 3} - must(w.pose(id)).position), {}};
+    }));
+    (void)must(made.add_force(b, Wrench{{0.5, 0, 0}, {}}));
+    (void)must(asked.add_force(a, Wrench{{0.5, 0, 0}, {}}));
+    Stepper one, two;
+    must(one.add_kernel(asked, {.text = weight::text(), .parameters = {{"pull", Vec3{0, -2, 0}}}}));
+    must(two.add_kernel(made, {.text = weight::text(), .parameters = {{"pull", Vec3{0, -2, 0}}}}));
+    must(two.add_kernel(made, {.text = tether::text(), .once_a_step = true, .parameters = {{"stiffness", 6.0}}}));
+    run(asked, one, 60);
+    run(made, two, 60);
+    CHECK(length(must(made.pose(b)).position - must(asked.pose(a)).position) < (precision == Precision::f32 ? 1e-5 : 1e-13));
+    CHECK(length(must(made.velocity(b)) - must(asked.velocity(a))) < (precision == Precision::f32 ? 1e-5 : 1e-12));
+    CHECK(length(must(made.velocity(b))) > 1);
+  }
+}
+
+TEST_CASE("forces once a step and in each sub-step: the same bits everywhere, in any order of adding, and each alone as ever") {
+  require_gl();
+  const auto add = [](Stepper& stepper, World& world, bool once) {
+    if (once)
+      must(stepper.add_kernel(world, {.text = tether::text(), .once_a_step = true, .parameters = {{"stiffness", 20.0}}}));
+    else
+      must(stepper.add_kernel(world, {.text = thruster::text(), .parameters = {{"thrust", 40.0}, {"flow", 1.5}}}));
+  };
+  const auto hashes_of = [&](const StepSettings& settings, int steps, Precision precision, std::vector<bool> makers,
+                             std::optional<bool> removed) {
+    SceneWorld s = with_own(precision);
+    Stepper stepper(settings);
+    for (const bool once : makers) add(stepper, s.world, once);
+    if (removed) must(stepper.remove_kernel(s.world, *removed ? "tether" : "thruster"));
+    std::vector<std::uint64_t> hashes;
+    for (int i = 0; i < steps; i++) {
+      run(s.world, stepper, 1);
+      hashes.push_back(s.world.hash());
+    }
+    return hashes;
+  };
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    check_same_bits(
+        [&](const StepSettings& settings, int steps) {
+          return hashes_of(settings, steps, precision, {true, false}, {});
+        },
+        20, 6);
+    const auto both = hashes_of({}, 20, precision, {true, false}, {});
+    CHECK(hashes_of({}, 20, precision, {false, true}, {}) == both);
+    for (const bool once : {true, false}) {
+      const auto alone = hashes_of({}, 20, precision, {once}, {});
+      CHECK(alone != both);
+      CHECK(hashes_of({}, 20, precision, {true, false}, !once) == alone);
+    }
+  }
+}
+
 TEST_CASE("when: once a step, or in each sub-step") {
   SceneWorld s = scene_world("balls", 5);
   const auto steps = must(s.world.add_property<std::uint32_t>("steps"));

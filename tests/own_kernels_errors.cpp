@@ -1,5 +1,6 @@
 // Pins what is refused of a host's own kernels, with which words; that nothing is added then; and that a kernel whose property was
 // removed stops the step, not the world.
+#include "glcompute/compile_log.h"
 #include "pcphys/write_kernel.h"
 #include "support_world.h"
 
@@ -27,6 +28,13 @@ struct Populated {
 PCPHYS_KERNEL(drain, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), { fuel = fuel - flow; })
 PCPHYS_KERNEL(refill, (PC_OUT(Real) fuel, PC_PARAM(Real) full), { fuel = full; })
 PCPHYS_KERNEL(reset, (PC_OUT(Real) fuel), { fuel = PC_REAL(0.0); })
+
+PCPHYS_KERNEL(no_glsl, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), {
+  Real left = fuel;
+  for (uint i = 0u; i < 3u; i++) left = left - flow;
+  auto half = left * PC_REAL(0.5);
+  fuel = half;
+})
 
 }  // namespace
 
@@ -123,4 +131,27 @@ TEST_CASE("GLSL that does not compile comes back with the host's own lines") {
   must(stepper.add_kernel(p.world, glsl("leak", "(PC_INOUT(Real) fuel)", "{ fuel = fuel - 0.25; }")));
   run(p.world, stepper, 1);
   CHECK(must(p.world.get(must(p.world.property<Real>("fuel")), p.world.bodies()[0])) == 0);
+}
+
+TEST_CASE("of a text that the preprocessor made one line of, the statement at fault is quoted") {
+  require_gl();
+  Populated p;
+  StepSettings settings;
+  settings.set_all(Place::gl);
+  Stepper stepper(settings);
+  const Status refused = stepper.add_kernel(p.world, {.text = no_glsl::text(), .parameters = {{"flow", 0.1}}});
+  REQUIRE(!refused);
+  const std::string& said = refused.error().message;
+  CHECK_MESSAGE(said.find("\n  there: auto half = left * ") != said.npos, said);
+  CHECK_MESSAGE(said.find("own_kernels_errors.cpp:" + std::to_string(no_glsl::text().line)) != said.npos, said);
+}
+
+TEST_CASE("statements and what compilers say of them") {
+  CHECK(by_statement("{ a = b; for (uint i = 0u; i < 3u; i++) { c(i); } }  // d; e") ==
+        "{\na = b;\nfor (uint i = 0u; i < 3u; i++) {\nc(i);\n}\n}\n");
+  const ProgramSource source{"#version 430\n#line 1 0\nvoid f();\n#line 7 1\n{\n  x = y;\n}\n#line 1 0\nvoid main() {}\n", {}};
+  CHECK(with_quotes("1:8(7): error: `y' undeclared", source) == "1:8(7): error: `y' undeclared\n  there: x = y;");  // Mesa
+  CHECK(with_quotes("1(8) : error C1503: undefined variable \"y\"\n0(2) : error", source) ==                        // NVIDIA
+        "1(8) : error C1503: undefined variable \"y\"\n  there: x = y;\n0(2) : error");
+  CHECK(with_quotes("out of memory", source) == "out of memory");
 }

@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "pcphys/write_kernel.h"
 #include "step/backend.h"
 #include "support_world.h"
 
@@ -96,6 +97,17 @@ void check_none(const char* name, int count, Precision precision, std::uint32_t 
   check_none(name, count, precision, lanes(width), settle, steps);
 }
 
+PCPHYS_KERNEL(pulled, (PC_IN(Vec3) position, PC_INOUT(Vec3) force), { force = pc_madd(force, position, PC_REAL(-0.01)); })
+PCPHYS_KERNEL(held, (PC_IN(Vec3) position, PC_INOUT(Vec3) torque), { torque = pc_madd(torque, position, PC_REAL(0.0001)); })
+PCPHYS_KERNEL(joined, (PC_A(Vec3) position_a, PC_B(Vec3) position_b, PC_OUT(Real) stretch, PC_ADD_B(Vec3) force_b), {
+  Vec3 way = pc_sub(position_b, position_a);
+  stretch = pc_length(way);
+  force_b = pc_scale(way, PC_REAL(-0.01));
+})
+PCPHYS_PAIR_KERNEL(apart, (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force),
+                   { force = pc_scale(pc_sub(position, position_other), PC_REAL(0.0001)); })
+PCPHYS_KERNEL(total_stretch, (PC_IN(Real) stretch, PC_SUM(Real) total), { total = stretch; })
+
 }  // namespace
 
 TEST_CASE("the counter counts") {
@@ -158,6 +170,32 @@ TEST_CASE("no allocation for forces and callbacks") {
   for (int i = 0; i < 100; i++) (void)stepper.step(world, frame);
   counting = false;
   CHECK(allocations == 0);
+}
+
+TEST_CASE("no allocation for kernels of the host's own, of each form, in octaves that change") {
+  World world = chains_world(Precision::f32);
+  must(world.add_property<Real>("stretch", 0, "m", joint_table));
+  must(world.add_property<Real>("total", 0, "m", must(world.add_table("totals", 1))));
+  Stepper stepper(lanes(0));
+  must(stepper.add_kernel(world, {.text = pulled::text()}));
+  must(stepper.add_kernel(world, {.text = held::text(), .once_a_step = true}));
+  must(stepper.add_kernel(world, {.text = joined::text(), .over = joint_table}));
+  must(stepper.add_kernel(world, {.text = apart::text()}));
+  must(stepper.add_kernel(world, {.text = total_stretch::text(), .over = joint_table}));
+  const std::vector<std::byte> start = world.snapshot();
+  run(world, stepper, 30);
+  must(world.restore(start));
+  run(world, stepper, 30);
+  must(world.restore(start));
+  std::size_t most = 0;
+  for (int i = 0; i < 30; i++) {
+    allocations = 0;
+    counting = true;
+    (void)stepper.step(world, frame);
+    counting = false;
+    most = std::max(most, allocations);
+  }
+  CHECK(most == 0);
 }
 
 TEST_CASE("no allocation while everything sleeps, or all but one body") {

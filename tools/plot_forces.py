@@ -18,6 +18,7 @@ OUT = ROOT / "docs" / "img" / "forces"
 PLOTS = {
     "wind": [("vertical speed [m/s]", ["flat", "tilted", "on edge"])],
     "springs": [("place [m]", ["kernel light", "library light", "kernel strong", "library strong"])],
+    "cord": [("length [m]", ["jumper", "two bodies"])],
     "buoyancy": [("height over the water [m]", ["sphere 300", "box 400", "tilted box 750"])],
     "thruster": [("speed [m/s]", ["speed"]), ("fuel [kg]", ["fuel"])],
 }

@@ -16,6 +16,9 @@ struct KernelRows {
   const std::size_t* strides;  // and bytes from row to row; 0 of a parameter
   const std::uint32_t* rows;   // null: begin to end themselves
   std::uint32_t begin, end;
+  // in place of `rows`, of joints with their bodies: three by three the rows of the joint, of its body a and of its body b
+  const std::uint32_t* joined = nullptr;
+  const std::uint8_t* of_three = nullptr;  // and of each argument which of them: 0, 1 or 2
 };
 using KernelLoop = void (*)(const KernelRows&);
 
@@ -62,7 +65,8 @@ struct KernelParameter {
 /// When and over what a kernel runs.
 struct KernelDef {
   KernelText text = {};
-  /// Rows of this table: of bodies those that move, of joints and the host's own tables all.
+  /// Rows of this table: of bodies those that move, of joints and the host's own tables all. A kernel with PC_A or PC_B is over
+  /// `joint_table`, and over those that join a body that moves.
   TableId over = body_table;
   /// Before or after that stage of each sub-step; with `once_a_step` of the first or the last sub-step.
   Stage stage = Stage::integrate;

@@ -13,8 +13,12 @@
 #define PC_PARAM(T) const T
 #define PC_SELF(T) const T
 #define PC_OTHER(T) const T
+#define PC_A(T) const T
+#define PC_B(T) const T
 #define PC_SUM(T) T&
 #define PC_ADD(T) T&
+#define PC_ADD_A(T) T&
+#define PC_ADD_B(T) T&
 #define PC_MIN(T) T&
 #define PC_MAX(T) T&
 #define PC_REAL(x) Real(x)

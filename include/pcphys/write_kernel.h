@@ -20,6 +20,15 @@
 //     force = pc_sub(position, position_other);
 //   })
 //
+// Of a joint and the two bodies that it joins, over joint_table: PC_A and PC_B read of a body (the names end in _a and _b), PC_ADD_A
+// and PC_ADD_B name what the text gives to it; a body takes the sum of its joints. PC_IN, PC_INOUT and PC_OUT are of the joint.
+//
+//   PCPHYS_KERNEL(bond, (PC_A(Vec3) position_a, PC_B(Vec3) position_b, PC_ADD_A(Vec3) force_a, PC_ADD_B(Vec3) force_b), {
+//     force_a = pc_sub(position_b, position_a);
+//     force_b = pc_negate(force_a);
+//   })
+//   stepper.add_kernel(world, {.text = bond::text(), .over = joint_table});
+//
 // Of all rows to one value: PC_SUM, PC_MIN, PC_MAX in a PCPHYS_KERNEL name properties of a table of one row. docs/own-kernels.md
 //
 // Not part of pcphys.h: kernels' text needs macros of short names (precise, PC_REAL, ...).
@@ -37,19 +46,24 @@ namespace pcphys {
 namespace detail {
 template <auto Run, class = decltype(Run)> struct RowLoop;
 template <auto Run, class... Arguments> struct RowLoop<Run, void (*)(Arguments...)> {
-  static void run(const KernelRows& k) { run(k, std::index_sequence_for<Arguments...>()); }
+  static void run(const KernelRows& k) {
+    constexpr auto indices = std::index_sequence_for<Arguments...>();
+    k.joined ? run<true>(k, indices) : run<false>(k, indices);
+  }
 
  private:
   template <class Argument, class T> static void store(std::byte* p, const T& value) {
     if constexpr (std::is_reference_v<Argument>) std::memcpy(p, &value, sizeof value);
   }
-  template <std::size_t... I> static void run(const KernelRows& k, std::index_sequence<I...>) {
+  template <bool joined, std::size_t... I> static void run(const KernelRows& k, std::index_sequence<I...>) {
     for (std::uint32_t n = k.begin; n < k.end; n++) {
       const std::size_t row = k.rows ? k.rows[n] : n;
-      std::tuple<std::remove_cvref_t<Arguments>...> values{
-          load<std::remove_cvref_t<Arguments>>(k.columns[I] + row * k.strides[I])...};
+      const auto place = [&](std::size_t i) {
+        return k.columns[i] + (joined ? k.joined[3 * std::size_t{n} + k.of_three[i]] : row) * k.strides[i];
+      };
+      std::tuple<std::remove_cvref_t<Arguments>...> values{load<std::remove_cvref_t<Arguments>>(place(I))...};
       Run(std::get<I>(values)...);
-      (store<Arguments>(k.columns[I] + row * k.strides[I], std::get<I>(values)), ...);
+      (store<Arguments>(place(I), std::get<I>(values)), ...);
     }
   }
 };

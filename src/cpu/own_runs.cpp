@@ -45,6 +45,36 @@ std::size_t value_bytes(const OwnArgument& a, std::size_t real_bytes) {
   return components(a.type) * number_bytes(a.type, real_bytes);
 }
 
+// ---- what joints give to bodies -----------------------------------------------------------------------
+/// What bodies take: their list, the ends of each (OwnLists::body_joints), and the terms of one argument, by joint row.
+struct Ends {
+  const std::uint32_t *bodies, *joints;
+  const std::byte* terms;
+  std::byte* column;
+  std::size_t stride;
+  std::uint32_t numbers, side;  // 0: of those of which the body is a; 1: of which it is b
+};
+template <class T> void add_ends(const Ends& e, std::uint32_t begin, std::uint32_t end) {
+  const T* const terms = reinterpret_cast<const T*>(e.terms);
+  for (std::uint32_t n = begin; n < end; n++) {
+    const std::uint32_t row = e.bodies[n], first = e.joints[row], last = e.joints[row + 1];
+    if (first == last) continue;
+    T* const value = reinterpret_cast<T*>(e.column + row * e.stride);
+    for (std::uint32_t c = 0; c < e.numbers; c++) {
+      T sum = 0;
+      for (std::uint32_t at = first; at < last; at++)
+        if ((e.joints[at] & 1) == e.side) sum += terms[(e.joints[at] >> 1) * std::size_t{e.numbers} + c];
+      value[c] += sum;
+    }
+  }
+}
+using AddEnds = void (*)(const Ends&, std::uint32_t begin, std::uint32_t end);
+AddEnds add_ends_of(PropertyType type, std::size_t real_bytes) {
+  if (type == PropertyType::int32) return add_ends<std::int32_t>;
+  if (type == PropertyType::uint32) return add_ends<std::uint32_t>;
+  return number_bytes(type, real_bytes) == 4 ? add_ends<float> : add_ends<double>;
+}
+
 }  // namespace
 
 OwnRuns::Columns OwnRuns::columns(const OwnKernel& k, std::span<void* const> buffers, const std::byte* info) {
@@ -75,6 +105,43 @@ void OwnRuns::reserve(const OwnKernel& k, std::size_t rows, Columns& columns) {
       bytes += (rows * value_bytes(k.arguments[i], k.real_bytes) + line - 1) / line * line;
     }
     if (sums_.size() < bytes) sums_.resize(bytes);
+  }
+}
+
+OwnRuns::Columns OwnRuns::terms(const OwnKernel& k, std::size_t rows, const Columns& columns) {
+  Columns with = columns;
+  for (std::size_t i = 0; i < k.arguments.size(); i++) {
+    if (!k.arguments[i].summed()) continue;
+    with.at[i] = columns.totals[i];
+    with.strides[i] = value_bytes(k.arguments[i], k.real_bytes);
+    std::memset(with.at[i], 0, rows * with.strides[i]);
+  }
+  return with;
+}
+
+void OwnRuns::join(const KernelRun& run, std::span<void* const> buffers, Columns& columns, const Workers* workers) {
+  const OwnKernel& k = *run.own;
+  const std::size_t rows = std::size_t{run.others} + 1;
+  reserve(k, rows, columns);
+  const Columns with = terms(k, rows, columns);
+  std::array<std::uint8_t, OwnKernel::most_arguments> of_three{};
+  for (std::size_t i = 0; i < k.arguments.size(); i++)  // terms stand by joint
+    of_three[i] = k.arguments[i].summed() ? 0 : k.arguments[i].of_three();
+  share(run.ranges[0], workers, [&](std::uint32_t begin, std::uint32_t end) {
+    k.loop({with.at.data(), with.strides.data(), nullptr, begin, end, list(buffers, Buffer::joined), of_three.data()});
+  });
+  for (std::size_t i = 0; i < k.arguments.size(); i++) {
+    const OwnArgument& a = k.arguments[i];
+    if (!a.summed()) continue;
+    const Ends ends{list(buffers, Buffer::bodies),
+                    list(buffers, Buffer::body_joints),
+                    with.at[i],
+                    columns.at[i],
+                    columns.strides[i],
+                    components(a.type),
+                    a.of_three() - 1u};
+    const AddEnds add = add_ends_of(a.type, k.real_bytes);
+    share(run.ranges[1], workers, [&](std::uint32_t begin, std::uint32_t end) { add(ends, begin, end); });
   }
 }
 
@@ -132,13 +199,7 @@ void OwnRuns::reduce(const KernelRun& run, std::span<void* const> buffers, Colum
   std::uint32_t most = 0;
   for (std::uint32_t n = range.begin; n < range.end; n++) most = std::max(most, rows ? rows[n] : n);
   reserve(k, 2 * (std::size_t{most} + 1), columns);
-  Columns with = columns;
-  for (std::size_t i = 0; i < k.arguments.size(); i++) {
-    if (!k.arguments[i].summed()) continue;
-    with.at[i] = columns.totals[i];
-    with.strides[i] = value_bytes(k.arguments[i], k.real_bytes);
-    std::memset(with.at[i], 0, (std::size_t{most} + 1) * with.strides[i]);
-  }
+  const Columns with = terms(k, std::size_t{most} + 1, columns);
   share(range, workers, [&](std::uint32_t begin, std::uint32_t end) {
     k.loop({with.at.data(), with.strides.data(), rows, begin, end});
   });
@@ -162,6 +223,7 @@ void OwnRuns::run(const KernelRun& run, std::span<void* const> buffers, const st
   const OwnKernel& k = *run.own;
   Columns at = columns(k, buffers, info);
   if (k.form == OwnKernel::Form::pair) return pairs(run, buffers, at, workers);
+  if (k.form == OwnKernel::Form::joined) return join(run, buffers, at, workers);
   if (k.form == OwnKernel::Form::reduction) return reduce(run, buffers, at, workers);
   const std::uint32_t* rows = k.table == Table::body ? list(buffers, Buffer::bodies) : nullptr;
   for (const Range& range : run.ranges)

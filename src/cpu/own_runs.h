@@ -1,4 +1,4 @@
-// Kernels of the host's own on the CPU: of rows, of pairs, and of all rows to one value.
+// Kernels of the host's own on the CPU: of rows, of pairs, of joints with their bodies, and of all rows to one value.
 #pragma once
 #include <array>
 #include <span>
@@ -24,6 +24,9 @@ class OwnRuns {
   static Columns columns(const OwnKernel& kernel, std::span<void* const> buffers, const std::byte* info);
   /// Room for a value of each sum of so many rows.
   void reserve(const OwnKernel& kernel, std::size_t rows, Columns& columns);
+  /// The same columns with room for a term of each row, all zero, in place of what is summed.
+  Columns terms(const OwnKernel& kernel, std::size_t rows, const Columns& columns);
+  void join(const KernelRun& run, std::span<void* const> buffers, Columns& columns, const Workers* workers);
   void pairs(const KernelRun& run, std::span<void* const> buffers, Columns& columns, const Workers* workers);
   void reduce(const KernelRun& run, std::span<void* const> buffers, Columns& columns, const Workers* workers);
 

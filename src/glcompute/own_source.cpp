@@ -1,9 +1,10 @@
-// Programs of kernels of the host's own. Those of pairs and reductions are two each: one reads, and leaves sums in a block of their
+// Programs of kernels of the host's own. Those of all forms but elements are two each: one reads, and leaves sums in a block of their
 // own; the next puts them together and writes properties. So everything is read before anything is written, and the order of sums is
 // that of the CPU (pcphys/pair_loop.h, cpu/own_runs.cpp).
 #include <algorithm>
 #include <map>
 
+#include "glcompute/compile_log.h"
 #include "glcompute/own_text.h"
 #include "glcompute/source_text.h"
 
@@ -17,24 +18,33 @@ bool any(const OwnArgument&) { return true; }
 bool of_other(const OwnArgument& a) { return a.kind == OwnArgument::Kind::other; }
 bool not_of_other(const OwnArgument& a) { return !of_other(a); }
 
-std::string element_main(const OwnKernel& k, std::uint32_t local_size) {
+/// What stays in its row, from memory into variables and back.
+std::string load_changed(const OwnKernel& k, const OwnText& own, const std::string& row) {
+  std::string text;
+  for (const OwnArgument& a : k.arguments)
+    if (a.writes() && !a.summed())
+      text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+        return "  " + a.name + part + " = " + own.place(a, c, row) + ";\n";
+      });
+  return text;
+}
+std::string store_changed(const OwnKernel& k, const OwnText& own, const std::string& row) {
+  std::string text;
+  for (const OwnArgument& a : k.arguments)
+    if (a.writes() && !a.summed())
+      text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+        return "  " + own.place(a, c, row) + " = " + a.name + part + ";\n";
+      });
+  return text;
+}
+
+std::string element_main(const OwnKernel& k) {
   const OwnText own(k);
-  std::string text = "layout(local_size_x = " + number(local_size) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint pc_k = gl_GlobalInvocationID.x + pc_range.x;\n  if (pc_k >= pc_range.y) return;\n";
   text += k.table == Table::body ? "  uint pc_row = io_bodies[pc_k];\n" : "  uint pc_row = pc_k;\n";
-  text += own.load(any, "pc_row");
-  for (const OwnArgument& a : k.arguments)
-    if (a.writes())
-      text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
-        return "  " + a.name + part + " = " + own.place(a, c, "pc_row") + ";\n";
-      });
-  text += "  " + own.call();
-  for (const OwnArgument& a : k.arguments)
-    if (a.writes())
-      text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
-        return "  " + own.place(a, c, "pc_row") + " = " + a.name + part + ";\n";
-      });
-  return text + "}\n";
+  text += own.load(any, "pc_row") + load_changed(k, own, "pc_row") + "  " + own.call();
+  return text + store_changed(k, own, "pc_row") + "}\n";
 }
 
 // ---- sums between two programs ------------------------------------------------------------------------
@@ -82,14 +92,31 @@ std::string put(const OwnKernel& k, const std::string& prefix, const std::string
     return "  pc_put(" + word + ", " + index + ", " + prefix + a.name + part + ");\n";
   });
 }
+std::string value_at(const OwnKernel& k, const OwnArgument& a, const std::string& word, const std::string& index) {
+  const char* form = a.type == PropertyType::int32    ? "int"
+                     : a.type == PropertyType::uint32 ? "uint"
+                     : wide(k, a.type)                ? "double"
+                                                      : "float";
+  return std::string("pc_get_") + form + "(" + word + ", " + index + ")";
+}
 std::string get(const OwnKernel& k, const std::string& prefix, const std::string& index) {
   return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
-    const char* form = a.type == PropertyType::int32    ? "int"
-                       : a.type == PropertyType::uint32 ? "uint"
-                       : wide(k, a.type)                ? "double"
-                                                        : "float";
-    return "  " + prefix + a.name + part + " = pc_get_" + form + "(" + word + ", " + index + ");\n";
+    return "  " + prefix + a.name + part + " = " + value_at(k, a, word, index) + ";\n";
   });
+}
+/// What was summed, into properties.
+std::string apply(const OwnKernel& k, const OwnText& own) {
+  std::string text;
+  for (const OwnArgument& a : k.arguments) {
+    if (!a.summed()) continue;
+    text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+      const std::string place = own.place(a, c, "pc_row"), sum = "pc_sum_" + a.name + part;
+      if (!a.adds()) return "  " + place + " = " + sum + ";\n";
+      return "  " + a.name + part + " = " + place + ";\n  " + a.name + part + " = " + a.name + part + " + " + sum + ";\n  " +
+             place + " = " + a.name + part + ";\n";
+    });
+  }
+  return text;
 }
 /// The block, and numbers in it as bits. `stride`: how many values there is room for.
 std::string sums_block(const OwnKernel& k, std::size_t binding) {
@@ -238,17 +265,38 @@ std::string pair_totals_main(const OwnKernel& k) {
   text += "  for (uint pc_c = 0u; pc_c + pc_step < pc_work.x; pc_c += 2u * pc_step) {\n";
   text += get(k, "pc_sum_", "pc_c * pc_work.z + pc_i") + get(k, "pc_part_", "(pc_c + pc_step) * pc_work.z + pc_i") +
           combine(k, "pc_sum_", "pc_part_");
-  text += put(k, "pc_sum_", "pc_c * pc_work.z + pc_i") + "  }\n" + get(k, "pc_sum_", "pc_i");
-  for (const OwnArgument& a : k.arguments) {
-    if (!a.summed()) continue;
-    text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
-      const std::string place = own.place(a, c, "pc_row"), sum = "pc_sum_" + a.name + part;
-      if (a.kind != OwnArgument::Kind::add) return "  " + place + " = " + sum + ";\n";
-      return "  " + a.name + part + " = " + place + ";\n  " + a.name + part + " = " + a.name + part + " + " + sum + ";\n  " +
-             place + " = " + a.name + part + ";\n";
+  return text + put(k, "pc_sum_", "pc_c * pc_work.z + pc_i") + "  }\n" + get(k, "pc_sum_", "pc_i") + apply(k, own) + "}\n";
+}
+
+// ---- joints with their bodies --------------------------------------------------------------------------
+/// pc_work: -, -, rows of joints, -.
+std::string joined_main(const OwnKernel& k) {
+  const OwnText own(k);
+  constexpr const char* rows[] = {"pc_row", "pc_row_a", "pc_row_b"};
+  std::string text = begin_main(gl_work_group) + own_row + "  if (!pc_here) return;\n";
+  for (std::uint8_t i = 0; i < 3; i++)
+    text += std::string("  uint ") + rows[i] + " = io_joined[3u * pc_k + " + number(i) + "u];\n";
+  for (std::uint8_t i = 0; i < 3; i++) text += own.load([&](const OwnArgument& a) { return a.of_three() == i; }, rows[i]);
+  text += load_changed(k, own, "pc_row") + clear(k, "") + "  " + own.call() + store_changed(k, own, "pc_row");
+  return text + "  pc_stride = pc_work.z;\n" + put(k, "", "pc_row") + "}\n";
+}
+
+/// pc_work: as above. What a body is given as a, and what as b, in a row each.
+std::string ends_main(const OwnKernel& k) {
+  const OwnText own(k);
+  const auto sum_of = [&](std::uint8_t end) {
+    return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
+      const std::string sum = "  pc_sum_" + a.name + part;
+      return a.of_three() != end ? "" : sum + " = " + sum + " + " + value_at(k, a, word, "pc_end >> 1u") + ";\n";
     });
-  }
-  return text + "}\n";
+  };
+  std::string text = begin_main(gl_work_group) + own_row + "  if (!pc_here) return;\n  uint pc_row = io_bodies[pc_k];\n";
+  text +=
+      "  uint pc_first = io_body_joints[pc_row], pc_last = io_body_joints[pc_row + 1u];\n  if (pc_first == pc_last) return;\n";
+  text += "  pc_stride = pc_work.z;\n" + declare_sums(k, "pc_sum_") + clear(k, "pc_sum_");
+  text += "  for (uint pc_at = pc_first; pc_at < pc_last; pc_at++) {\n  uint pc_end = io_body_joints[pc_at];\n";
+  text += "  if ((pc_end & 1u) == 0u) {\n" + sum_of(1) + "  } else {\n" + sum_of(2) + "  }\n  }\n";
+  return text + apply(k, own) + "}\n";
 }
 
 // ---- all rows to one value ----------------------------------------------------------------------------
@@ -308,16 +356,21 @@ std::string levels_main(const OwnKernel& k) {
   return text + "  }\n  }\n}\n";
 }
 
-std::vector<Access> accesses(std::span<const Buffer> buffers, bool write) {
-  std::vector<Access> list;
-  for (const Buffer b : buffers) list.push_back({b, write && of_table(b)});
-  return list;
+std::string first_main(const OwnKernel& k) {
+  if (k.form == OwnKernel::Form::element) return element_main(k);
+  if (k.form == OwnKernel::Form::reduction) return values_main(k);
+  if (k.form == OwnKernel::Form::joined) return joined_main(k);
+  return k.cutoff ? near_pairs_main(k) : all_pairs_main(k);
+}
+std::string second_main(const OwnKernel& k) {
+  if (k.form == OwnKernel::Form::reduction) return levels_main(k);
+  return k.form == OwnKernel::Form::joined ? ends_main(k) : pair_totals_main(k);
 }
 
-std::string first_main(const OwnKernel& k, const SourceOptions& options) {
-  if (k.form == OwnKernel::Form::element) return element_main(k, options.local_size);
-  if (k.form == OwnKernel::Form::reduction) return values_main(k);
-  return k.cutoff ? near_pairs_main(k) : all_pairs_main(k);
+/// A text of one line has no lines to speak of: its statements are counted instead.
+Status add_body(const OwnKernel& k, SourceText& text) {
+  if (k.body.find('\n') != k.body.npos) return text.add_text(k.body, k.file, std::uint32_t(k.line));
+  return text.add_text(by_statement(k.body), k.file + ":" + number(std::uint64_t(k.line)) + " statement by statement", 1);
 }
 
 }  // namespace
@@ -331,11 +384,11 @@ Result<ProgramSource> own_kernel_source(const OwnKernel& k, const SourceOptions&
   text.add(source_head(options));
   if (Status status = text.include("prelude.glsl"); !status) return status.error();
   text.add("#line 1 0\nstruct Mat3 { Vec3 x; Vec3 y; Vec3 z; };\n");
-  text.add(own.blocks(element ? std::span<const Access>(k.accesses) : accesses(k.read, false)));
-  if (!element) text.add(sums_block(k, k.read.size()));
+  text.add(own.blocks(element ? k.accesses : k.first));
+  if (!element) text.add(sums_block(k, k.first.size()));
   text.add(own.variables() + info_declaration() + own.function());
-  if (Status status = text.add_text(k.body, k.file, std::uint32_t(k.line)); !status) return status.error();
-  text.add("\n#line 1 0\n" + first_main(k, options));
+  if (Status status = add_body(k, text); !status) return status.error();
+  text.add("\n#line 1 0\n" + first_main(k));
   return text.take();
 }
 
@@ -344,9 +397,8 @@ Result<ProgramSource> own_totals_source(const OwnKernel& k, const SourceOptions&
   SourceText text(options.precision);
   text.add(source_head(options));
   if (Status status = text.include("prelude.glsl"); !status) return status.error();
-  text.add("#line 1 0\nstruct Mat3 { Vec3 x; Vec3 y; Vec3 z; };\n" + own.blocks(accesses(k.written, true)) +
-           sums_block(k, k.written.size()) + own.variables());
-  text.add(k.form == OwnKernel::Form::pair ? pair_totals_main(k) : levels_main(k));
+  text.add("#line 1 0\nstruct Mat3 { Vec3 x; Vec3 y; Vec3 z; };\n" + own.blocks(k.second) + sums_block(k, k.second.size()) +
+           own.variables() + second_main(k));
   return text.take();
 }
 

@@ -2,14 +2,17 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
+
+#include "glcompute/compile_log.h"
 
 namespace pcphys {
 namespace {
 
 Error refused(const std::string& label, const std::string& log, const ProgramSource& source) {
-  std::string message = "The GL driver refused the program `" + label + "`: " + log + " (files:";
+  std::string message = "The GL driver refused the program `" + label + "`: " + with_quotes(log, source) + " (files:";
   for (std::size_t i = 0; i < source.files.size(); i++) message += ' ' + std::to_string(i) + ' ' + source.files[i];
   return {ErrorCode::device_error, message + ")."};
 }
@@ -185,6 +188,15 @@ Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& opt
   }
   own.totals = {*second, location(*second, "pc_range"), location(*second, "pc_work")};
   return own;
+}
+
+void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits, std::uint32_t rows) {
+  const std::uint64_t piece = std::uint64_t(limits.work_group_count) * gl_work_group;
+  for (std::uint64_t k = begin; k < end; k += piece) {
+    const std::uint32_t stop = std::uint32_t(std::min<std::uint64_t>(end, k + piece));
+    glUniform2ui(range_location, std::uint32_t(k), stop);
+    glDispatchCompute((stop - std::uint32_t(k) + gl_work_group - 1) / gl_work_group, rows, 1);
+  }
 }
 
 }  // namespace pcphys

@@ -28,8 +28,8 @@ std::string buffer_declarations(const KernelSchema& kernel, Precision precision)
   return text;
 }
 
-std::string main_text(Domain domain, std::uint32_t local_size) {
-  std::string text = "layout(local_size_x = " + number(local_size) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+std::string main_text(Domain domain) {
+  std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
   text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n" : "  pc_kernel(Slot(k / PC_W, k % PC_W));\n";
   return text + "}\n";
@@ -50,7 +50,7 @@ Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options)
   if (Status status = text.include("prelude.glsl"); !status) return status.error();
   text.add("#line 1 0\n" + buffer_declarations(what, options.precision) + info_declaration());
   if (Status status = text.include(std::string(what.name) + ".inl"); !status) return status.error();
-  text.add("#line 1 0\n" + main_text(what.domain, options.local_size));
+  text.add("#line 1 0\n" + main_text(what.domain));
   return text.take();
 }
 

@@ -15,12 +15,13 @@ namespace pcphys {
 
 /// Lanes side by side in the arrays of structures of arrays on the GPU.
 inline constexpr std::uint32_t gl_width = 32;
+/// Invocations of a work group.
+inline constexpr std::uint32_t gl_work_group = 64;
 
 struct SourceOptions {
   Precision precision = Precision::f32;
   RoundingForm division = RoundingForm::builtin;
   RoundingForm square_root = RoundingForm::builtin;
-  std::uint32_t local_size = 64;
   std::uint32_t lanes = gl_width;  // of a block
 };
 

@@ -25,11 +25,25 @@ constexpr TypeWord type_words[] = {{"Real", PropertyType::real},       {"Vec3", 
                                    {"Quad", PropertyType::vec4},       {"Mat3", PropertyType::mat3},
                                    {"float", PropertyType::float32},   {"double", PropertyType::float64},
                                    {"int", PropertyType::int32},       {"uint", PropertyType::uint32}};
-constexpr std::string_view kind_words[] = {"PC_IN",    "PC_INOUT", "PC_OUT", "PC_PARAM", "PC_SELF",
-                                           "PC_OTHER", "PC_SUM",   "PC_ADD", "PC_MIN",   "PC_MAX"};
+constexpr std::string_view kind_words[] = {"PC_IN", "PC_INOUT", "PC_OUT", "PC_PARAM", "PC_SELF",  "PC_OTHER", "PC_A",
+                                           "PC_B",  "PC_SUM",   "PC_ADD", "PC_ADD_A", "PC_ADD_B", "PC_MIN",   "PC_MAX"};
 
 std::string without(std::string_view name, std::string_view suffix) {
   return std::string(name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name);
+}
+
+/// Of what stands in a signature as `name`: the property.
+std::string property_of(const OwnArgument& a) {
+  using Kind = OwnArgument::Kind;
+  switch (a.kind) {
+    case Kind::self: return without(a.name, "_self");
+    case Kind::other: return without(a.name, "_other");
+    case Kind::a: return without(without(a.name, "_a"), "_of");
+    case Kind::b: return without(without(a.name, "_b"), "_of");
+    case Kind::add_a: return without(a.name, "_a");
+    case Kind::add_b: return without(a.name, "_b");
+    default: return a.name;
+  }
 }
 
 /// Words and signs of a signature.
@@ -71,9 +85,7 @@ Status parse(OwnKernel& k, std::string_view signature) {
     argument.kind = OwnArgument::Kind(kind - kind_words);
     argument.type = type->type;
     argument.name = tokens.next();
-    argument.property = argument.name;
-    if (argument.kind == OwnArgument::Kind::self) argument.property = without(argument.name, "_self");
-    if (argument.kind == OwnArgument::Kind::other) argument.property = without(argument.name, "_other");
+    argument.property = property_of(argument);
     if (contains(k.arguments, argument.name, &OwnArgument::name))
       return bad(k, "names " + quoted(argument.name) + " twice in its signature; PC_INOUT reads and writes.");
     k.arguments.push_back(std::move(argument));
@@ -101,16 +113,30 @@ bool find_property(const WorldState& s, std::string_view name, Found& found) {
   return false;
 }
 
-void use(OwnKernel& k, Buffer buffer, bool write) {
-  if (k.form != OwnKernel::Form::element) {
-    std::vector<Buffer>& bound = write ? k.written : k.read;
-    if (!contains(bound, buffer)) bound.push_back(buffer);
-  }
-  const auto known = std::ranges::find(k.accesses, buffer, &Access::buffer);
-  if (known == k.accesses.end())
-    k.accesses.push_back({buffer, write});
+void add_access(std::vector<Access>& accesses, Buffer buffer, bool write) {
+  const auto known = std::ranges::find(accesses, buffer, &Access::buffer);
+  if (known == accesses.end())
+    accesses.push_back({buffer, write});
   else
     known->write |= write;
+}
+/// `sums`: by the program that puts sums together, where there are two.
+void use(OwnKernel& k, Buffer buffer, bool write, bool sums) {
+  if (k.form != OwnKernel::Form::element) add_access(sums ? k.second : k.first, buffer, write);
+  add_access(k.accesses, buffer, write);
+}
+void read_list(OwnKernel& k, Buffer list) { use(k, list, false, false); }
+
+/// What is said of a property that is of another table than its argument asks for.
+Error wrong_table(const OwnKernel& k, const OwnArgument& a, Table table) {
+  if (a.of_three() != 0)
+    return bad(k, "says PC_A or PC_B of " + quoted(a.name) + ", and " + quoted(a.property) +
+                      " is no property of bodies; the joint's own are PC_IN, PC_INOUT and PC_OUT.");
+  if (k.table == Table::joint && table == Table::body)
+    return bad(k, "runs over joints and uses " + quoted(a.property) + ", a property of bodies; say of which body: PC_A(T) " +
+                      a.property + "_a or PC_B(T) " + a.property + "_b, and PC_ADD_A(T) or PC_ADD_B(T) for what it is given.");
+  return bad(k, "runs over another table than that of its property " + quoted(a.property) +
+                    "; all of them must be of one table, or what is read of a table of one row.");
 }
 
 Status bind_property(const WorldState& s, OwnKernel& k, OwnArgument& a) {
@@ -125,13 +151,13 @@ Status bind_property(const WorldState& s, OwnKernel& k, OwnArgument& a) {
                                             "."};
   // a total goes into a table of one row, and every kernel may read there
   const bool total = k.form == OwnKernel::Form::reduction && a.summed();
-  a.single = f.table != k.table && f.table >= Table::count && s.tables.rows(f.table) == 2 && (total || !a.writes());
+  const Table wanted = a.of_three() == 0 ? k.table : Table::body;
+  a.single =
+      f.table != wanted && f.table >= Table::count && s.tables.rows(f.table) == 2 && (total || !a.writes()) && a.of_three() == 0;
   if (total && !a.single)
     return bad(k, "makes one value of all rows, " + quoted(a.name) +
                       ", which is a property of many; add it to a table of one row (World::add_table(name, 1)).");
-  if (f.table != k.table && !a.single)
-    return bad(k, "runs over another table than that of its property " + quoted(a.property) +
-                      "; all of them must be of one table, or what is read of a table of one row.");
+  if (f.table != wanted && !a.single) return wrong_table(k, a, f.table);
   if (k.form == OwnKernel::Form::pair && a.kind == OwnArgument::Kind::in && !a.single)
     return bad(k, "is of pairs and says PC_IN of " + quoted(a.name) + "; say of which body: PC_SELF(T) " + a.name +
                       ", or PC_OTHER(T) " + a.name + "_other.");
@@ -139,10 +165,11 @@ Status bind_property(const WorldState& s, OwnKernel& k, OwnArgument& a) {
     return bad(k, "writes " + quoted(a.name) +
                       ", from which the library derives others; of its properties kernels may write force, torque, "
                       "displacement_rate and angular_momentum.");
+  a.table = f.table;
   a.buffer = f.buffer;
   a.offset = f.offset;
   a.row_bytes = std::uint32_t(s.tables.row_bytes(f.buffer));
-  use(k, a.buffer, a.writes());
+  use(k, a.buffer, a.writes(), a.summed());
   return {};
 }
 
@@ -158,18 +185,46 @@ Status bind_parameter(OwnKernel& k, OwnArgument& a, const std::vector<KernelPara
   return set(k, *value);
 }
 
-// ---- pairs and reductions ----------------------------------------------------------------------------
+// ---- pairs, joints with their bodies, and reductions ---------------------------------------------------
+/// PC_OTHER, PC_A and so on: the name says so too.
+Status check_ending(const OwnKernel& k, const OwnArgument& a) {
+  using Kind = OwnArgument::Kind;
+  const char* ending = a.kind == Kind::other ? "_other" : a.of_three() == 1 ? "_a" : a.of_three() == 2 ? "_b" : nullptr;
+  if (!ending || a.name != a.property) return {};
+  const std::string word(kind_words[std::size_t(a.kind)]);
+  return bad(k, "says " + word + " of " + quoted(a.name) + "; the name of such an argument ends in " + ending + ": " + a.name +
+                    ending + ".");
+}
+
+/// Of a joint with its bodies: what does not go with that.
+Status check_joined(const OwnKernel& k) {
+  using Kind = OwnArgument::Kind;
+  if (k.table != Table::joint)
+    return bad(k, "names the bodies of a joint (PC_A, PC_B); let it run over joints: .over = joint_table.");
+  for (const OwnArgument& a : k.arguments)
+    if (a.kind == Kind::self || a.kind == Kind::other || (a.summed() && a.of_three() == 0))
+      return bad(
+          k, "is of a joint and its bodies, and says " + std::string(kind_words[std::size_t(a.kind)]) + " of " + quoted(a.name) +
+                 "; what bodies are given is PC_ADD_A or PC_ADD_B, and a total of all joints is made by another kernel of a "
+                 "property that this one writes (PC_OUT).");
+  return {};
+}
+
 Status find_form(OwnKernel& k) {
   using Kind = OwnArgument::Kind;
   using Form = OwnKernel::Form;
   const auto has = [&](auto... kinds) {
     return std::ranges::any_of(k.arguments, [&](const OwnArgument& a) { return ((a.kind == kinds) || ...); });
   };
-  if (has(Kind::self, Kind::other))
+  if (has(Kind::a, Kind::b, Kind::add_a, Kind::add_b))
+    k.form = Form::joined;
+  else if (has(Kind::self, Kind::other))
     k.form = Form::pair;
   else if (has(Kind::sum, Kind::least, Kind::most))
     k.form = Form::reduction;
-  if (k.form != Form::element && has(Kind::inout, Kind::out))
+  if (k.form == Form::joined)
+    if (Status ok = check_joined(k); !ok) return ok;
+  if ((k.form == Form::pair || k.form == Form::reduction) && has(Kind::inout, Kind::out))
     return bad(k,
                "is of pairs, or makes one value of all rows; what it writes is then a sum (PC_ADD, PC_SUM) or, of all rows, "
                "PC_SUM, PC_MIN or PC_MAX, and neither PC_INOUT nor PC_OUT.");
@@ -178,8 +233,7 @@ Status find_form(OwnKernel& k) {
   if (k.form != Form::pair && has(Kind::add))
     return bad(k, "says PC_ADD, which is for sums over pairs: declare what is read as PC_SELF and PC_OTHER.");
   for (const OwnArgument& a : k.arguments) {
-    if (a.kind == Kind::other && a.name == a.property)
-      return bad(k, "says PC_OTHER of " + quoted(a.name) + "; the name of the other's ends in _other: " + a.name + "_other.");
+    if (Status ok = check_ending(k, a); !ok) return ok;
     const bool ordered = components(a.type) == 1 || a.type == PropertyType::vec3 || a.type == PropertyType::vec4;
     if (a.summed() && (a.type == PropertyType::quat || (a.kind >= Kind::least && !ordered)))
       return Error{ErrorCode::wrong_type, "The kernel " + quoted(k.name) + " makes a sum, least or most of " + quoted(a.name) +
@@ -202,29 +256,35 @@ Status find_form(OwnKernel& k) {
 /// Which rows are visited, and in which order; each pair's or row's place.
 void use_lists(OwnKernel& k) {
   if (k.form == OwnKernel::Form::reduction) {
-    if (k.table == Table::body) use(k, Buffer::moving_by_id, false);
-    if (k.table == Table::joint) use(k, Buffer::joints_by_id, false);
+    if (k.table == Table::body) read_list(k, Buffer::moving_by_id);
+    if (k.table == Table::joint) read_list(k, Buffer::joints_by_id);
     return;
   }
-  if (k.table == Table::body) use(k, Buffer::bodies, false);
+  if (k.form == OwnKernel::Form::joined) {
+    read_list(k, Buffer::joined);
+    for (const Buffer list : {Buffer::bodies, Buffer::body_joints}) use(k, list, false, true);
+    return;
+  }
+  if (k.table == Table::body) read_list(k, Buffer::bodies);
   if (k.form == OwnKernel::Form::element) return;
-  if (k.table == Table::body) k.written.push_back(Buffer::bodies);
+  if (k.table == Table::body) k.second.push_back({Buffer::bodies, false});
   if (k.cutoff) {
-    for (const Buffer b : {Buffer::near_first, Buffer::near_rows, Buffer::pose}) use(k, b, false);
+    for (const Buffer b : {Buffer::near_first, Buffer::near_rows, Buffer::pose}) read_list(k, b);
   } else if (k.table == Table::body) {
-    use(k, Buffer::bodies_by_id, false);
+    read_list(k, Buffer::bodies_by_id);
   }
 }
 
 Status check_blocks(const OwnKernel& k) {
   const bool element = k.form == OwnKernel::Form::element;
-  const std::size_t blocks = element ? k.accesses.size() : 1 + std::max(k.read.size(), k.written.size());
+  const bool sums = k.second.size() > k.first.size();
+  const std::vector<Access>& bound = element ? k.accesses : sums ? k.second : k.first;
+  const std::size_t blocks = bound.size() + (element ? 0 : 1);
   if (blocks <= most_buffers) return {};
   std::string list;
   for (const OwnArgument& a : k.arguments)
-    if (a.of_property() && (element || a.writes() == (k.written.size() > k.read.size())))
-      list += (list.empty() ? "" : ", ") + a.name;
-  for (const Access& a : k.accesses)
+    if (a.of_property() && a.summed() == sums) list += (list.empty() ? "" : ", ") + a.name;
+  for (const Access& a : bound)
     if (!of_table(a.buffer)) list += element ? ", and the list of bodies" : ", " + std::string(schema(a.buffer).doc);
   if (!element) list += ", and its sums";
   return bad(k, "needs " + std::to_string(blocks) + " storage blocks (" + list +
@@ -277,11 +337,15 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
       return bad(*k, "is given the parameter " + quoted(p.name) + ", which its signature does not have.");
   if (ok = check_blocks(*k); !ok) return ok.error();
   const bool forces = k->writes(Buffer::force);
-  if (forces && (k->table != Table::body || k->stage != Stage::integrate || k->after))
+  if (forces && (k->stage != Stage::integrate || k->after))
     return bad(*k, "writes force or torque, which the stage integrate takes up; run it before that stage.");
   if (std::ranges::none_of(k->accesses, &Access::write))
-    return bad(*k, k->form == OwnKernel::Form::pair ? "writes nothing; declare what it sums as PC_ADD or PC_SUM."
-                                                    : "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
+    return bad(*k,
+               k->form == OwnKernel::Form::pair ? "writes nothing; declare what it sums as PC_ADD or PC_SUM."
+               : k->form == OwnKernel::Form::joined
+                   ? "writes nothing; declare what it gives to bodies as PC_ADD_A or PC_ADD_B, or what it changes of the joint "
+                     "as PC_INOUT or PC_OUT."
+                   : "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
   return k;
 }
 
@@ -289,7 +353,7 @@ Status check_properties(const WorldState& s, const OwnKernel& k) {
   for (const OwnArgument& a : k.arguments) {
     Found f;
     if (!a.of_property()) continue;
-    if (!find_property(s, a.property, f) || f.buffer != a.buffer || f.type != a.type || (f.table != k.table && !a.single))
+    if (!find_property(s, a.property, f) || f.buffer != a.buffer || f.type != a.type || f.table != a.table)
       return Error{ErrorCode::stale_id,
                    "The kernel " + quoted(k.name) + " uses the property " + quoted(a.property) +
                        ", which was removed; remove the kernel too (Stepper::remove_kernel), and add it again where "

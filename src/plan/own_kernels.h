@@ -16,12 +16,13 @@
 namespace pcphys {
 
 struct OwnArgument {
-  enum class Kind : std::uint8_t { in, inout, out, parameter, self, other, sum, add, least, most };
+  enum class Kind : std::uint8_t { in, inout, out, parameter, self, other, a, b, sum, add, add_a, add_b, least, most };
   std::string name;      // in the kernel's text
-  std::string property;  // that it names: without _other, or _self
+  std::string property;  // that it names: without _other, _self, _a or _b
   Kind kind = Kind::in;
   PropertyType type = PropertyType::real;
   // of a property
+  Table table{};
   Buffer buffer{};
   std::uint32_t offset = 0, row_bytes = 0;
   // of a parameter: where it stands in OwnKernel::parameters; one of the library's own is known by its name
@@ -30,15 +31,20 @@ struct OwnArgument {
   bool single = false;  // of a table of one row, which is not the kernel's
   bool of_property() const { return kind != Kind::parameter; }
   bool summed() const { return kind >= Kind::sum; }
+  bool adds() const { return kind == Kind::add || kind == Kind::add_a || kind == Kind::add_b; }
+  /// Which of the rows of three it is of, of a joint with its bodies: the joint 0, a 1, b 2.
+  std::uint8_t of_three() const {
+    return kind == Kind::a || kind == Kind::add_a ? 1 : kind == Kind::b || kind == Kind::add_b ? 2 : 0;
+  }
   bool writes() const { return kind == Kind::inout || kind == Kind::out || summed(); }
   /// Whatever it was before.
-  bool anew() const { return kind == Kind::out || (summed() && kind != Kind::add); }
+  bool anew() const { return kind == Kind::out || (summed() && !adds()); }
 };
 
 struct OwnKernel {
   static constexpr std::size_t most_arguments = 32;
-  /// Of one row; of a row and each other one; of all rows to one value.
-  enum class Form : std::uint8_t { element, pair, reduction };
+  /// Of one row; of a row and each other one; of a joint with the two bodies that it joins; of all rows to one value.
+  enum class Form : std::uint8_t { element, pair, joined, reduction };
 
   std::uint64_t serial = 0;  // another for each kernel of the process
   std::string name, body, file;
@@ -54,7 +60,7 @@ struct OwnKernel {
   std::vector<std::string> follows;
   std::vector<OwnArgument> arguments;
   std::vector<Access> accesses;       // each buffer once; of bodies the list of those that move first
-  std::vector<Buffer> read, written;  // of pairs and reductions, which are two programs: what each of them binds
+  std::vector<Access> first, second;  // of all forms but the first, which are two programs: what each of them binds
   std::size_t real_bytes = 4;         // of the world
   std::vector<std::byte> parameters;  // in the world's precision, each from a multiple of `parameter_bytes` on
   static constexpr std::size_t parameter_bytes = 12 * 8;

@@ -63,10 +63,6 @@ Status OwnKernels::add(std::shared_ptr<OwnKernel> kernel) {
     return Error{ErrorCode::name_taken,
                  "There is a kernel " + quoted(kernel->name) + " already; remove it, or choose another name."};
   for (const auto& other : kernels_) {
-    if (other->writes(Buffer::force) && kernel->writes(Buffer::force) && other->once_a_step != kernel->once_a_step)
-      return bad(*kernel, "and " + quoted(other->name) +
-                              " both make forces, one of them once a step; let both run once a step, or both in "
-                              "each sub-step.");
     if (!same_moment(*other, *kernel)) continue;
     for (const OwnArgument& a : other->arguments)
       for (const OwnArgument& b : kernel->arguments)

@@ -21,6 +21,9 @@ class Builder {
     for (const auto& k : own)
       for (const Access& a : k->accesses) count = std::max(count, std::size_t(a.buffer) + 1);
     buffers_.resize(count);
+    for (const auto& k : own)
+      for (const OwnArgument& a : k->arguments)
+        if (a.of_property() && a.property.starts_with(own_prefix)) at(a.buffer).of_library = true;
     for (Known& b : buffers_) b.current[std::size_t(Place::cpu)] = true;
   }
 
@@ -40,8 +43,9 @@ class Builder {
       if (k->stage != stage || k->after != after || k->once_a_step != once_a_step) continue;
       if (k->form == OwnKernel::Form::reduction) continue;
       if (once_a_step && substep != (after ? count - 1 : 0)) continue;
-      // rows that are no bodies are of no octave
-      if (k->table != Table::body && octave_ != std::countr_zero(signature_.octaves)) continue;
+      // rows that are no bodies are of no octave, but for joints with theirs
+      const bool of_bodies = k->table == Table::body || k->form == OwnKernel::Form::joined;
+      if (!of_bodies && octave_ != std::countr_zero(signature_.octaves)) continue;
       add(*k, substep);
     }
   }
@@ -56,13 +60,9 @@ class Builder {
     own(stage, after, substep, count, false);
   }
 
-  /// What the host reads after a step: every buffer that holds state, or that events are made of, or that the host's own kernels wrote; and of what both
-  /// sides wrote the last version, since the next step begins with the host's.
   void results(std::uint32_t substep) {
     for (std::size_t b = 0; b < buffers_.size(); b++)
-      if (of_table(Buffer(b)) && (is_own(Buffer(b)) || holds(Buffer(b), Role::state) || Buffer(b) == Buffer::touch ||
-                                  buffers_[b].host_wrote || buffers_[b].own_wrote))
-        leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
+      if (is_result(Buffer(b))) leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
@@ -70,8 +70,16 @@ class Builder {
     std::array<bool, 2> current{}, bound{};  // by Place
     bool written = false, read = false;      // on GL since the last barrier
     bool host_wrote = false, own_wrote = false, overwritten = false;
+    bool of_library = false;  // a column of the library's beside those of the host's own: of one step
   };
   Known& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
+  /// What the host reads after a step: every buffer that holds state, or that events are made of, or that the host's own kernels
+  /// wrote; and of what both sides wrote the last version, since the next step begins with the host's.
+  bool is_result(Buffer b) const {
+    const Known& known = buffers_[std::size_t(b)];
+    if (!of_table(b) || known.of_library) return false;
+    return is_own(b) || holds(b, Role::state) || b == Buffer::touch || known.host_wrote || known.own_wrote;
+  }
   static bool is_rows(Buffer b) { return !of_table(b) && schema(b).reals > 0; }
 
   /// Whether the device may keep it.

@@ -23,7 +23,7 @@ struct Range {
 };
 
 /// One run of a kernel over ranges, one after the other: each may read what the one before wrote (the colours of a constraint
-/// graph).
+/// graph). Of joints with their bodies two: of joints in `joined`, and of the bodies that take their sums in `bodies`.
 struct KernelRun {
   Kernel kernel;
   bool barrier;         // it also reads what an earlier run wrote
@@ -32,7 +32,7 @@ struct KernelRun {
   std::span<const Range> ranges;
   const OwnKernel* own =
       nullptr;               // a kernel of the host's own in its place; over rows themselves where its table is not of bodies
-  std::uint32_t others = 0;  // of pairs: all rows of the table
+  std::uint32_t others = 0;  // of pairs: all rows of the table; of joints with their bodies: all joints
 };
 
 class Backend {

@@ -29,6 +29,8 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::bodies_by_id: return &schedule.own.bodies;
     case Buffer::moving_by_id: return &schedule.own.moving;
     case Buffer::joints_by_id: return &schedule.own.joints;
+    case Buffer::joined: return &schedule.own.joined;
+    case Buffer::body_joints: return &schedule.own.body_joints;
     case Buffer::near_first: return &schedule.own.near.first;
     case Buffer::near_rows: return &schedule.own.near.rows;
     default: return nullptr;
@@ -78,7 +80,8 @@ std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule&
     return schedule.joints.version() + 1;
   if (buffer == Buffer::contact_ends || buffer == Buffer::contact_order || buffer == Buffer::contact_paths)
     return schedule.contacts.version() + 1;
-  if (buffer == Buffer::bodies_by_id || buffer == Buffer::moving_by_id || buffer == Buffer::joints_by_id)
+  if (buffer == Buffer::bodies_by_id || buffer == Buffer::moving_by_id || buffer == Buffer::joints_by_id ||
+      buffer == Buffer::joined || buffer == Buffer::body_joints)
     return schedule.own.version + 1;
   if (buffer == Buffer::near_first || buffer == Buffer::near_rows) return schedule.own.near.version + 1;
   return schedule.trees.version() + 1;

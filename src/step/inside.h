@@ -323,7 +323,7 @@ struct Stepper::Inside {
   /// Who comes when in pair kernels and reductions.
   Status order_own(const WorldState& s, double dt) {
     OwnLists& lists = schedule.own;
-    lists.order(s, own.kernels());
+    lists.order(s, own.kernels(), schedule.octave_of());
     const double cutoff = own.kernels().cutoff();
     if (cutoff == 0) return {};
     return lists.near.find(s, schedule.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);

@@ -15,6 +15,15 @@ PCPHYS_KERNEL(pc_gather_forces,
                 force = pc_given_force;
                 torque = pc_given_torque;
               })
+// where some make forces once a step and others in each sub-step: what those have made, for these to begin with
+PCPHYS_KERNEL(pc_hold_forces, (PC_IN(Vec3) force, PC_IN(Vec3) torque, PC_OUT(Vec3) pc_held_force, PC_OUT(Vec3) pc_held_torque), {
+  pc_held_force = force;
+  pc_held_torque = torque;
+})
+PCPHYS_KERNEL(pc_take_forces, (PC_IN(Vec3) pc_held_force, PC_IN(Vec3) pc_held_torque, PC_OUT(Vec3) force, PC_OUT(Vec3) torque), {
+  force = pc_held_force;
+  torque = pc_held_torque;
+})
 
 bool of_library(const OwnKernel& k) { return k.name.starts_with(own_prefix); }
 
@@ -32,13 +41,22 @@ void sum_all(WorldState& s) {
 
 void gather_forces(WorldState& s) {
   const Buffer force = add_column(s, "pc_given_force", "N");
-  s.gathered = {force, add_column(s, "pc_given_torque", "N m")};
+  s.gathered = {force, add_column(s, "pc_given_torque", "N m"), false};
   sum_all(s);
 }
 
+/// As long as the world's forces are gathered.
+void add_held(WorldState& s) {
+  if (s.gathered->holds) return;
+  s.gathered->holds = true;
+  add_column(s, "pc_held_force", "N");
+  add_column(s, "pc_held_torque", "N m");
+}
+
+/// All columns of the library's own are of forces.
 void stop_gathering(WorldState& s) {
   for (OwnProperty& p : s.own.list)
-    if (p.used && (p.buffer == s.gathered->force || p.buffer == s.gathered->torque)) {
+    if (p.used && p.name.starts_with(own_prefix)) {
       s.tables.remove(p.buffer);
       p.used = false;
     }
@@ -52,17 +70,17 @@ void stop_gathering(WorldState& s) {
 namespace {
 
 /// Of an argument the first row that is not finite; 0: none.
-std::uint32_t bad_row(const WorldState& s, const OwnKernel& k, const OwnArgument& a) {
-  const std::uint32_t rows = a.single ? 2 : s.tables.rows(k.table);
+std::uint32_t bad_row(const WorldState& s, const OwnArgument& a) {
+  const std::uint32_t rows = a.single ? 2 : s.tables.rows(a.table);
   const std::uint32_t row = find_not_finite(s.tables, a.buffer, a.offset, a.type, 1, rows);
   return row < rows ? row : 0;
 }
-std::string object(const WorldState& s, const OwnKernel& k, const OwnArgument& a, std::uint32_t row) {
+std::string object(const WorldState& s, const OwnArgument& a, std::uint32_t row) {
   if (a.single) return "the total of all rows";
-  if (k.table == Table::body) return "body " + std::to_string(s.bodies[row].index);
-  if (k.table == Table::joint) return "joint " + std::to_string(s.joints[row].index);
+  if (a.table == Table::body) return "body " + std::to_string(s.bodies[row].index);
+  if (a.table == Table::joint) return "joint " + std::to_string(s.joints[row].index);
   for (const OwnTable& t : s.own.tables)
-    if (t.used && t.table == k.table) return "row " + std::to_string(row) + " of \"" + t.name + "\"";
+    if (t.used && t.table == a.table) return "row " + std::to_string(row) + " of \"" + t.name + "\"";
   return "row " + std::to_string(row);
 }
 
@@ -70,9 +88,9 @@ std::string object(const WorldState& s, const OwnKernel& k, const OwnArgument& a
 
 Status check_written(const WorldState& s, const OwnKernel& k) {
   for (const OwnArgument& a : k.arguments)
-    if (const std::uint32_t row = a.writes() ? bad_row(s, k, a) : 0)
+    if (const std::uint32_t row = a.writes() ? bad_row(s, a) : 0)
       return Error{ErrorCode::not_finite,
-                   "The kernel \"" + k.name + "\" gave " + object(s, k, a, row) + " a \"" + a.property +
+                   "The kernel \"" + k.name + "\" gave " + object(s, a, row) + " a \"" + a.property +
                        "\" that is no finite number; look for a division by zero or a root of what is below "
                        "it. The world is as before the step."};
   return {};
@@ -80,21 +98,24 @@ Status check_written(const WorldState& s, const OwnKernel& k) {
 
 bool reads_finite(const WorldState& s, const OwnKernel& k) {
   return std::ranges::none_of(k.arguments,
-                              [&](const OwnArgument& a) { return a.of_property() && !a.writes() && bad_row(s, k, a) != 0; });
+                              [&](const OwnArgument& a) { return a.of_property() && !a.writes() && bad_row(s, a) != 0; });
 }
 
 Status OwnWork::check_written(const WorldState& s) const {
   for (const auto& k : ordered())
     for (const OwnArgument& a : k->arguments)
-      if (a.writes() && is_own(a.buffer) && !of_library(*k) && bad_row(s, *k, a) != 0) return pcphys::check_written(s, *k);
+      if (a.writes() && is_own(a.buffer) && !of_library(*k) && bad_row(s, a) != 0) return pcphys::check_written(s, *k);
   return {};
 }
 
 bool OwnWork::hosts() const {
   return std::ranges::any_of(ordered(), [](const auto& k) { return !of_library(*k); });
 }
-bool OwnWork::makes_forces() const {
-  return std::ranges::any_of(ordered(), [](const auto& k) { return !of_library(*k) && k->writes(Buffer::force); });
+OwnWork::Makers OwnWork::makers() const {
+  Makers found;
+  for (const auto& k : ordered())
+    if (!of_library(*k) && k->writes(Buffer::force)) (k->once_a_step ? found.once : found.each) = true;
+  return found;
 }
 
 Status OwnWork::check(const WorldState& s) const {
@@ -111,25 +132,38 @@ Status OwnWork::check(const WorldState& s) const {
 Status OwnWork::follow(WorldState& s) {
   if (kernels_.empty() && !s.gathered) return {};
   if (Status ok = check(s); !ok) return ok;
-  if (serial_ != s.serial || removals_ != s.removals) (void)kernels_.remove(pc_gather_forces::text().name);
+  if (serial_ != s.serial || removals_ != s.removals) forget_beginning();
   serial_ = s.serial;
   const Status ok = begin_forces(s);
   removals_ = s.removals;
   return ok;
 }
 
+void OwnWork::forget_beginning() {
+  for (const KernelText& text : {pc_gather_forces::text(), pc_hold_forces::text(), pc_take_forces::text()})
+    (void)kernels_.remove(text.name);
+}
+
 Status OwnWork::begin_forces(WorldState& s) {
-  const std::string_view name = pc_gather_forces::text().name;
-  if (makes_forces() && !s.gathered) gather_forces(s);
-  const OwnKernel* there = kernels_.find(name);
-  const bool each = std::ranges::any_of(
-      ordered(), [](const auto& k) { return !of_library(*k) && k->writes(Buffer::force) && !k->once_a_step; });
-  if (there && s.gathered && there->once_a_step == !each) return {};
-  if (there) (void)kernels_.remove(name);
+  const Makers make = makers();
+  if (make.any() && !s.gathered) gather_forces(s);
+  const bool gather_once = make.once || !make.each;
+  const OwnKernel* gathers = kernels_.find(pc_gather_forces::text().name);
+  const bool holds = kernels_.find(pc_hold_forces::text().name);
+  if (gathers && s.gathered && gathers->once_a_step == gather_once && holds == make.both()) return {};
+  forget_beginning();
   if (!s.gathered) return {};
+  if (make.both()) add_held(s);
+  Status ok = add_beginning(s, pc_gather_forces::text(), gather_once);
+  if (ok && make.both()) ok = add_beginning(s, pc_hold_forces::text(), true);
+  if (ok && make.both()) ok = add_beginning(s, pc_take_forces::text(), false);
+  return ok;
+}
+
+Status OwnWork::add_beginning(const WorldState& s, const KernelText& text, bool once_a_step) {
   KernelDef def;
-  def.text = pc_gather_forces::text();
-  def.once_a_step = !each;
+  def.text = text;
+  def.once_a_step = once_a_step;
   auto kernel = resolve(s, def);
   return kernel ? kernels_.add(std::move(*kernel)) : Status(kernel.error());
 }
@@ -138,7 +172,7 @@ Result<const OwnKernel*> OwnWork::add(WorldState& s, const KernelDef& def) {
   auto kernel = resolve(s, def);
   if (!kernel) return kernel.error();
   const OwnKernel* added = kernel->get();
-  if (added->writes(Buffer::force)) (void)kernels_.remove(pc_gather_forces::text().name);  // follows anew
+  if (added->writes(Buffer::force)) forget_beginning();  // follows anew
   if (Status ok = kernels_.add(std::move(*kernel)); !ok) return ok.error();
   serial_ = s.serial;
   removals_ = s.removals;
@@ -149,10 +183,10 @@ Status OwnWork::remove(WorldState& s, std::string_view name) {
   if (serial_ != s.serial)
     return Error{ErrorCode::bad_argument,
                  "This stepper has no kernels of this world; remove_kernel takes the world that they were added for."};
-  const bool made = makes_forces();
+  const bool made = makers().any();
   if (Status ok = kernels_.remove(name); !ok) return ok;
-  if (made && !makes_forces()) {
-    (void)kernels_.remove(pc_gather_forces::text().name);
+  if (made && !makers().any()) {
+    forget_beginning();
     stop_gathering(s);
   }
   return {};

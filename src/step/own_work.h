@@ -16,7 +16,7 @@ class OwnWork {
  public:
   /// Before a step of this world, and before a kernel is added: whether the kernels fit it still. Where forces are made, by this
   /// stepper or another, they begin anew in each (sub-)step with what constants and callbacks give (WorldState::gathered), which is
-  /// a kernel too. Errors: bad_argument where they are of another world; stale_id where a property was removed.
+  /// a kernel too; where some are made once a step and others in each sub-step, these begin with what those have made. Errors: bad_argument where they are of another world; stale_id where a property was removed.
   Status follow(WorldState& state);
   /// The same where nothing may change.
   Status check(const WorldState& state) const;
@@ -36,8 +36,16 @@ class OwnWork {
   bool of_another(const WorldState& state) const { return hosts() && serial_ != state.serial; }
 
  private:
-  bool makes_forces() const;
+  /// When kernels of the host's own make forces.
+  struct Makers {
+    bool once = false, each = false;
+    bool any() const { return once || each; }
+    bool both() const { return once && each; }
+  };
+  Makers makers() const;
   Status begin_forces(WorldState& state);
+  Status add_beginning(const WorldState& state, const KernelText& text, bool once_a_step);
+  void forget_beginning();
 
   OwnKernels kernels_;
   std::uint64_t serial_ = 0;    // of the world that they are of

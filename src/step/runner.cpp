@@ -230,6 +230,8 @@ void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Sche
     ranges_.push_back(k.table == Table::body    ? Range{0, schedule.own.movable}
                       : k.table == Table::joint ? Range{0, state.tables.rows(k.table) - 1}
                                                 : Range{1, state.tables.rows(k.table)});
+  else if (k.form == OwnKernel::Form::joined)
+    ranges_.insert(ranges_.end(), {schedule.own.joined_range(entry.octave), schedule.ranges(entry.octave)[0]});
   else if (k.table == Table::body)
     for (const Range& range : schedule.ranges(entry.octave)) ranges_.push_back(range);
   else

@@ -256,6 +256,7 @@ void Schedule::list_memory(std::vector<BufferUse>& uses) {
 
 void Schedule::group(std::span<const std::uint8_t> octaves) {
   changes_++;
+  own.forget_octaves();
   octaves_.assign(octaves.begin(), octaves.end());
   const OctaveOf of{octaves_, octaves.empty() ? 1u : 1u + *std::ranges::max_element(octaves)};
   bodies.clear();

@@ -27,6 +27,8 @@ constexpr BufferSchema buffer_schemas[] = {
     {"bodies_by_id", Table::body, 0, "all bodies in the order of their ids"},
     {"moving_by_id", Table::body, 0, "bodies that can move, in the order of their ids"},
     {"joints_by_id", Table::joint, 0, "joints in the order of their ids"},
+    {"joined", Table::joint, 0, "joints of bodies that move, with the rows of both"},
+    {"body_joints", Table::body, 0, "the joints of each body, in the order of their ids"},
     {"near_first", Table::body, 0, "where the list of a body's neighbours begins"},
     {"near_rows", Table::body, 0, "lists of neighbours"},
 #define PC_ROWS(domain, buffer, reals) {#buffer, Table::domain, reals, "scratch of the solver"},

@@ -45,6 +45,8 @@ enum class Buffer : std::uint16_t {
   bodies_by_id,
   moving_by_id,
   joints_by_id,
+  joined,
+  body_joints,
   near_first,
   near_rows,
 #define PC_ROWS(domain, buffer, reals) buffer,

@@ -193,6 +193,7 @@ struct WorldState {
   /// Of constants and callbacks. Where kernels of the host's own make forces (`gathered`), they begin with these.
   struct Gathered {
     Buffer force, torque;
+    bool holds = false;  // there are columns for what some of them make once a step, too (pc_held_force, pc_held_torque)
   };
   std::optional<Gathered> gathered;
   Vec3 given_force(std::uint32_t row) const {
