@@ -4,7 +4,7 @@
 string(REPLACE "|" ";" objects "${OBJECTS}")
 foreach(object IN LISTS objects)
   get_filename_component(name ${object} NAME)
-  if(NOT name MATCHES "^(kernels|narrow)_[fd][148]\\.")
+  if(NOT name MATCHES "^(kernels|narrow)_[fd][148]v?\\.")
     continue()
   endif()
   execute_process(COMMAND ${OBJDUMP} -d --no-show-raw-insn ${object} OUTPUT_VARIABLE code COMMAND_ERROR_IS_FATAL ANY)

@@ -153,6 +153,9 @@ TEST_CASE("four lanes of float equal scalar") { compare_lanes<float>(cpu_kernels
 TEST_CASE("eight lanes of float equal scalar") {
   if (__builtin_cpu_supports("avx2")) compare_lanes<float>(cpu_kernels_f1, cpu_kernels_f8);
 }
+TEST_CASE("eight lanes of float with AVX-512 equal scalar") {
+  if (has_avx512()) compare_lanes<float>(cpu_kernels_f1, cpu_kernels_f8v);
+}
 TEST_CASE("four lanes of double equal scalar") {
   if (__builtin_cpu_supports("avx2")) compare_lanes<double>(cpu_kernels_d1, cpu_kernels_d4);
 }

@@ -12,6 +12,14 @@
 #include "world/memory.h"
 
 namespace pcphys {
+
+#ifdef PCPHYS_HAVE_X86_LANES
+bool has_avx512() {
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512bw");
+}
+#endif
+
 namespace {
 
 /// The compiled kernels of that many lanes, or null where the build or the processor has none.
@@ -21,6 +29,7 @@ const CpuKernels* find_kernels(Precision precision, std::uint32_t lanes) {
 #ifdef PCPHYS_HAVE_X86_LANES
   if (lanes == 4 && f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_d4;
   if (lanes == 4 && !f64 && __builtin_cpu_supports("sse4.2")) return &cpu_kernels_f4;
+  if (lanes == 8 && !f64 && has_avx512()) return &cpu_kernels_f8v;
   if (lanes == 8 && !f64 && __builtin_cpu_supports("avx2")) return &cpu_kernels_f8;
 #endif
   return nullptr;

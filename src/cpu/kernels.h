@@ -23,7 +23,10 @@ struct CpuKernels {
 
 extern const CpuKernels cpu_kernels_f1, cpu_kernels_d1;
 #ifdef PCPHYS_HAVE_X86_LANES
-extern const CpuKernels cpu_kernels_f4, cpu_kernels_f8, cpu_kernels_d4;
+extern const CpuKernels cpu_kernels_f4, cpu_kernels_f8, cpu_kernels_f8v, cpu_kernels_d4;
+
+/// Whether the processor has what f8v is compiled for.
+bool has_avx512();
 #endif
 
 }  // namespace pcphys

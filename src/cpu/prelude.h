@@ -146,7 +146,7 @@ PC_INLINE void pc_scatter_if(Mask mask, Scalar* buffer, Index i, uint quads, uin
 
 // A flag in the row that pads: many may raise it at a time.
 PC_INLINE void pc_raise(Scalar* flag) {
-  const Scalar up = 1;
+  Scalar up = 1;  // (not const: Clang takes no pointer to const here)
   __atomic_store(flag, &up, __ATOMIC_RELAXED);
 }
 
