@@ -143,6 +143,8 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"min_fps", outcome.times.min_fps()},
       {"stages", setup.settings.timings ? stages_json(outcome.times) : Json::object()},
       {"transfers_bytes", outcome.last.transfer_bytes},
+      {"uploads_bytes", outcome.last.upload_bytes},
+      {"downloads_bytes", outcome.last.transfer_bytes - outcome.last.upload_bytes},
       {"left_out", left_out},
       {"memory", memory_json(simulation)},
       {"contacts", outcome.last.contacts},

@@ -74,6 +74,7 @@ struct StepReport {
   /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
   std::uint64_t transfer_bytes = 0;                    // between host and device
+  std::uint64_t upload_bytes = 0;                      // of them, to the device
   std::vector<BodyId> frozen;                          // in this step; see World::frozen
   double total_ms = 0;                                 // and `ms`: zeros without StepSettings::timings
   std::array<double, std::size_t(Timer::count)> ms{};  // by Timer
@@ -115,7 +116,8 @@ class Stepper {
   /// From the next step on; of the type that it was given as.
   Status set_parameter(std::string_view kernel, const KernelParameter& parameter);
 
-  /// What the last step ran, or (`plan_for`) what a step of this world would.
+  /// What the last step ran, or (`plan_for`) what a step of this world would, with the bytes of its transfers: for contacts as the last
+  /// step left them, and islands of the sub-steps that the settings ask for. It needs no device.
   const StepPlan& plan() const;
   Result<StepPlan> plan_for(const World& world, double dt);
 

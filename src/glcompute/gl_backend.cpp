@@ -34,10 +34,7 @@ class GlBackend final : public Backend {
 
   std::string device() const override { return context_->report().renderer; }
   std::uint32_t width() const override { return gl_width; }
-  /// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
-  std::uint32_t width_for(Domain domain, std::uint32_t count) const override {
-    return domain == Domain::tree && count < fewest_alike ? 1 : gl_width;
-  }
+  std::uint32_t width_for(Domain domain, std::uint32_t count) const override { return gl_width_for(domain, count); }
   Status attach(Buffer buffer, void* host, std::size_t bytes) override;
   Status reserve(Buffer buffer, std::size_t slots) override;
   std::size_t held_bytes(Buffer buffer) const override {
@@ -420,6 +417,11 @@ Status GlBackend::finish() {
 }
 
 }  // namespace
+
+/// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
+std::uint32_t gl_width_for(Domain domain, std::uint32_t count) {
+  return domain == Domain::tree && count < fewest_alike ? 1 : gl_width;
+}
 
 Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context) {
   Result<std::unique_ptr<GlContext>> context = host_context ? GlContext::adopt_current() : GlContext::open(device);

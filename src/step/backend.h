@@ -81,6 +81,9 @@ Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint
 /// current on the calling thread instead of a headless one of our own.
 Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context);
 
+/// Its `width_for`, which no device changes.
+std::uint32_t gl_width_for(Domain domain, std::uint32_t count);
+
 /// Where steps get their GL backend from: make_gl_backend, until a test puts one there that fails.
 using GlBackendMaker = Result<std::unique_ptr<Backend>> (*)(Precision precision, int device, bool host_context);
 GlBackendMaker& gl_backend_maker();

@@ -275,7 +275,7 @@ struct Stepper::Inside {
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
-    if (ok = order_own(s, dt); !ok) return undo(s, ok);
+    if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
     if (const std::uint32_t rows = schedule.trees.nodes().rows();
@@ -321,12 +321,12 @@ struct Stepper::Inside {
   }
 
   /// Who comes when in pair kernels and reductions.
-  Status order_own(const WorldState& s, double dt) {
-    OwnLists& lists = schedule.own;
+  Status order_own(const WorldState& s, double dt, Schedule& of) const {
+    OwnLists& lists = of.own;
     lists.order(s, own.kernels());
     const double cutoff = own.kernels().cutoff();
     if (cutoff == 0) return {};
-    return lists.near.find(s, schedule.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
+    return lists.near.find(s, of.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
   }
   bool find_strays(const WorldState& s, const AlignedBytes& before) {
     const bool near = own.kernels().cutoff() > 0 && schedule.own.near.find_strays(s, schedule.rows_that_move());

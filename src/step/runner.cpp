@@ -185,6 +185,7 @@ Status Runner::upload(Buffer buffer, WorldState& state, const Schedule& schedule
   if (of_table(buffer)) (void)state.tables.bytes(buffer);  // another device may have it
   copy.version = version;
   report.transfer_bytes += copy.bytes;
+  report.upload_bytes += copy.bytes;
   return d.backend->upload(buffer);
 }
 
