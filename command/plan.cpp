@@ -24,7 +24,8 @@ std::size_t row_bytes(Buffer buffer, const World& world) {
   return schema(buffer).reals == 0 ? sizeof(std::uint32_t) : schema(buffer).reals * world.state().tables.real_bytes();
 }
 constexpr const char* domains[] = {"body",  "contact", "contact",         "contact of a tree",
-                                   "joint", "joint",   "joint of a tree", "tree"};
+                                   "joint", "joint",   "joint of a tree", "tree",
+                                   "body",  "pair of bodies"};
 
 /// Which bytes an element of each kernel reads and writes, and what a step holds of one.
 struct Bytes {

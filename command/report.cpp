@@ -133,6 +133,7 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"refined_last", outcome.last.refined},
       {"fourth_order_last", outcome.last.fourth_order},
       {"sleep", setup.settings.sleep},
+      {"islands", name(setup.settings.islands)},
       {"asleep_last", outcome.last.asleep},
       {"islands_asleep_last", outcome.last.islands_asleep},
       {"lanes", simulation.lanes},

@@ -13,8 +13,9 @@ namespace pcphys {
 enum class Place : std::uint8_t { cpu, gl };
 const char* name(Place place);
 
-/// The parts of a sub-step that are put on a place each.
-enum class Stage : std::uint8_t { integrate, joints, impulses };
+/// The parts of a sub-step that are put on a place each, and what comes after the last where islands are found on a device
+/// (StepSettings::islands).
+enum class Stage : std::uint8_t { integrate, joints, impulses, islands };
 std::string_view name(Stage stage);
 
 /// How bodies move between impulses (docs/integrate.md). `verlet`: exact drag, and free rotation of second order. `seed`:

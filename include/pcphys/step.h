@@ -40,6 +40,9 @@ struct StepSettings {
 
   /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md). A step with it off wakes what sleeps.
   bool sleep = false;
+  /// Where who is in which island is found after a step: by union-find on the CPU, or by label propagation on the device. The result is
+  /// the same.
+  Place islands = Place::cpu;
   double sleep_speed = constants::sleep_speed;  // what is faster is not at rest [m/s]
   double sleep_spin = constants::sleep_spin;    // nor what spins faster [rad/s]
   double sleep_time = constants::sleep_time;    // how long an island is at rest before it sleeps, above 0 [s]

@@ -370,7 +370,7 @@ void GlBackend::dispatch(std::int32_t range_location, std::uint32_t begin, std::
 }
 
 void GlBackend::dispatch_all(const KernelRun& run) {
-  const std::uint32_t lanes = run.own || schema(run.kernel).domain == Domain::body ? 1 : run.lanes;
+  const std::uint32_t lanes = run.own || one_by_one(schema(run.kernel).domain) ? 1 : run.lanes;
   for (const Range& range : run.ranges) {
     if (range.begin >= range.end) continue;
     if (barrier_due_) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -404,6 +404,7 @@ Status GlBackend::run(std::span<const KernelRun> runs) {
 Result<bool> GlBackend::take_flag(Buffer buffer, std::uint32_t quad) {
   if (Status status = hold(); !status) return status.error();
   settle();
+  if (schema(buffer).reals == 0) return at(buffer).take(0, sizeof(std::uint32_t));
   const std::size_t bytes = real_bytes();
   return at(buffer).take((quad * 4 + 3) * bytes, bytes);
 }

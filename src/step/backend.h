@@ -67,7 +67,7 @@ class Backend {
   /// Runs kernels, one after the other.
   virtual Status run(std::span<const KernelRun> runs) = 0;
   /// Takes down a flag that kernels raise (PC_RAISE: the last real of quad `quad` of a buffer's first row) and says whether it
-  /// was up. On a device this waits for what was asked for so far.
+  /// was up; of a list its first number (PC_LOWER). On a device this waits for what was asked for so far.
   virtual Result<bool> take_flag(Buffer buffer, std::uint32_t quad) = 0;
   /// Waits until all that was asked for is done, so that a clock around it tells the time it took.
   virtual Status finish() = 0;

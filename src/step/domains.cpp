@@ -31,6 +31,8 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::joints_by_id: return &schedule.own.joints;
     case Buffer::near_first: return &schedule.own.near.first;
     case Buffer::near_rows: return &schedule.own.near.rows;
+    case Buffer::island_ends: return &schedule.islands.ends();
+    case Buffer::island_labels: return &schedule.islands.labels_to_fill();
     default: return nullptr;
   }
 }
@@ -58,6 +60,8 @@ void pack(Domain domain, std::uint32_t lanes, Schedule& schedule) {
 }
 std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsigned octave) {
   if (domain == Domain::body) return schedule.ranges(octave);
+  if (domain == Domain::row) return schedule.islands.rows();
+  if (domain == Domain::edge) return schedule.islands.edges();
   if (domain == Domain::joint) return schedule.joints.ranges(octave);
   if (domain == Domain::free_joint) return schedule.joints.free_ranges(octave);
   if (domain == Domain::tree_joint) return schedule.joints.tree_ranges(octave);
@@ -81,6 +85,7 @@ std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule&
   if (buffer == Buffer::bodies_by_id || buffer == Buffer::moving_by_id || buffer == Buffer::joints_by_id)
     return schedule.own.version + 1;
   if (buffer == Buffer::near_first || buffer == Buffer::near_rows) return schedule.own.near.version + 1;
+  if (buffer == Buffer::island_ends) return schedule.islands.version() + 1;
   return schedule.trees.version() + 1;
 }
 

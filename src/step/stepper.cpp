@@ -70,6 +70,10 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   in.choose_order(order, world.state(), schedule.trees, dt);
   wanted.octaves = order.classes(schedule.moving);
   wanted.second_order = order.reasons();
+  if (in.finds_islands() && wanted.bodies && (wanted.contacts() || world.joint_count() > 0)) {
+    schedule.islands.list(world.state());
+    wanted.islands = true;
+  }
   if (ok = in.order_own(world.state(), dt, schedule); !ok) return ok.error();
   StepPlan plan = make_plan(wanted, in.own.ordered());
   measure_transfers(plan, world.state(), schedule);
