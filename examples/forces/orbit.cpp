@@ -1,5 +1,7 @@
 // Two stars about each other under their own gravity: the kernel of examples/gravity.cpp beside Kepler's ellipse, and how the error falls
 // with the step.
+#include <utility>
+
 #include "../gravitation.h"
 #include "show.h"
 
