@@ -229,6 +229,8 @@ TEST_CASE("a host's context is used and its bindings are found again") {
     glBindBufferRange(GL_UNIFORM_BUFFER, 0, buffers[2], 1024, 256);
     glBindBuffer(GL_SHADER_STORAGE_BUFFER, buffers[2]);
     glBindBuffer(GL_UNIFORM_BUFFER, buffers[1]);
+    glBindBuffer(GL_COPY_READ_BUFFER, buffers[0]);
+    glBindBuffer(GL_COPY_WRITE_BUFFER, buffers[1]);
   };
   shape();
   {
@@ -249,6 +251,8 @@ TEST_CASE("a host's context is used and its bindings are found again") {
   CHECK(bound(GL_CURRENT_PROGRAM) == 0);
   CHECK(bound(GL_SHADER_STORAGE_BUFFER_BINDING) == buffers[2]);
   CHECK(bound(GL_UNIFORM_BUFFER_BINDING) == buffers[1]);
+  CHECK(bound(GL_COPY_READ_BUFFER_BINDING) == buffers[0]);
+  CHECK(bound(GL_COPY_WRITE_BUFFER_BINDING) == buffers[1]);
   CHECK(bound_at(GL_SHADER_STORAGE_BUFFER_BINDING, 0) == 0);
   CHECK(bound_at(GL_SHADER_STORAGE_BUFFER_BINDING, 1) == GLint64(buffers[0]));
   CHECK(bound_at(GL_SHADER_STORAGE_BUFFER_START, 1) == 256);

@@ -35,14 +35,18 @@ template <class R> R spoiled(R exact) {
 }
 template <class R> R pc_device_div(R a, R b) { return spoiled<R>(a / b); }
 template <class R> R pc_device_sqrt(R a) { return spoiled<R>(std::sqrt(a)); }
+template <class R> R pc_device_inverse_sqrt(R a) { return spoiled<R>(R(1 / std::sqrt(double(a)))); }
 template <class R> R pc_device_fma(R a, R b, R c) { return std::fma(a, b, c); }
 using std::abs;
+template <class R> R min(R a, R b) { return std::fmin(a, b); }
+template <class R> R max(R a, R b) { return std::fmax(a, b); }
 
 namespace single {
 using Real = float;
 #include "glcompute/rounding.glsl"
 #undef PC_BIAS
 #undef PC_EXPONENT_END
+#undef PC_EASY
 }  // namespace single
 namespace twice {
 using Real = double;
@@ -123,6 +127,8 @@ TEST_CASE("zero, infinity and not-a-number pass through") {
   CHECK(single::pc_div_nearest(1.0f, 0.0f) == infinity);
   CHECK(single::pc_div_nearest(-3e38f, 1e-3f) == -infinity);
   CHECK(std::isnan(single::pc_div_nearest(0.0f, 0.0f)));
+  CHECK(std::isnan(single::pc_div_nearest(std::nanf(""), 3.0f)));
+  CHECK(std::isnan(single::pc_div_nearest(3.0f, std::nanf(""))));
   CHECK(single::pc_sqrt_nearest(0.0f) == 0.0f);
   CHECK(single::pc_sqrt_nearest(infinity) == infinity);
   CHECK(std::isnan(single::pc_sqrt_nearest(-1.0f)));

@@ -19,7 +19,7 @@ struct Options {
   std::vector<std::size_t> sizes = {100, 1'000, 10'000, 100'000, 1'000'000};
   std::size_t rounds = 3, steps = 10;
   std::string json = "-", design, scene = "flight", history = "fresh";
-  bool check = false, no_gl = false;
+  bool check = false, no_gl = false, transfers = false;
 };
 
 // of more bodies a round takes too long to repeat
@@ -47,6 +47,9 @@ std::string processor() {
   return "unknown";
 }
 
+/// Of what the way to the GPU is told.
+bool is_gathered(SceneKind scene, History history) { return scene == SceneKind::flight && history == History::churned; }
+
 std::vector<Case> cases(const Options& options) {
   std::vector<Case> all;
   std::size_t most = 1;
@@ -56,7 +59,8 @@ std::vector<Case> cases(const Options& options) {
       for (const SceneKind scene : measured_scenes)
         for (const History history : {History::fresh, History::churned})
           for (const NamedDesign& design : designs())
-            if (round == 0 || size <= most_in_rounds) all.push_back({&design, scene, history, size});
+            if ((round == 0 || size <= most_in_rounds) && (!options.transfers || is_gathered(scene, history)))
+              all.push_back({&design, scene, history, size});
   return all;
 }
 
@@ -96,6 +100,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.add_option("--json", options.json, "where the figures go; - is standard output");
   app.add_flag("--no-gl", options.no_gl, "no transfers through OpenGL");
+  app.add_flag("--transfers", options.transfers, "only the way to the GPU and back, and gathers on it");
   app.add_flag("--check", options.check, "compare the designs bit by bit on small scenes, and nothing else");
   app.add_option("--only", options.design, "step this design alone, for a profiler; with --scene, --history, --steps, --sizes");
   app.add_option("--scene", options.scene, "flight, chains or pairs");

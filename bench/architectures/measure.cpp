@@ -100,17 +100,18 @@ Json measure_here(const Case& of) {
 /// Seconds of an upload and of a download of buffers of these sizes.
 Json time_transfers(std::span<const std::size_t> sizes, std::uint64_t limit) {
   std::vector<GlBuffer> buffers(sizes.size());
+  GlStaging staging;
   std::vector<std::vector<float>> hosts;
   for (std::size_t i = 0; i < sizes.size(); i++) {
     hosts.emplace_back(sizes[i] / sizeof(float), 1.0f);
     if (Status made = buffers[i].resize("transfer", sizes[i], limit); !made) return {{"problem", made.error().message}};
     buffers[i].attach(hosts[i].data(), sizes[i]);
   }
-  const auto time = [&](void (GlBuffer::*copy)() const) {
+  const auto time = [&](void (GlBuffer::*copy)(GlStaging&) const) {
     std::vector<double> times;
     repeat([&] {
       const double start = wall_time();
-      for (const GlBuffer& buffer : buffers) (buffer.*copy)();
+      for (const GlBuffer& buffer : buffers) (buffer.*copy)(staging);
       glFinish();
       times.push_back(wall_time() - start);
     });

@@ -65,11 +65,37 @@ bool some_could_touch(const WorldState& s) {
   }
   return false;
 }
+
+/// Bodies that hang on joints, by row.
+std::vector<bool> jointed_rows(const WorldState& s) {
+  std::vector<bool> jointed(s.bodies.size());
+  for (std::uint32_t row = 1; row < s.joints.size(); row++)
+    for (std::uint32_t body : {s.joints[row].body_a, s.joints[row].body_b}) jointed[s.body_ids.row(body)] = true;
+  return jointed;
+}
 }  // namespace
 
-void Detector::rebuild(const WorldState& s) {
+void Detector::follow(const WorldState& s) {
+  if (structure_ == s.structure_version && serial_ == s.serial) return;
+  const bool same_bodies =
+      structure_ > 0 && serial_ == s.serial && structure_ - joint_changes_ == s.structure_version - s.joint_changes;
   structure_ = s.structure_version;
+  joint_changes_ = s.joint_changes;
   serial_ = s.serial;
+  same_bodies ? follow_joints(s) : rebuild(s);
+}
+
+void Detector::follow_joints(const WorldState& s) {
+  if (!possible_) return;
+  std::vector<std::uint32_t> changed;
+  filter_->follow_joints(s, changed);
+  for (const std::uint32_t shape : changed)
+    if (proxies_[shape].alive) pairs_.touch(shape);
+  const std::vector<bool> jointed = jointed_rows(s);
+  for (Proxy& proxy : proxies_) proxy.jointed = proxy.alive && jointed[proxy.body];
+}
+
+void Detector::rebuild(const WorldState& s) {
   pairs_ = PairCache();
   possible_ = some_could_touch(s);
   hints_.clear();
@@ -98,9 +124,7 @@ void Detector::rebuild(const WorldState& s) {
   moving_.resize((moving_.size() + lanes - 1) / lanes * lanes, 0);
   listed_margin_ = -1;
   thinnest_ = std::numeric_limits<float>::infinity();
-  std::vector<bool> jointed(s.bodies.size());
-  for (std::uint32_t row = 1; row < s.joints.size(); row++)
-    for (std::uint32_t body : {s.joints[row].body_a, s.joints[row].body_b}) jointed[s.body_ids.row(body)] = true;
+  const std::vector<bool> jointed = jointed_rows(s);
   for (std::uint32_t i = 0; i < s.shapes.size(); i++) {
     const ShapeRecord& shape = s.shapes[i];
     if (!meets_some(shape)) continue;
@@ -160,7 +184,7 @@ bool Detector::some_material(const WorldState& s, std::initializer_list<std::uin
 }
 
 Status Detector::find_pairs(const WorldState& s, double dt, const Options& options) {
-  if (structure_ != s.structure_version || serial_ != s.serial) rebuild(s);
+  follow(s);
   follow_rest(s);
   if (!possible_) return {};
   if (s.tables.precision() == Precision::f32)

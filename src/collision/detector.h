@@ -120,7 +120,10 @@ class Detector {
     return a != Part::looked_at && b != Part::looked_at && (a == Part::sleeps || b == Part::sleeps);
   }
   static bool some_material(const WorldState& state, std::initializer_list<std::uint32_t> offsets);
+  void follow(const WorldState& state);
   void rebuild(const WorldState& state);
+  /// Where nothing but joints is other than it was.
+  void follow_joints(const WorldState& state);
   template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
   template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
   /// What of boxes does not change while the structure and the margin stay.
@@ -167,6 +170,7 @@ class Detector {
   template <class Scalar> Scratch<Scalar>& scratch();
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
+  std::uint64_t joint_changes_ = 0;
   std::uint64_t rest_ = 0;
   std::vector<Part> parts_;             // of bodies, by row; empty where none sleeps
   std::vector<std::uint32_t> touched_;  // of those that sleep

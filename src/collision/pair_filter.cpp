@@ -14,7 +14,20 @@ void PairFilter::rebuild(const WorldState& state) {
     sides_[i].responds = state.responds(state.body_ids.row(shape.body));
     sides_[i].filter = shape.filter;
   }
-  const auto bar = [&](std::uint32_t body, std::uint32_t other) {
+  bar(state);
+}
+
+void PairFilter::follow_joints(const WorldState& state, std::vector<std::uint32_t>& changed) {
+  before_.assign(sides_.begin(), sides_.end());
+  for (Side& side : sides_) static_cast<Bars&>(side) = {};
+  bar(state);
+  changed.clear();
+  for (std::uint32_t i = 0; i < sides_.size(); i++)
+    if (sides_[i] != before_[i] || !before_[i].known()) changed.push_back(i);
+}
+
+void PairFilter::bar(const WorldState& state) {
+  const auto widen = [&](std::uint32_t body, std::uint32_t other) {
     for (const std::uint32_t shape : state.bodies[state.body_ids.row(body)].shapes) {
       Side& side = sides_[shape];
       const bool first = side.first_barred > side.last_barred;
@@ -35,7 +48,7 @@ void PairFilter::rebuild(const WorldState& state) {
       act(b, a);
     }
   };
-  each(bar);
+  each(widen);
   each(mark);
 }
 

@@ -12,6 +12,8 @@ class PairFilter {
  public:
   /// Follows a change of the world's structure. The world must stay where it is.
   void rebuild(const WorldState& state);
+  /// The same where only joints are others: `changed`, shapes whose pairs must be asked for anew.
+  void follow_joints(const WorldState& state, std::vector<std::uint32_t>& changed);
 
   bool operator()(std::uint32_t shape_a, std::uint32_t shape_b) const {
     const Side &x = sides_[shape_a], &y = sides_[shape_b];
@@ -28,15 +30,21 @@ class PairFilter {
   }
 
  private:
-  struct Side {
+  struct Bars {
+    std::uint32_t first_barred = 1, last_barred = 0;  // bodies that it never touches are in between
+    std::uint64_t barred = 0;                         // which of them, from the first on, where there are no more than `near`
+    bool known() const { return last_barred - first_barred < near || first_barred > last_barred; }
+    friend bool operator==(const Bars&, const Bars&) = default;
+  };
+  struct Side : Bars {
     std::uint32_t body = 0;  // id index
     bool responds = false;
     Filter filter;
-    std::uint32_t first_barred = 1, last_barred = 0;  // bodies that it never touches are in between
-    std::uint64_t barred = 0;                         // which of them, from the first on, where there are no more than `near`
   };
+  void bar(const WorldState& state);
   static constexpr std::uint32_t near = 64;  // bodies on joints have ids side by side
   std::vector<Side> sides_;                  // by shape
+  std::vector<Bars> before_;
   const WorldState* state_ = nullptr;
 };
 

@@ -78,6 +78,8 @@ void GlBindings::save() {
   program_ = limit(GL_CURRENT_PROGRAM);
   storage_ = limit(GL_SHADER_STORAGE_BUFFER_BINDING);
   uniform_ = limit(GL_UNIFORM_BUFFER_BINDING);
+  copied_ = limit(GL_COPY_READ_BUFFER_BINDING);
+  copy_ = limit(GL_COPY_WRITE_BUFFER_BINDING);
   const auto range = [](GLenum binding, GLenum start, GLenum size, GLuint index) {
     GLint buffer = 0;
     Range range{};
@@ -104,6 +106,8 @@ void GlBindings::restore() const {
   bind(GL_UNIFORM_BUFFER, 0, uniform_range_);
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, storage_);
   glBindBuffer(GL_UNIFORM_BUFFER, uniform_);
+  glBindBuffer(GL_COPY_READ_BUFFER, copied_);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, copy_);
   glUseProgram(program_);
 }
 

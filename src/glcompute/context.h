@@ -21,7 +21,7 @@ class GlBindings {
     std::uint32_t buffer;
     std::int64_t start, size;
   };
-  std::uint32_t program_ = 0, storage_ = 0, uniform_ = 0;
+  std::uint32_t program_ = 0, storage_ = 0, uniform_ = 0, copied_ = 0, copy_ = 0;
   std::array<Range, 8> storage_ranges_{};
   Range uniform_range_{};
 };

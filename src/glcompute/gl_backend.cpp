@@ -55,7 +55,7 @@ class GlBackend final : public Backend {
   }
   std::size_t real_bytes() const { return options_.precision == Precision::f64 ? sizeof(std::uint64_t) : sizeof(std::uint32_t); }
   Status resize(Buffer buffer, std::size_t bytes);
-  Status transfer(Buffer buffer, void (GlBuffer::*copy)() const);
+  Status transfer(Buffer buffer, void (GlBuffer::*copy)(GlStaging&) const);
   void settle();
   Status hold();
   void release();
@@ -80,8 +80,9 @@ class GlBackend final : public Backend {
   SourceOptions options_;
   std::vector<GlBuffer> buffers_ = std::vector<GlBuffer>(buffer_count);  // by Buffer
   std::unordered_map<std::uint64_t, OwnProgram> own_programs_;           // by serial
-  GlBuffer sums_;                                                        // between the two programs of a kernel of the host's own
-  std::array<std::array<KernelProgram, kernel_count>, 2> programs_{};    // of `gl_width` lanes, and of one
+  GlStaging staging_;
+  GlBuffer sums_;                                                      // between the two programs of a kernel of the host's own
+  std::array<std::array<KernelProgram, kernel_count>, 2> programs_{};  // of `gl_width` lanes, and of one
   std::uint32_t info_buffer_ = 0;
   std::size_t info_bytes_ = 0, info_stride_ = 0, info_count_ = 0, info_capacity_ = 0;
   std::vector<char> info_staging_;
@@ -120,6 +121,7 @@ GlBackend::~GlBackend() {
         if (program.totals.id != 0) glDeleteProgram(program.totals.id);
       }
       sums_.release();
+      staging_.release();
       glDeleteBuffers(1, &info_buffer_);
     }
   }
@@ -150,14 +152,14 @@ void GlBackend::settle() {
   writes_pending_ = false;
 }
 
-Status GlBackend::transfer(Buffer buffer, void (GlBuffer::*copy)() const) {
+Status GlBackend::transfer(Buffer buffer, void (GlBuffer::*copy)(GlStaging&) const) {
   GlScope scope(*context_);
   if (!scope.status()) return scope.status();
   if (!at(buffer).attached() || !at(buffer).transferable())
     return Error{ErrorCode::bad_argument,
                  "The buffer `" + std::string(label_of(buffer)) + "` has no memory on the host; attach it before a transfer."};
   settle();
-  (at(buffer).*copy)();
+  (at(buffer).*copy)(staging_);
   return {};
 }
 
@@ -404,9 +406,9 @@ Status GlBackend::run(std::span<const KernelRun> runs) {
 Result<bool> GlBackend::take_flag(Buffer buffer, std::uint32_t quad) {
   if (Status status = hold(); !status) return status.error();
   settle();
-  if (schema(buffer).reals == 0) return at(buffer).take(0, sizeof(std::uint32_t));
+  if (schema(buffer).reals == 0) return at(buffer).take(staging_, 0, sizeof(std::uint32_t));
   const std::size_t bytes = real_bytes();
-  return at(buffer).take((quad * 4 + 3) * bytes, bytes);
+  return at(buffer).take(staging_, (quad * 4 + 3) * bytes, bytes);
 }
 
 Status GlBackend::finish() {

@@ -7,6 +7,30 @@
 
 namespace pcphys {
 
+// A new store each time: the one before may still be read from.
+void GlStaging::write(std::uint32_t storage, std::size_t offset, std::size_t bytes, const void* from) {
+  if (there_ == 0) glGenBuffers(1, &there_);
+  glBindBuffer(GL_COPY_READ_BUFFER, there_);
+  glBufferData(GL_COPY_READ_BUFFER, GLsizeiptr(bytes), from, GL_STREAM_DRAW);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, storage);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, GLintptr(offset), GLsizeiptr(bytes));
+}
+
+void GlStaging::read(std::uint32_t storage, std::size_t offset, std::size_t bytes, void* to) {
+  if (back_ == 0) glGenBuffers(1, &back_);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, back_);
+  if (bytes > room_) glBufferData(GL_COPY_WRITE_BUFFER, GLsizeiptr(room_ = bytes), nullptr, GL_STREAM_READ);
+  glBindBuffer(GL_COPY_READ_BUFFER, storage);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, GLintptr(offset), 0, GLsizeiptr(bytes));
+  glGetBufferSubData(GL_COPY_WRITE_BUFFER, 0, GLsizeiptr(bytes), to);
+}
+
+void GlStaging::release() {
+  for (const std::uint32_t id : {there_, back_})
+    if (id != 0) glDeleteBuffers(1, &id);
+  *this = GlStaging();
+}
+
 Status GlBuffer::resize(std::string_view label, std::size_t bytes, std::uint64_t limit) {
   if (bytes > limit)
     return Error{ErrorCode::buffer_full, "The buffer `" + std::string(label) + "` needs " + std::to_string(bytes) +
@@ -28,24 +52,19 @@ Status GlBuffer::resize(std::string_view label, std::size_t bytes, std::uint64_t
   return {};
 }
 
-void GlBuffer::upload() const {
-  if (bytes_ == 0) return;
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, id_);
-  glBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, GLsizeiptr(bytes_), host_);
+void GlBuffer::upload(GlStaging& staging) const {
+  if (bytes_ > 0) staging.write(id_, 0, bytes_, host_);
 }
 
-void GlBuffer::download() const {
-  if (bytes_ == 0) return;
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, id_);
-  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, 0, GLsizeiptr(bytes_), host_);
+void GlBuffer::download(GlStaging& staging) const {
+  if (bytes_ > 0) staging.read(id_, 0, bytes_, host_);
 }
 
-bool GlBuffer::take(std::size_t offset, std::size_t bytes) const {
+bool GlBuffer::take(GlStaging& staging, std::size_t offset, std::size_t bytes) const {
   constexpr std::uint64_t none = 0;
   std::uint64_t value = 0;
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, id_);
-  glGetBufferSubData(GL_SHADER_STORAGE_BUFFER, GLintptr(offset), GLsizeiptr(bytes), &value);
-  if (value != 0) glBufferSubData(GL_SHADER_STORAGE_BUFFER, GLintptr(offset), GLsizeiptr(bytes), &none);
+  staging.read(id_, offset, bytes, &value);
+  if (value != 0) staging.write(id_, offset, bytes, &none);
   return value != 0;
 }
 

@@ -1,4 +1,4 @@
-// One storage buffer on the device and its counterpart on the host. The context must be current.
+// Storage buffers on the device, their counterparts on the host, and the way between them. The context must be current.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +8,20 @@
 
 namespace pcphys {
 
+/// What is on its way to the device or back stands in buffers for that alone, which the device copies from and to. Storage that
+/// the host reads and writes itself is moved to the host's memory by NVIDIA's driver (580), where kernels run slower, and where of
+/// two uploads in a row the second was not seen by the kernels after it (docs/gpu.md).
+class GlStaging {
+ public:
+  void write(std::uint32_t storage, std::size_t offset, std::size_t bytes, const void* from);
+  void read(std::uint32_t storage, std::size_t offset, std::size_t bytes, void* to);
+  void release();
+
+ private:
+  std::uint32_t there_ = 0, back_ = 0;
+  std::size_t room_ = 0;  // of `back_`
+};
+
 class GlBuffer {
  public:
   /// Grows by half when `bytes` do not fit; contents are then lost. buffer_full when the device cannot hold it.
@@ -16,10 +30,10 @@ class GlBuffer {
     host_ = host;
     bytes_ = bytes;
   }
-  void upload() const;
-  void download() const;
+  void upload(GlStaging& staging) const;
+  void download(GlStaging& staging) const;
   /// Whether any of these bytes (up to 8) is not zero; they are zero then.
-  bool take(std::size_t offset, std::size_t bytes) const;
+  bool take(GlStaging& staging, std::size_t offset, std::size_t bytes) const;
   void release();
 
   std::size_t capacity() const { return capacity_; }

@@ -2,6 +2,7 @@
 // own; the next puts them together and writes properties. So everything is read before anything is written, and the order of sums is
 // that of the CPU (pcphys/pair_loop.h, cpu/own_runs.cpp).
 #include <algorithm>
+#include <map>
 
 #include "glcompute/own_text.h"
 #include "glcompute/source_text.h"
@@ -123,21 +124,73 @@ std::string row_of(const OwnKernel& k, Buffer list) {
 }
 
 // ---- pairs --------------------------------------------------------------------------------------------
-std::string shared_name(const OwnArgument& a, std::uint32_t c) { return "pc_tile_" + a.name + "_" + number(c); }
-std::string shared_tiles(const OwnKernel& k) {
-  std::string text;
-  for (const OwnArgument& a : k.arguments)
-    for (std::uint32_t c = 0; of_other(a) && c < components(a.type); c++)
-      text += "shared " + OwnText::number_type(a.type) + " " + shared_name(a, c) + "[" + number(KernelPairs::tile) + "];\n";
-  return text;
+std::string four_of(const std::string& number_type) {
+  return number_type == "Real" ? "Real4" : (number_type == "float" ? "" : number_type.substr(0, 1)) + "vec4";
+}
+/// What each invocation reads of another row, four numbers of a type side by side: one access to shared memory fetches them.
+class Tile {
+ public:
+  explicit Tile(const OwnKernel& k) : k_(k) {}
+  std::string declarations() const {
+    std::map<std::string, std::uint32_t> counts;
+    each([&](const OwnArgument&, std::uint32_t, const std::string& type, std::uint32_t ordinal) { counts[type] = ordinal + 1; });
+    std::string text;
+    for (const auto& [type, count] : counts)
+      for (std::uint32_t four = 0; four * 4 < count; four++)
+        text += "shared " + four_of(type) + " " + array(type, four) + "[" + number(KernelPairs::tile) + "];\n";
+    return text;
+  }
+  /// Component c of an argument, of row `index` of the tile.
+  std::string place(const OwnArgument& a, std::uint32_t c, const std::string& index) const {
+    std::string text;
+    each([&](const OwnArgument& b, std::uint32_t d, const std::string& type, std::uint32_t ordinal) {
+      if (&a == &b && c == d) text = array(type, ordinal / 4) + "[" + index + "]." + "xyzw"[ordinal % 4];
+    });
+    return text;
+  }
+
+ private:
+  static std::string array(const std::string& type, std::uint32_t four) { return "pc_tile_" + type + "_" + number(four); }
+  template <class Function> void each(const Function& function) const {
+    std::map<std::string, std::uint32_t> next;
+    for (const OwnArgument& a : k_.arguments)
+      for (std::uint32_t c = 0; of_other(a) && c < components(a.type); c++) {
+        const std::string type = OwnText::number_type(a.type);
+        function(a, c, type, next[type]++);
+      }
+  }
+  const OwnKernel& k_;
+};
+
+/// Sums over one tile. In most tiles, which are full and do not hold the row itself, nothing need be asked of each pair.
+std::string sum_tile(const OwnKernel& k, const Tile& tile) {
+  const OwnText own(k);
+  std::string pair;
+  for (const OwnArgument& a : k.arguments) {
+    if (!of_other(a)) continue;
+    pair += "  " + own.type(a.type) + " pc_in_" + a.name + ";\n";
+    pair += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
+      return "  pc_in_" + a.name + part + " = " + tile.place(a, c, "pc_j") + ";\n";
+    });
+  }
+  pair += clear(k, "") + "  " + own.call() + combine(k, "pc_part_", "");
+  const std::uint32_t unrolled =
+      k.real_bytes == 8 ? 1 : 8;  // what one pair waits for others fill; in double they only make the text long
+  const std::string full = number(KernelPairs::tile) + "u";
+  std::string text = "  if (pc_count == " + full + " && pc_self >= " + full + ") {\n";
+  text += "  for (uint pc_i = 0u; pc_i < " + full + "; pc_i += " + number(unrolled) + "u) {\n";
+  for (std::uint32_t i = 0; i < unrolled; i++) text += "  { uint pc_j = pc_i + " + number(i) + "u;\n" + pair + "  }\n";
+  text += "  }\n  } else {\n  for (uint pc_j = 0u; pc_j < pc_count; pc_j++) {\n  if (pc_j == pc_self) continue;\n" + pair;
+  return text + "  }\n  }\n";
 }
 
 /// pc_work: others, how many in one go, bodies, the first of these.
 std::string all_pairs_main(const OwnKernel& k) {
   const OwnText own(k);
+  const Tile shared(k);
   const bool bodies = k.table == Table::body;
   const std::string tile = number(KernelPairs::tile) + "u";
-  std::string text = shared_tiles(k) + begin_main(KernelPairs::tile) + own_row + row_of(k, Buffer::bodies);
+  std::string text = shared.declarations() + begin_main(KernelPairs::tile) + own_row + row_of(k, Buffer::bodies);
   text += own.load(not_of_other, "pc_row") + declare_sums(k, "pc_sum_") + declare_sums(k, "pc_part_") + clear(k, "pc_sum_");
   text += bodies ? "  uint pc_place = io_bodies_by_id[pc_row];\n" : "  uint pc_place = pc_row - 1u;\n";
   text += "  uint pc_lane = gl_LocalInvocationID.x;\n  uint pc_begin = gl_WorkGroupID.y * pc_work.y;\n";
@@ -149,17 +202,8 @@ std::string all_pairs_main(const OwnKernel& k) {
                  : "  uint pc_other = pc_at + pc_lane + 1u;\n";
   for (const OwnArgument& a : k.arguments)
     for (std::uint32_t c = 0; of_other(a) && c < components(a.type); c++)
-      text += "  " + shared_name(a, c) + "[pc_lane] = " + own.place(a, c, "pc_other") + ";\n";
-  text += "  }\n  barrier();\n" + clear(k, "pc_part_") +
-          "  for (uint pc_j = 0u; pc_j < pc_count; pc_j++) {\n  if (pc_j == pc_self) continue;\n";
-  for (const OwnArgument& a : k.arguments) {
-    if (!of_other(a)) continue;
-    text += "  " + own.type(a.type) + " pc_in_" + a.name + ";\n";
-    text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
-      return "  pc_in_" + a.name + part + " = " + shared_name(a, c) + "[pc_j];\n";
-    });
-  }
-  text += clear(k, "") + "  " + own.call() + combine(k, "pc_part_", "") + "  }\n" + combine(k, "pc_sum_", "pc_part_") + "  }\n";
+      text += "  " + shared.place(a, c, "pc_lane") + " = " + own.place(a, c, "pc_other") + ";\n";
+  text += "  }\n  barrier();\n" + clear(k, "pc_part_") + sum_tile(k, shared) + combine(k, "pc_sum_", "pc_part_") + "  }\n";
   text += "  pc_stride = pc_work.z * gl_NumWorkGroups.y;\n";
   return text + "  if (pc_here) {\n" + put(k, "pc_sum_", "gl_WorkGroupID.y * pc_work.z + pc_k - pc_work.w") + "  }\n}\n";
 }

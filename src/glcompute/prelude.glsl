@@ -25,6 +25,7 @@ struct Slot { uint block; uint lane; };
 
 #define pc_device_div(a, b) ((a) / (b))
 #define pc_device_sqrt(x) sqrt(x)
+#define pc_device_inverse_sqrt(x) inversesqrt(x)
 #define pc_device_fma(a, b, c) fma(a, b, c)
 #include "rounding.glsl"
 

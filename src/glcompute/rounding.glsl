@@ -4,8 +4,9 @@
 // Elementary Functions, 2000), _nearest (the step, then the choice among three neighbours by exact
 // residuals: near ties beside powers of four escape the step alone).
 //
-// The corrections work on mantissas in [1, 4), so that no residual under- or overflows; exponents are put
-// back as bits. What is no normal number, before or after, takes the built-in, which is exact there.
+// No residual may under- or overflow: operands of ordinary size are far from both (`pc_easy`), of others the corrections work on
+// mantissas in [1, 4), and exponents are put back as bits. What is no normal number, before or after, takes the built-in, which is
+// exact there.
 // The text is also compiled as C++ by tests/gl_rounding.cpp.
 #ifdef PC_DOUBLE
 #define PC_BIAS 1023u
@@ -22,12 +23,17 @@ PC_FN Real pc_with_exponent(Real x, uint e) { return uintBitsToFloat((floatBitsT
 PC_FN Real pc_above(Real x) { return uintBitsToFloat(floatBitsToUint(x) + 1u); }
 PC_FN Real pc_below(Real x) { return uintBitsToFloat(floatBitsToUint(x) - 1u); }
 #endif
+#ifdef PC_DOUBLE
+#define PC_EASY Real(1e30)
+#else
+#define PC_EASY Real(1e15)
+#endif
+PC_FN bool pc_easy(Real least, Real most) { return least > Real(1.0) / PC_EASY && most < PC_EASY; }
 PC_FN bool pc_ordinary(uint exponent) { return exponent != 0u && exponent != PC_EXPONENT_END; }
 
 // ---- division ---------------------------------------------------------------------------------------
 PC_FN Real pc_div_builtin(Real a, Real b) { precise Real q = pc_device_div(a, b); return q; }
 
-// a, b in [1, 2)
 PC_FN Real pc_div_step(Real a, Real b) {
   precise Real r0 = pc_device_div(Real(1.0), b);
   precise Real e = pc_device_fma(-r0, b, Real(1.0));
@@ -53,21 +59,35 @@ PC_FN Real pc_div_result(Real q, Real a, Real b, Real plain) {
   return ordinary ? signed_result : plain;
 }
 PC_FN Real pc_div_fma(Real a, Real b) {
-  Real x = pc_with_exponent(abs(a), PC_BIAS); Real y = pc_with_exponent(abs(b), PC_BIAS);
-  return pc_div_result(pc_div_step(x, y), a, b, pc_div_builtin(a, b));
+  Real q = pc_div_step(a, b);
+  if (!pc_easy(min(abs(a), abs(b)), max(abs(a), abs(b)))) {
+    Real x = pc_with_exponent(abs(a), PC_BIAS); Real y = pc_with_exponent(abs(b), PC_BIAS);
+    q = pc_div_result(pc_div_step(x, y), a, b, pc_div_builtin(a, b));
+  }
+  return q;
 }
 PC_FN Real pc_div_nearest(Real a, Real b) {
-  Real x = pc_with_exponent(abs(a), PC_BIAS); Real y = pc_with_exponent(abs(b), PC_BIAS);
-  return pc_div_result(pc_div_choice(pc_div_step(x, y), x, y), a, b, pc_div_builtin(a, b));
+  Real q = pc_div_choice(pc_div_step(a, b), a, b);
+  if (!pc_easy(min(abs(a), abs(b)), max(abs(a), abs(b)))) {
+    Real x = pc_with_exponent(abs(a), PC_BIAS); Real y = pc_with_exponent(abs(b), PC_BIAS);
+    q = pc_div_result(pc_div_choice(pc_div_step(x, y), x, y), a, b, pc_div_builtin(a, b));
+  }
+  return q;
 }
 
 // ---- square root ------------------------------------------------------------------------------------
 PC_FN Real pc_sqrt_builtin(Real x) { precise Real s = pc_device_sqrt(x); return s; }
 
-// x in [1, 4)
+#ifdef PC_DOUBLE
 PC_FN Real pc_sqrt_step(Real x) {
   precise Real s0 = pc_device_sqrt(x);
   precise Real half_inverse = pc_device_div(Real(0.5), s0);
+#else
+PC_FN Real pc_sqrt_step(Real x) {
+  precise Real inverse = pc_device_inverse_sqrt(x);  // a GPU's own; its root and a division are made of it
+  precise Real s0 = x * inverse;
+  precise Real half_inverse = Real(0.5) * inverse;
+#endif
   precise Real e = pc_device_fma(-s0, s0, x);
   precise Real s = pc_device_fma(e, half_inverse, s0);
   return s;
@@ -87,10 +107,18 @@ PC_FN Real pc_sqrt_result(Real s, Real x) {
   return ordinary ? pc_with_exponent(s, uint(int(pc_exponent(s)) + shift) & PC_EXPONENT_END) : pc_sqrt_builtin(x);
 }
 PC_FN Real pc_sqrt_fma(Real x) {
-  Real m = pc_with_exponent(abs(x), pc_sqrt_home(x));
-  return pc_sqrt_result(pc_sqrt_step(m), x);
+  Real s = pc_sqrt_step(x);
+  if (!pc_easy(x, x)) {
+    Real m = pc_with_exponent(abs(x), pc_sqrt_home(x));
+    s = pc_sqrt_result(pc_sqrt_step(m), x);
+  }
+  return s;
 }
 PC_FN Real pc_sqrt_nearest(Real x) {
-  Real m = pc_with_exponent(abs(x), pc_sqrt_home(x));
-  return pc_sqrt_result(pc_sqrt_choice(pc_sqrt_step(m), m), x);
+  Real s = pc_sqrt_choice(pc_sqrt_step(x), x);
+  if (!pc_easy(x, x)) {
+    Real m = pc_with_exponent(abs(x), pc_sqrt_home(x));
+    s = pc_sqrt_result(pc_sqrt_choice(pc_sqrt_step(m), m), x);
+  }
+  return s;
 }

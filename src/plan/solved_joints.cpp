@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "collision/radix_sort.h"
 #include "pcphys/constants.h"
 
 namespace pcphys {
@@ -25,7 +26,14 @@ std::vector<Link> links_by_bodies(const WorldState& state) {
     const JointRecord& j = state.joints[row];
     if (!j.spring) links.push_back({WorldState::pair_key(j.body_a, j.body_b), j.driven(), j.index, row});
   }
-  std::ranges::sort(links, {}, [](const Link& l) { return std::tuple(l.bodies, !l.driven, l.id); });
+  const auto bodies = [](const Link& l) { return l.bodies; };
+  std::vector<Link> scratch(links.size());
+  if (radix_sort(links.data(), scratch.data(), links.size(), 0, 64, bodies) != links.data()) links.swap(scratch);
+  for (auto begin = links.begin(); begin != links.end();) {
+    const auto end = std::find_if(begin, links.end(), [&](const Link& l) { return l.bodies != begin->bodies; });
+    std::ranges::sort(begin, end, {}, [](const Link& l) { return std::tuple(!l.driven, l.id); });
+    begin = end;
+  }
   return links;
 }
 

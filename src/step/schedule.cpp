@@ -176,20 +176,23 @@ void TreeSlots::find_drives(const WorldState& state, std::span<const JointLink> 
   drives_ = driven > 0;
 }
 
+/// Few joints close loops, so each joint of a tree looks for itself among them.
 void TreeSlots::find_parallel(std::span<const JointLink> links) {
-  std::vector<std::array<std::uint32_t, 2>> joined;
+  parallel_.assign(links.size() + 1, false);
+  struct Closing {
+    std::array<std::uint32_t, 2> bodies;
+    std::uint32_t row;
+  };
+  const auto both = [](std::uint32_t a, std::uint32_t b) { return std::array{std::min(a, b), std::max(a, b)}; };
+  std::vector<Closing> closing;
+  for (const std::uint32_t row : forest_.closing()) closing.push_back({both(links[row - 1].a, links[row - 1].b), row});
+  if (closing.empty()) return;
+  std::ranges::sort(closing, {}, &Closing::bodies);
   for (std::size_t i = 0; i < forest_.trees(); i++) {
     const std::span<const TreeNode> tree = forest_.tree(i);
-    for (const TreeNode& node : tree.subspan(1)) {
-      const std::uint32_t a = node.body, b = tree[node.parent].body;
-      joined.push_back({std::min(a, b), std::max(a, b)});
-    }
-  }
-  std::ranges::sort(joined);
-  parallel_.assign(links.size() + 1, false);
-  for (const std::uint32_t row : forest_.closing()) {
-    const JointLink& link = links[row - 1];
-    parallel_[row] = std::ranges::binary_search(joined, std::array{std::min(link.a, link.b), std::max(link.a, link.b)});
+    for (const TreeNode& node : tree.subspan(1))
+      for (const Closing& c : std::ranges::equal_range(closing, both(node.body, tree[node.parent].body), {}, &Closing::bodies))
+        parallel_[c.row] = true;
   }
 }
 

@@ -57,7 +57,7 @@ template <class Change> void change_drive(WorldState& s, std::uint32_t row, Chan
   const bool before = joint.driven();
   change(joint);
   write_drive(s.tables, row, joint);
-  if (joint.driven() != before) s.structure_version++;
+  if (joint.driven() != before) s.structure_version++, s.joint_changes++;
   stir_ends(s, joint);
 }
 
@@ -118,7 +118,7 @@ std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<Sp
   write_frames(s.tables, Buffer::joint_frame, row, def);
   write_drive(s.tables, row, s.joints[row]);
   if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
-  s.structure_version++;
+  s.structure_version++, s.joint_changes++;
   stir_ends(s, s.joints[row]);
   return index;
 }
@@ -154,6 +154,7 @@ void WorldState::remove_joint(std::uint32_t row) {
     if (!pair->second.any()) no_collide.erase(pair);
   }
   remove_row(Table::joint, joints, joint_ids, row);
+  joint_changes++;
 }
 
 Status World::destroy(JointId joint) {

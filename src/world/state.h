@@ -67,7 +67,7 @@ void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointD
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 
-inline constexpr double frozen_phase = -2;        // of a frozen body: what snapshots and hashes know it by
+inline constexpr double frozen_phase = -2;  // of a frozen body: what snapshots and hashes know it by
 /// Where its properties stand in a row of Buffer::rest.
 enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, rest_can_sleep, rest_fields };
 
@@ -96,6 +96,7 @@ struct WorldState {
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;      // objects, kinds, filters
+  std::uint64_t joint_changes = 0;          // how many of these were of joints alone
   std::uint32_t settling = 0;               // steps for which some body may be settling (Buffer::velocity_parts)
   std::uint32_t sleepers = 0, stirred = 0;  // bodies of which that property is not 0
   bool rests = false;                       // some body has a property of rest that is not as it was made
