@@ -249,7 +249,8 @@ const bool registered = [] {
       add_variant("stage/download", transfer_stage, PlanEntry::Kind::download, variant);
     }
     for (std::size_t k = 0; k < kernel_count; ++k)
-      add_variant("kernel/" + std::string(schema(Kernel(k)).name), one_kernel, Kernel(k), variant);
+      if (schema(Kernel(k)).stage != Stage::islands)  // those are in bench/islands.cpp
+        add_variant("kernel/" + std::string(schema(Kernel(k)).name), one_kernel, Kernel(k), variant);
   }
   return true;
 }();

@@ -160,6 +160,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
   app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
   app.add_option("--sleep", options.sleep, "on: islands at rest are no longer stepped")->capture_default_str();
+  app.add_option("--islands", options.islands, "cpu or gl: where the islands that may sleep are found")->capture_default_str();
   app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")
       ->capture_default_str();
   app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
@@ -175,10 +176,11 @@ void add_output_options(CLI::App& app, RunOptions& options) {
 
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   Setup setup;
-  for (const Status& status : {check_numbers(options), check_choice("sleep", options.sleep, {"on", "off"}),
-                               check_choice("narrow", options.narrow, {"native", "fcl"}),
-                               check_choice("integrator", options.integrator, {"verlet", "seed"}),
-                               check_choice("timings", options.timings, {"on", "off"})})
+  for (const Status& status :
+       {check_numbers(options), check_choice("sleep", options.sleep, {"on", "off"}),
+        check_choice("islands", options.islands, {"cpu", "gl"}), check_choice("narrow", options.narrow, {"native", "fcl"}),
+        check_choice("integrator", options.integrator, {"verlet", "seed"}),
+        check_choice("timings", options.timings, {"on", "off"})})
     if (!status) return status.error();
   if (auto status = set_places(options, setup.settings); !status) return status.error();
   if (auto status = set_precision(options, setup); !status) return status.error();
@@ -199,6 +201,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.settings.device = int(options.device);
   setup.settings.contact_events = setup.settings.hit_events = setup.settings.body_events = !options.events.empty();
   setup.settings.sleep = options.sleep == "on";
+  setup.settings.islands = options.islands == "gl" ? Place::gl : Place::cpu;
   setup.settings.timings = options.timings == "on";
   setup.dt = *dt;
   setup.steps = options.steps ? std::uint64_t(*options.steps) : default_steps;

@@ -21,6 +21,7 @@ struct RunOptions {
   std::string scene;
   std::optional<long long> count, seed;
   std::string backend = "cpu", integrate, joints, impulses;  // a stage that is left empty takes `backend`
+  std::string islands = "cpu";
   std::string narrow = "native", precision = "float", lanes = "auto", sleep = "off", integrator = "verlet", timings = "on";
   std::string dt = "1/60";
   std::optional<long long> steps;

@@ -24,7 +24,8 @@ std::size_t row_bytes(Buffer buffer, const World& world) {
   return schema(buffer).reals == 0 ? sizeof(std::uint32_t) : schema(buffer).reals * world.state().tables.real_bytes();
 }
 constexpr const char* domains[] = {"body",  "contact", "contact",         "contact of a tree",
-                                   "joint", "joint",   "joint of a tree", "tree"};
+                                   "joint", "joint",   "joint of a tree", "tree",
+                                   "body",  "pair of bodies"};
 
 /// Which bytes an element of each kernel reads and writes, and what a step holds of one.
 struct Bytes {
@@ -48,6 +49,7 @@ Json entry_json(const PlanEntry& entry, const World& world) {
             {"substep", entry.substep}};
   if (entry.kind != PlanEntry::Kind::kernel) {
     json["buffer"] = std::string(buffer_name(entry));
+    json["bytes"] = entry.bytes;
     return json;
   }
   json["stage"] = std::string(stage_name(entry));
@@ -106,26 +108,30 @@ Json plan_json(const Simulation& simulation, const StepPlan& plan) {
   Json entries = Json::array(), left_out = Json::array();
   for (const PlanEntry& entry : plan.entries) entries.push_back(entry_json(entry, simulation.world));
   for (const LeftOut& item : plan.left_out) left_out.push_back({{"what", item.what}, {"why", item.why}});
+  const TransferBytes transfers = transfer_bytes(plan);
   return {{"scene", simulation.scene.name},
           {"count", simulation.scene.count},
           {"stage_backends", stage_backends(simulation.setup.settings)},
           {"substeps", plan.substeps},
           {"entries", entries},
           {"flight", plan.flight},
+          {"uploads_bytes", transfers.up},
+          {"downloads_bytes", transfers.down},
           {"left_out", left_out},
           {"buffers", buffers_json(plan, simulation.world)},
           {"memory", memory_json(simulation)}};
 }
 
 std::string plan_csv(const StepPlan& plan, const World& world) {
-  std::string text = "kind,place,substep,stage,name,phase,barrier\n";
+  std::string text = "kind,place,substep,stage,name,phase,barrier,bytes\n";
   for (const PlanEntry& entry : plan.entries) {
     const Json json = entry_json(entry, world);
     const bool kernel = entry.kind == PlanEntry::Kind::kernel;
     text += json["kind"].get<std::string>() + "," + name(entry.place) + "," + std::to_string(entry.substep) + ",";
     text +=
         std::string(kernel ? stage_name(entry) : "") + "," + std::string(kernel ? kernel_name(entry) : buffer_name(entry)) + ",";
-    text += std::string(kernel ? phase_name(entry) : "") + "," + (entry.barrier ? "1" : "0") + "\n";
+    text += std::string(kernel ? phase_name(entry) : "") + "," + (entry.barrier ? "1" : "0") + "," +
+            (kernel ? "" : std::to_string(entry.bytes)) + "\n";
   }
   return text;
 }

@@ -2,23 +2,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "gravitation.h"
 #include "pcphys/pcphys.h"
-#include "pcphys/write_kernel.h"
 
 using namespace pcphys;
 
-PCPHYS_PAIR_KERNEL(gravitation,
-                   (PC_SELF(Vec3) position, PC_SELF(Real) mass, PC_OTHER(Vec3) position_other, PC_OTHER(Real) mass_other,
-                    PC_ADD(Vec3) force, PC_SUM(Real) potential, PC_PARAM(Real) G, PC_PARAM(Real) softening),
-                   {
-                     Vec3 away = pc_sub(position_other, position);
-                     precise Real r2 = pc_dot(away, away) + softening;
-                     Real r = pc_sqrt(r2);
-                     precise Real masses = mass * mass_other;
-                     Real well = pc_div(G * masses, r);
-                     potential = -well;
-                     force = pc_scale(away, pc_div(well, r2));
-                   })
 PCPHYS_KERNEL(totals,
               (PC_IN(Real) mass, PC_IN(Vec3) displacement_rate, PC_IN(Real) potential, PC_SUM(Real) energy,
                PC_SUM(Vec3) momentum),

@@ -87,6 +87,7 @@ TEST_CASE("run: all places of all stages end in the same bits") {
   CHECK(json["stage_backends"]["joints"] == "cpu");
   CHECK(json["stage_backends"]["impulses"] == "gl");
   CHECK(json["transfers_bytes"].get<long>() > 0);
+  CHECK(json["transfers_bytes"].get<long>() == json["uploads_bytes"].get<long>() + json["downloads_bytes"].get<long>());
 }
 
 TEST_CASE("run: files, and nothing beside JSON on standard output") {
@@ -170,6 +171,16 @@ TEST_CASE("plan: what is left out, and where kernels run") {
   CHECK(command("plan balls --steps 30 --json -").code == 0);
   const Json gl = command("plan balls --backend gl --device 99 --json -").json();  // a plan is data: it needs no device
   CHECK(gl["entries"][0]["place"] == "gl");
+  long up = 0, down = 0;
+  for (const Json& entry : gl["entries"])
+    if (entry["kind"] != "kernel") (entry["kind"] == "upload" ? up : down) += entry["bytes"].get<long>();
+  CHECK(down > 0);
+  CHECK(gl["uploads_bytes"] == up);
+  CHECK(gl["downloads_bytes"] == down);
+  CHECK(balls["uploads_bytes"] == 0);
+  const std::string text = command("plan balls --backend gl --device 99").out;
+  CHECK(text.find("upload pose, ") != std::string::npos);
+  CHECK(text.find("transfers: up to ") != std::string::npos);
 }
 
 TEST_CASE("scenes, doctor, help and version answer") {

@@ -32,6 +32,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
   std::set<Buffer> written, read;  // on GL since the last barrier
   std::set<std::size_t> unused;    // transfers that nobody has used yet
   const auto here = [](Place p) { return std::size_t(p); };
+  holders[Buffer::island_labels].on[1] = true;  // kernels there begin anew
 
   for (std::size_t i = 0; i < plan.entries.size(); i++) {
     const PlanEntry& e = plan.entries[i];
@@ -41,7 +42,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
     if (e.kind != PlanEntry::Kind::kernel) {
       CHECK((e.place == Place::gl) == (e.kind == PlanEntry::Kind::upload));
       CHECK_FALSE(scratch_of_solver(e.buffer));
-      if (e.kind == PlanEntry::Kind::download) CHECK(e.buffer < Buffer::table_buffers);
+      if (e.kind == PlanEntry::Kind::download) CHECK((e.buffer < Buffer::table_buffers || e.buffer == Buffer::island_labels));
       Holder& h = holders[e.buffer];
       const Place from = e.place == Place::gl ? Place::cpu : Place::gl;
       CHECK_MESSAGE(h.on[here(from)], text_of(e.buffer) << " is copied from where it is old");
@@ -58,7 +59,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
     }
 
     const KernelSchema& k = schema(e.kernel);
-    CHECK(e.place == signature.places[std::size_t(k.stage)]);
+    CHECK(e.place == (k.stage == Stage::islands ? Place::gl : signature.places[std::size_t(k.stage)]));
     bool hazard = false;
     for (const Access& a : k.accesses) {
       if (scratch_of_solver(a.buffer)) {
@@ -95,6 +96,10 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
     CHECK_MESSAGE(h.on[0], std::string(p.name) << " is not on the host after the step");
     if (const auto copy = h.copies.find(Place::cpu); copy != h.copies.end()) unused.erase(copy->second.entry);
   }
+  if (signature.islands) {
+    CHECK_MESSAGE(holders[Buffer::island_labels].on[0], "who is in which island is not on the host after the step");
+    unused.erase(holders[Buffer::island_labels].copies.at(Place::cpu).entry);
+  }
   for (std::size_t i : unused)
     // what both sides write comes to the host in the end: the next step begins there
     CHECK_MESSAGE(plan.entries[i].buffer == Buffer::node_pending,
@@ -125,7 +130,11 @@ template <class Visit> void for_all_needs(Visit&& visit) {
 }  // namespace
 
 TEST_CASE("every kernel finds current data; no copy is redundant; no hazard is without a barrier") {
-  for_all_needs([](const PlanSignature& s) { follow(s, make_plan(s)); });
+  for_all_needs([](PlanSignature s) {
+    follow(s, make_plan(s));
+    s.islands = true;
+    follow(s, make_plan(s));
+  });
 }
 
 TEST_CASE("all on the cpu: no transfer, no barrier") {

@@ -63,7 +63,8 @@ std::string page() {
     for (const Access& a : s.accesses)
       lists[a.write] += (lists[a.write].empty() ? "" : ", ") + std::string(schema(a.buffer).name);
     constexpr const char* domains[] = {"bodies", "contacts",    "free contacts", "tree contacts",
-                                       "joints", "free joints", "tree joints",   "trees"};
+                                       "joints", "free joints", "tree joints",   "trees",
+                                       "all bodies", "edges"};
     out << "| `" << s.name << "` | " << name(s.stage) << " | " << domains[std::size_t(s.domain)] << " | " << lists[0] << " | "
         << lists[1] << " |\n";
   }

@@ -22,12 +22,13 @@ inline void must(const pcphys::Status& status) {
   if (!status) stop(status.error().message.c_str());
 }
 
-/// Writes rows where the program was called with --csv FILE. A column "x exact" is the closed form of the column "x".
+/// Writes rows where the program was called with --csv FILE, or with another option. A column "x exact" is the closed form of the
+/// column "x".
 class Csv {
  public:
-  Csv(int argc, char** argv, const char* header) {
-    if (argc != 3 || std::strcmp(argv[1], "--csv") != 0) return;
-    if (!(file_ = std::fopen(argv[2], "w"))) stop("The file of --csv cannot be written.");
+  Csv(int argc, char** argv, const char* header, const char* option = "--csv") {
+    if (argc != 3 || std::strcmp(argv[1], option) != 0) return;
+    if (!(file_ = std::fopen(argv[2], "w"))) stop("The file for rows cannot be written.");
     std::fprintf(file_, "%s\n", header);
   }
   ~Csv() {
@@ -45,11 +46,11 @@ class Csv {
   std::FILE* file_ = nullptr;
 };
 
-/// Steps the world to `seconds`, 60 steps a second, and calls `after(time)` after each step.
-template <class After> void run(pcphys::World& world, pcphys::Stepper& stepper, double seconds, After after) {
-  for (int step = 1; step <= std::lround(seconds * 60); step++) {
-    if (const pcphys::StepReport& report = stepper.step(world, 1.0 / 60); !report) stop(report.error.message.c_str());
-    after(step / 60.0);
+/// Steps the world to `seconds`, `rate` steps a second, and calls `after(time)` after each step.
+template <class After> void run(pcphys::World& world, pcphys::Stepper& stepper, double seconds, After after, int rate = 60) {
+  for (int step = 1; step <= std::lround(seconds * rate); step++) {
+    if (const pcphys::StepReport& report = stepper.step(world, 1.0 / rate); !report) stop(report.error.message.c_str());
+    after(step / double(rate));
   }
 }
 

@@ -79,6 +79,8 @@ inline constexpr double largest_joint_turn = 0.5;
 /// touches.
 inline constexpr double largest_spin_change = 0.006;
 inline constexpr std::uint32_t large_island = 256;
+/// Rounds after which a device that finds islands is stopped; a chain of a million bodies takes 23.
+inline constexpr std::uint32_t most_island_rounds = 1000;
 /// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half the sub-step)^2 is
 /// to stay below this.
 inline constexpr double loop_stiffness = 0.02;

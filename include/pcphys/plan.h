@@ -13,8 +13,9 @@ namespace pcphys {
 enum class Place : std::uint8_t { cpu, gl };
 const char* name(Place place);
 
-/// The parts of a sub-step that are put on a place each.
-enum class Stage : std::uint8_t { integrate, joints, impulses };
+/// The parts of a sub-step that are put on a place each, and what comes after the last where islands are found on a device
+/// (StepSettings::islands).
+enum class Stage : std::uint8_t { integrate, joints, impulses, islands };
 std::string_view name(Stage stage);
 
 /// How bodies move between impulses (docs/integrate.md). `verlet`: exact drag, and free rotation of second order. `seed`:
@@ -47,6 +48,9 @@ struct PlanEntry {
   std::uint8_t octave = 0;         // of the islands that a kernel is for; octave_count more for those of fourth order
   const OwnKernel* own = nullptr;  // a kernel of the host's own, in place of `kernel`; of a transfer, one that uses the buffer
   std::uint32_t again = 0;  // runs only while the kernel's run before struck something, and at most so often; 0: once, always
+  /// Of a transfer that `Stepper::plan_for` names: the whole buffer, in that world. 0 in plans of no world (`Stepper::plan`), which
+  /// stand for steps of any size.
+  std::uint64_t bytes = 0;
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
 };
 
@@ -75,7 +79,14 @@ struct StepPlan {
   friend bool operator==(const StepPlan&, const StepPlan&) = default;
 };
 
-/// A line an entry: where, what, its phase, what it reads and writes; then what was left out.
+/// Bytes of all transfers of a step whose plan has them (PlanEntry::bytes). The most that go: an upload is spared where the device
+/// has what the host has.
+struct TransferBytes {
+  std::uint64_t up = 0, down = 0;
+};
+TransferBytes transfer_bytes(const StepPlan& plan);
+
+/// A line an entry: where, what, its phase, what it reads and writes, of a transfer its bytes; then their sums, and what was left out.
 std::string to_text(const StepPlan& plan);
 std::string_view kernel_name(const PlanEntry& entry);
 std::string_view buffer_name(const PlanEntry& entry);

@@ -40,6 +40,9 @@ struct StepSettings {
 
   /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md). A step with it off wakes what sleeps.
   bool sleep = false;
+  /// Where who is in which island is found after a step: by union-find on the CPU, or by label propagation on the device. The result is
+  /// the same.
+  Place islands = Place::cpu;
   double sleep_speed = constants::sleep_speed;  // what is faster is not at rest [m/s]
   double sleep_spin = constants::sleep_spin;    // nor what spins faster [rad/s]
   double sleep_time = constants::sleep_time;    // how long an island is at rest before it sleeps, above 0 [s]
@@ -74,6 +77,7 @@ struct StepReport {
   /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
   std::uint64_t transfer_bytes = 0;                    // between host and device
+  std::uint64_t upload_bytes = 0;                      // of them, to the device
   std::vector<BodyId> frozen;                          // in this step; see World::frozen
   double total_ms = 0;                                 // and `ms`: zeros without StepSettings::timings
   std::array<double, std::size_t(Timer::count)> ms{};  // by Timer
@@ -115,7 +119,8 @@ class Stepper {
   /// From the next step on; of the type that it was given as.
   Status set_parameter(std::string_view kernel, const KernelParameter& parameter);
 
-  /// What the last step ran, or (`plan_for`) what a step of this world would.
+  /// What the last step ran, or (`plan_for`) what a step of this world would, with the bytes of its transfers: for contacts as the last
+  /// step left them, and islands of the sub-steps that the settings ask for. It needs no device.
   const StepPlan& plan() const;
   Result<StepPlan> plan_for(const World& world, double dt);
 

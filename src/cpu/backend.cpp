@@ -94,6 +94,7 @@ class CpuBackend final : public Backend {
   }
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override {
     void* const row = buffers_[std::size_t(buffer)];
+    if (schema(buffer).reals == 0) return take(static_cast<std::uint32_t*>(row));
     return kernels_.f64 ? take(static_cast<double*>(row) + quad * 4 + 3) : take(static_cast<float*>(row) + quad * 4 + 3);
   }
   Status finish() override { return {}; }

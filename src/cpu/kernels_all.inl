@@ -19,6 +19,8 @@ using element_tree_parents = uint;
 using element_tree_ends = uint;
 using element_tree_order = uint;
 using element_contact_paths = uint;
+using element_island_ends = uint;
+using element_island_labels = uint;
 #define PC_TABLE(table, doc)
 #define PC_BUFFER(table, buffer, quads, doc) using element_##buffer = Scalar; constexpr uint quads_##buffer = quads;
 #define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc)
@@ -51,6 +53,8 @@ using element_contact_paths = uint;
 #define PC_LOOP_free_joint PC_LOOP_contact
 #define PC_LOOP_tree_joint PC_LOOP_contact
 #define PC_LOOP_tree PC_LOOP_contact
+#define PC_LOOP_row for (uint k = call.begin; k < call.end; k++) pc_kernel(io, k);
+#define PC_LOOP_edge PC_LOOP_row
 #define PC_READ(buffer) io.buffer = static_cast<const element_##buffer*>(call.buffers[unsigned(Buffer::buffer)]);
 #define PC_WRITE(buffer) io.buffer = static_cast<element_##buffer*>(call.buffers[unsigned(Buffer::buffer)]);
 #define PC_KERNEL(name, domain, stage, accesses)                     \

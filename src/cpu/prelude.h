@@ -150,6 +150,16 @@ PC_INLINE void pc_raise(Scalar* flag) {
   __atomic_store(flag, &up, __ATOMIC_RELAXED);
 }
 
+// Lowers a number of a list, of which many may be at once, and raises the list's flag where that changed it.
+PC_INLINE void pc_lower(uint* list, uint i, uint value) {
+  uint old = __atomic_load_n(list + i, __ATOMIC_RELAXED);
+  while (value < old)
+    if (__atomic_compare_exchange_n(list + i, &old, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+      __atomic_store_n(list, 1u, __ATOMIC_RELAXED);
+      return;
+    }
+}
+
 }  // namespace PC_NAMESPACE
 }  // namespace pcphys
 
@@ -169,6 +179,7 @@ PC_INLINE void pc_raise(Scalar* flag) {
 #define PC_ORDER(buffer, slot) pc_index(io.buffer + std::size_t((slot).block) * PC_LANES)
 // lists: what is the same for all lanes of a block, one of each lane from `i` on, slots of the same lanes elsewhere
 #define PC_UINT(buffer, i) io.buffer[i]
+#define PC_LOWER(buffer, i, value) pc_lower(io.buffer, i, value)
 #define PC_BLOCK(slot) (slot).block
 #define PC_W uint(PC_LANES)
 #define PC_EACH(buffer, slot, i) pc_each(io.buffer, slot, i)

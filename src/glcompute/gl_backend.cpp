@@ -29,10 +29,7 @@ class GlBackend final : public Backend {
 
   std::string device() const override { return context_->report().renderer; }
   std::uint32_t width() const override { return gl_width; }
-  /// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
-  std::uint32_t width_for(Domain domain, std::uint32_t count) const override {
-    return domain == Domain::tree && count < fewest_alike ? 1 : gl_width;
-  }
+  std::uint32_t width_for(Domain domain, std::uint32_t count) const override { return gl_width_for(domain, count); }
   Status attach(Buffer buffer, void* host, std::size_t bytes) override;
   Status reserve(Buffer buffer, std::size_t slots) override;
   std::size_t held_bytes(Buffer buffer) const override { return memory_.held_bytes(buffer); }
@@ -179,7 +176,7 @@ Status GlBackend::prepare(const OwnKernel& kernel) {
 }
 
 void GlBackend::dispatch_all(const KernelRun& run, std::int32_t range_location) {
-  const std::uint32_t lanes = run.own || schema(run.kernel).domain == Domain::body ? 1 : run.lanes;
+  const std::uint32_t lanes = run.own || one_by_one(schema(run.kernel).domain) ? 1 : run.lanes;
   for (const Range& range : run.ranges) {
     if (range.begin >= range.end) continue;
     if (barrier_due_) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -219,6 +216,7 @@ Status GlBackend::run_in_two(const KernelRun& run) {
 Result<bool> GlBackend::take_flag(Buffer buffer, std::uint32_t quad) {
   if (Status status = hold(); !status) return status.error();
   settle();
+  if (schema(buffer).reals == 0) return memory_.at(buffer).take(staging_, 0, sizeof(std::uint32_t));
   const std::size_t bytes = real_bytes();
   return memory_.at(buffer).take(staging_, (quad * 4 + 3) * bytes, bytes);
 }
@@ -232,6 +230,11 @@ Status GlBackend::finish() {
 }
 
 }  // namespace
+
+/// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
+std::uint32_t gl_width_for(Domain domain, std::uint32_t count) {
+  return domain == Domain::tree && count < fewest_alike ? 1 : gl_width;
+}
 
 Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context) {
   Result<std::unique_ptr<GlContext>> context = host_context ? GlContext::adopt_current() : GlContext::open(device);

@@ -61,6 +61,8 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 #define PC_ORDER(buffer, slot) io_##buffer[(slot).block * PC_W + (slot).lane]
 // lists: what is the same for all lanes of a block, one of each lane from `i` on, slots of the same lanes elsewhere
 #define PC_UINT(buffer, i) io_##buffer[i]
+// lowers a number of a list, of which many may be at once, and raises the list's flag, its first, where that changed it
+#define PC_LOWER(buffer, i, value) if (io_##buffer[i] > (value) && atomicMin(io_##buffer[i], value) > (value)) io_##buffer[0] = 1u
 #define PC_BLOCK(slot) (slot).block
 #define PC_EACH(buffer, slot, i) io_##buffer[(i) + (slot).lane]
 #define PC_NODE(slot, node) Slot(node, (slot).lane)

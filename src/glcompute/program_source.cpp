@@ -31,7 +31,9 @@ std::string buffer_declarations(const KernelSchema& kernel, Precision precision)
 std::string main_text(Domain domain) {
   std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
-  text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n" : "  pc_kernel(Slot(k / PC_W, k % PC_W));\n";
+  text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n"
+          : one_by_one(domain)   ? "  pc_kernel(k);\n"
+                                 : "  pc_kernel(Slot(k / PC_W, k % PC_W));\n";
   return text + "}\n";
 }
 

@@ -4,9 +4,10 @@
 //   PC_KERNEL(name, domain, stage, accesses)
 //
 // domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once; free_contact and
-// tree_contact are those without and with a body of a tree, free_joint and tree_joint the same of joints that close loops), tree (a joint tree a lane, blocks of trees of one shape).
-// stage: whose backend runs it. accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in
-// GLSL; PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum).
+// tree_contact are those without and with a body of a tree, free_joint and tree_joint the same of joints that close loops), tree
+// (a joint tree a lane, blocks of trees of one shape), row (every row of bodies), edge (two bodies that act on each other).
+// stage: whose backend runs it; islands: a device's, in place of the host's union-find (plan/islands.h).
+// accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in GLSL; PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum).
 // Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
 // a slot), `<domain>_order` (a slot's table row), and the slots' scratch listed below.
 //
@@ -85,4 +86,6 @@ PC_KERNEL(tree_contact_solve, tree_contact, impulses, PC_READ(contact_paths) PC_
 PC_KERNEL(contact_restitution, contact, impulses, PC_READ(contact_ends) PC_READ(contact_rows) PC_READ(contact_impulses) PC_READ(inertia) PC_READ(delta) PC_WRITE(motion))
 PC_KERNEL(contact_touch, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(touch))
 PC_KERNEL(contact_store, contact, impulses, PC_READ(contact_order) PC_READ(contact_rows) PC_READ(contact_impulses) PC_WRITE(contact))
+PC_KERNEL(island_start, row, islands, PC_WRITE(island_labels))
+PC_KERNEL(island_join, edge, islands, PC_READ(island_ends) PC_WRITE(island_labels))
 #endif

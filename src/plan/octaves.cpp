@@ -1,8 +1,6 @@
 #include "plan/octaves.h"
 
 #include <algorithm>
-#include <numeric>
-#include <utility>
 
 #include "pcphys/constants.h"
 #include "plan/forest.h"
@@ -11,37 +9,6 @@
 #include "plan/spins.h"
 
 namespace pcphys {
-
-void Islands::build(const WorldState& state) {
-  if (std::exchange(built_, true)) return;
-  parent_.resize(state.bodies.size());
-  std::iota(parent_.begin(), parent_.end(), 0u);
-  size_.assign(parent_.size(), 1);
-  const auto join_moving = [&](std::uint32_t a, std::uint32_t b) {
-    if (!state.stands(a) && !state.stands(b)) join(a, b);
-  };
-  for (const auto& [a, b] : state.contacts.ends) join_moving(a, b);
-  for (std::uint32_t row = 1; row < state.joints.size(); row++)
-    join_moving(state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b));
-}
-
-std::uint32_t Islands::root(std::uint32_t body) const {
-  while (parent_[body] != body) body = parent_[body];
-  return body;
-}
-
-void Islands::join(std::uint32_t a, std::uint32_t b) {
-  const auto find = [&](std::uint32_t body) {
-    for (; parent_[body] != body; body = parent_[body]) parent_[body] = parent_[parent_[body]];
-    return body;
-  };
-  a = find(a);
-  b = find(b);
-  if (a == b) return;
-  if (a > b) std::swap(a, b);
-  parent_[b] = a;
-  size_[a] += size_[b];
-}
 
 std::uint8_t highest_octave(const StepSettings& settings) {
   std::uint8_t octave = 0;

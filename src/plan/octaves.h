@@ -7,6 +7,7 @@
 
 #include "pcphys/step.h"
 #include "plan/columns.h"
+#include "plan/islands.h"
 #include "plan/loads.h"
 #include "world/state.h"
 
@@ -17,25 +18,6 @@ class TreeNodes;
 
 /// Of a step, whatever asks for them.
 inline constexpr std::uint32_t most_substeps = 1000;
-
-/// Bodies that act on each other, by contacts or joints: a union-find. Kinematic bodies belong to islands, since what they carry
-/// follows their way from sub-step to sub-step; fixed ones do not.
-class Islands {
- public:
-  /// Follows a change of contacts, joints or kinds of bodies.
-  void forget() { built_ = false; }
-  /// Once for each change.
-  void build(const WorldState& state);
-  /// The lowest row of the body's island.
-  std::uint32_t root(std::uint32_t body) const;
-  /// How many bodies the island of that root has.
-  std::uint32_t size(std::uint32_t root) const { return size_[root]; }
-
- private:
-  void join(std::uint32_t a, std::uint32_t b);
-  bool built_ = false;
-  std::vector<std::uint32_t> parent_, size_;  // by body row
-};
 
 /// The highest octave within StepSettings::refinement and the most sub-steps of a step.
 std::uint8_t highest_octave(const StepSettings& settings);

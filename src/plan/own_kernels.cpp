@@ -321,6 +321,8 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   k->follows = def.follows;
   if (k->name.empty()) return bad(*k, "has no name.");
   if (k->body.empty() && !k->in_cpp()) return bad(*k, "has neither a C++ nor a GLSL side; write it with PCPHYS_KERNEL.");
+  if (k->stage == Stage::islands)
+    return bad(*k, "is of the stage islands, which has kernels of the library alone; use integrate, joints or impulses.");
   const Result<Table> table = s.table_of(def.over);
   if (!table) return table.error();
   k->table = *table;

@@ -25,6 +25,7 @@ class Builder {
       for (const OwnArgument& a : k->arguments)
         if (a.of_property() && a.property.starts_with(own_prefix)) at(a.buffer).of_library = true;
     for (Known& b : buffers_) b.current[std::size_t(Place::cpu)] = true;
+    at(Buffer::island_labels).current[std::size_t(Place::gl)] = true;  // its kernels begin anew
   }
 
   /// The kernels that follow are for islands of this octave.
@@ -33,7 +34,7 @@ class Builder {
   /// `again`: PlanEntry::again.
   void kernel(Kernel kernel, Phase phase, std::uint32_t substep, std::uint32_t again = 0) {
     const KernelSchema& k = schema(kernel);
-    const Place place = signature_.places[std::size_t(k.stage)];
+    const Place place = k.stage == Stage::islands ? Place::gl : signature_.places[std::size_t(k.stage)];
     add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses, k.domain);
   }
 
@@ -59,6 +60,9 @@ class Builder {
     own(stage, after, substep, count, true);
     own(stage, after, substep, count, false);
   }
+
+  /// What the host is to know of it when the step is made.
+  void bring_home(Buffer buffer) { bring(buffer, Place::cpu, plan_.entries.back().substep); }
 
   void results(std::uint32_t substep) {
     for (std::size_t b = 0; b < buffers_.size(); b++)
@@ -150,6 +154,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   const bool idle = s.sleepers && !s.bodies;
   constexpr const char* all_sleep = "all bodies sleep";
   if (s.sleepers && s.bodies) out("sleeping islands", "they are at rest, and nothing has touched them");
+  if (s.islands_known) out("islands", "contacts and joints are those of the step before");
   if (!s.bodies) out("integrate", idle ? all_sleep : "no body moves");
   if (s.bodies && !s.drag) out("drag", "no body has any");
   const bool seed = s.integrator == Integrator::seed;
@@ -317,6 +322,16 @@ void smooth_substeps(Builder& b, const PlanSignature& s, unsigned octave) {
   b.kernel(Kernel::tree_keep, Phase::last, last);
 }
 
+/// Who is in which island: rounds of label propagation until no label falls.
+void label_islands(Builder& b, const StepPlan& plan) {
+  const std::uint32_t last = plan.entries.empty() ? 0 : plan.entries.back().substep;
+  b.enter(0);
+  b.kernel(Kernel::island_start, Phase::last, last);
+  b.kernel(Kernel::island_join, Phase::last, last);
+  b.kernel(Kernel::island_join, Phase::last, last, constants::most_island_rounds);
+  b.bring_home(Buffer::island_labels);
+}
+
 }  // namespace
 
 std::span<const Access> accesses(const PlanEntry& entry) {
@@ -338,7 +353,7 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   plan.own.assign(own.begin(), own.end());
   plan.flight = in_flight(s, own);
   leave_out(s, plan);
-  if (!s.bodies && own.empty()) return plan;
+  if (!s.bodies && own.empty() && !s.islands) return plan;
   Builder b(s, own, plan);
   if (!s.bodies) own_alone(b, s);
   if (plan.flight) fly(b, s);
@@ -347,6 +362,7 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   for (unsigned octave = 0; s.bodies && octave < octave_count; octave++)
     if (s.octaves >> (octave_count + octave) & 1) smooth_substeps(b, s, octave);
   b.totals();
+  if (s.islands) label_islands(b, plan);
   if (!plan.entries.empty()) b.results(plan.entries.back().substep);
   return plan;
 }

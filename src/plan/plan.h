@@ -39,6 +39,8 @@ struct PlanSignature {
   bool impacts = false;                     // or is between shapes that meet in flight
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
   bool touches = false;                     // the host asks for events of contacts
+  bool islands = false;                     // a device is to say who is in which island
+  bool islands_known = false;               // or has said it
   bool joints() const { return free_joints || tree_joints; }
   bool contacts() const { return free_contacts || tree_contacts; }
   /// Pins of pivots that nothing else acts on have nothing to solve.

@@ -82,7 +82,7 @@ void stop(WorldState& s, std::uint32_t row) {
 
 void Sleepers::build(const WorldState& state) {
   islands_.forget();
-  islands_.build(state);
+  if (labels_.empty()) islands_.build(state);
   awake_.assign(state.bodies.size(), false);
 }
 
@@ -91,24 +91,24 @@ std::uint32_t Sleepers::wake_stirred(WorldState& state) {
   build(state);
   const auto stirred = [&](std::uint32_t row) { return state.tables.get(Buffer::rest, row, rest_stirred) > 0; };
   for (std::uint32_t row = 1; row < state.bodies.size(); row++)
-    if (state.goes(row) || (state.asleep(row) && stirred(row))) awake_[islands_.root(row)] = true;
+    if (state.goes(row) || (state.asleep(row) && stirred(row))) awake_[root(row)] = true;
   if (state.stirred > 0)
     for (const auto& [a, b] : state.contacts.ends)
-      if (stirred(a) || stirred(b)) awake_[islands_.root(state.stands(a) ? b : a)] = true;
+      if (stirred(a) || stirred(b)) awake_[root(state.stands(a) ? b : a)] = true;
   return wake_marked(state);
 }
 
 std::uint32_t Sleepers::wake_touched(WorldState& state, std::span<const std::uint32_t> touched) {
   if (touched.empty()) return 0;
   build(state);
-  for (const std::uint32_t row : touched) awake_[islands_.root(row)] = true;
+  for (const std::uint32_t row : touched) awake_[root(row)] = true;
   return wake_marked(state);
 }
 
 std::uint32_t Sleepers::wake_marked(WorldState& state) {
   std::uint32_t woke = 0;
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
-    if (!state.asleep(row) || !awake_[islands_.root(row)]) continue;
+    if (!state.asleep(row) || !awake_[root(row)]) continue;
     for (const RestField field : {rest_quiet_time, rest_asleep, rest_stirred}) state.tables.set(Buffer::rest, row, field, 0);
     woke++;
   }
@@ -117,7 +117,8 @@ std::uint32_t Sleepers::wake_marked(WorldState& state) {
 }
 
 void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
-                      const StepSettings& settings, bool changed, StepReport& report) {
+                      const StepSettings& settings, bool changed, std::span<const std::uint32_t> labels, StepReport& report) {
+  labels_ = labels;
   const bool single = state.tables.precision() == Precision::f32;
   const double sleep_time = single ? double(float(settings.sleep_time)) : settings.sleep_time;  // as the table holds it
   const bool some =
@@ -130,12 +131,13 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
   if (state.stirred > 0) state.calm();
   report.asleep = state.sleepers;
   report.islands_asleep = count_islands(state);
+  labels_ = {};
 }
 
 std::uint32_t Sleepers::choose(WorldState& state, std::span<const std::uint32_t> moved, double sleep_time) {
   build(state);
   for (const std::uint32_t row : moved)
-    if (state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time) awake_[islands_.root(row)] = true;
+    if (state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time) awake_[root(row)] = true;
   mark_kept_awake(state);
   return lay_down(state, moved);
 }
@@ -145,16 +147,16 @@ void Sleepers::mark_kept_awake(const WorldState& state) {
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];
     if (joint.def.motor.torque <= 0 || joint.def.motor.speed == 0) continue;
-    for (const std::uint32_t body : {joint.body_a, joint.body_b}) awake_[islands_.root(state.body_ids.row(body))] = true;
+    for (const std::uint32_t body : {joint.body_a, joint.body_b}) awake_[root(state.body_ids.row(body))] = true;
   }
   for (std::uint32_t i = 0; state.callbacks > 0 && i < state.forces.size(); i++)
-    if (state.forces[i].callback) awake_[islands_.root(state.body_ids.row(state.forces[i].body))] = true;
+    if (state.forces[i].callback) awake_[root(state.body_ids.row(state.forces[i].body))] = true;
 }
 
 std::uint32_t Sleepers::lay_down(WorldState& state, std::span<const std::uint32_t> moved) {
   std::uint32_t fell = 0;
   for (const std::uint32_t row : moved) {
-    if (row == 0 || awake_[islands_.root(row)]) continue;
+    if (row == 0 || awake_[root(row)]) continue;
     stop(state, row);
     state.tables.set(Buffer::rest, row, rest_asleep, 1);
     fell++;
@@ -171,7 +173,7 @@ std::uint32_t Sleepers::count_islands(const WorldState& state) {
   if (state.sleepers == 0) return 0;
   build(state);
   for (std::uint32_t row = 1; row < state.bodies.size(); row++)
-    count_ += state.asleep(row) && islands_.root(row) == row;  // a root is the lowest row of its island
+    count_ += state.asleep(row) && root(row) == row;  // a root is the lowest row of its island
   return count_;
 }
 

@@ -1,4 +1,4 @@
-// Who sleeps (docs/sleeping.md): whole islands, once all of their bodies have been slow for a time, until something wakes them. Found on the
+// Who sleeps (docs/sleeping.md): whole islands, once all of their bodies have been slow for a time, until something wakes them. Decided on the
 // host from the tables, whatever the places of the stages, so it is the same for all of them.
 #pragma once
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pcphys/step.h"
-#include "plan/octaves.h"
+#include "plan/islands.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -54,12 +54,14 @@ class Sleepers {
   std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
   /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep. `before`: the poses that
   /// the step began with; null where velocities tell enough, of bodies in flight. `changed`: islands are others than after the last
-  /// step. Reports who sleeps.
+  /// step. `labels`: by body row the lowest row of its island, where a device has found them; empty: they are found here. Reports who
+  /// sleeps.
   void follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
-              const StepSettings& settings, bool changed, StepReport& report);
+              const StepSettings& settings, bool changed, std::span<const std::uint32_t> labels, StepReport& report);
 
  private:
   void build(const WorldState& state);
+  std::uint32_t root(std::uint32_t body) const { return labels_.empty() ? islands_.root(body) : labels_[body]; }
   std::uint32_t wake_marked(WorldState& state);
   /// Which fall asleep; how many bodies that are.
   std::uint32_t choose(WorldState& state, std::span<const std::uint32_t> moved, double sleep_time);
@@ -68,7 +70,8 @@ class Sleepers {
 
   std::uint32_t count_islands(const WorldState& state);
 
-  Islands islands_;
+  Islands islands_;                         // where there are no labels
+  std::span<const std::uint32_t> labels_;   // during `follow`
   std::vector<char> awake_;                 // by the root of an island
   std::uint64_t serial_ = 0, counted_ = 0;  // the world and its rest_version that count_ is of
   std::uint32_t count_ = 0;

@@ -52,6 +52,12 @@ std::string join(const std::vector<std::string_view>& names) {
 std::vector<std::string_view> reads(const PlanEntry& entry) { return accessed(entry, false); }
 std::vector<std::string_view> writes(const PlanEntry& entry) { return accessed(entry, true); }
 
+TransferBytes transfer_bytes(const StepPlan& plan) {
+  TransferBytes all;
+  for (const PlanEntry& e : plan.entries) (e.kind == PlanEntry::Kind::upload ? all.up : all.down) += e.bytes;
+  return all;
+}
+
 std::string to_text(const StepPlan& plan) {
   std::string text = "sub-steps " + std::to_string(plan.substeps) + "\n";
   text += "sub     place stage      what                 phase   reads -> writes (B: waits for earlier writes)\n";
@@ -72,9 +78,13 @@ std::string to_text(const StepPlan& plan) {
       line += join(reads(e)) + " -> " + join(writes(e));
     } else {
       line += (e.kind == PlanEntry::Kind::upload ? "upload " : "download ") + std::string(buffer_name(e));
+      if (e.bytes > 0) line += ", " + std::to_string(e.bytes) + " bytes";
     }
     text += line + (e.barrier ? "  B\n" : "\n");
   }
+  if (const TransferBytes all = transfer_bytes(plan); all.up + all.down > 0)
+    text +=
+        "transfers: up to " + std::to_string(all.up) + " bytes to the device, " + std::to_string(all.down) + " bytes from it\n";
   for (const LeftOut& l : plan.left_out) text += "left out: " + l.what + ", since " + l.why + "\n";
   return text;
 }

@@ -67,7 +67,7 @@ class Backend {
   /// Runs kernels, one after the other.
   virtual Status run(std::span<const KernelRun> runs) = 0;
   /// Takes down a flag that kernels raise (PC_RAISE: the last real of quad `quad` of a buffer's first row) and says whether it
-  /// was up. On a device this waits for what was asked for so far.
+  /// was up; of a list its first number (PC_LOWER). On a device this waits for what was asked for so far.
   virtual Result<bool> take_flag(Buffer buffer, std::uint32_t quad) = 0;
   /// Waits until all that was asked for is done, so that a clock around it tells the time it took.
   virtual Status finish() = 0;
@@ -80,6 +80,9 @@ Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint
 /// device: index into the EGL devices, -1 for the first that works. `host_context`: use the context that is
 /// current on the calling thread instead of a headless one of our own.
 Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context);
+
+/// Its `width_for`, which no device changes.
+std::uint32_t gl_width_for(Domain domain, std::uint32_t count);
 
 /// Where steps get their GL backend from: make_gl_backend, until a test puts one there that fails.
 using GlBackendMaker = Result<std::unique_ptr<Backend>> (*)(Precision precision, int device, bool host_context);

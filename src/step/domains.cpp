@@ -33,6 +33,8 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::body_joints: return &schedule.own.body_joints;
     case Buffer::near_first: return &schedule.own.near.first;
     case Buffer::near_rows: return &schedule.own.near.rows;
+    case Buffer::island_ends: return &schedule.islands.ends();
+    case Buffer::island_labels: return &schedule.islands.labels_to_fill();
     default: return nullptr;
   }
 }
@@ -60,6 +62,8 @@ void pack(Domain domain, std::uint32_t lanes, Schedule& schedule) {
 }
 std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsigned octave) {
   if (domain == Domain::body) return schedule.ranges(octave);
+  if (domain == Domain::row) return schedule.islands.rows();
+  if (domain == Domain::edge) return schedule.islands.edges();
   if (domain == Domain::joint) return schedule.joints.ranges(octave);
   if (domain == Domain::free_joint) return schedule.joints.free_ranges(octave);
   if (domain == Domain::tree_joint) return schedule.joints.tree_ranges(octave);
@@ -84,6 +88,7 @@ std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule&
       buffer == Buffer::joined || buffer == Buffer::body_joints)
     return schedule.own.version + 1;
   if (buffer == Buffer::near_first || buffer == Buffer::near_rows) return schedule.own.near.version + 1;
+  if (buffer == Buffer::island_ends) return schedule.islands.version() + 1;
   return schedule.trees.version() + 1;
 }
 

@@ -170,7 +170,8 @@ struct Stepper::Inside {
   /// The step was made: what is at rest may fall asleep.
   void let_sleep(WorldState& s, double dt) {
     const AlignedBytes* before = plan->flight ? nullptr : runner.before(Buffer::pose);  // in flight some places keep none
-    sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, regrouped, report);
+    const std::span<const std::uint32_t> labels = finds_islands() ? schedule.islands.labels() : std::span<const std::uint32_t>();
+    sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, regrouped, labels, report);
     if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
     update_structure(s);
     PlanSignature nothing = signature(settings, s, schedule);
@@ -275,7 +276,7 @@ struct Stepper::Inside {
     wanted.shapes = detector.possible();
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
-    if (ok = order_own(s, dt); !ok) return undo(s, ok);
+    if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
     if (const std::uint32_t rows = schedule.trees.nodes().rows();
@@ -287,6 +288,7 @@ struct Stepper::Inside {
     wanted.rolling = found.rolling;
     wanted.touches = EventRecorder::of_contacts(settings) && wanted.contacts();
     if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
+    list_islands(s, wanted);
     plan = &plans.find(wanted, own.ordered());
     if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
     lap(Timer::plan);
@@ -295,6 +297,10 @@ struct Stepper::Inside {
     ran = true;
     runner.watch(watched);
     if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
+    if (wanted.islands && !schedule.islands.take())
+      return undo(s, Error{ErrorCode::device_error,
+                           "The device found no end of the islands of this world; find them on the CPU "
+                           "(StepSettings::islands). The world is as it was."});
     const bool left = plan->flight && runner.left();
     if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
     if (own.hosts()) written = own.check_written(s);
@@ -320,13 +326,23 @@ struct Stepper::Inside {
     return {};
   }
 
+  /// What the device is asked about islands, if it is.
+  void list_islands(const WorldState& s, PlanSignature& wanted) {
+    IslandLists& islands = schedule.islands;
+    if (!finds_islands()) return islands.forget();
+    if (regrouped || !islands.listed()) islands.list(s);
+    wanted.islands = !islands.known();
+    wanted.islands_known = islands.known();
+  }
+  bool finds_islands() const { return settings.sleep && settings.islands == Place::gl; }
+
   /// Who comes when in pair kernels and reductions.
-  Status order_own(const WorldState& s, double dt) {
-    OwnLists& lists = schedule.own;
-    lists.order(s, own.kernels(), schedule.octave_of());
+  Status order_own(const WorldState& s, double dt, Schedule& of) const {
+    OwnLists& lists = of.own;
+    lists.order(s, own.kernels(), of.octave_of());
     const double cutoff = own.kernels().cutoff();
     if (cutoff == 0) return {};
-    return lists.near.find(s, schedule.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
+    return lists.near.find(s, of.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
   }
   bool find_strays(const WorldState& s, const AlignedBytes& before) {
     const bool near = own.kernels().cutoff() > 0 && schedule.own.near.find_strays(s, schedule.rows_that_move());

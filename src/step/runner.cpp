@@ -15,7 +15,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 Timer timer_of(Stage stage) {
-  constexpr Timer timers[stage_count] = {Timer::integrate, Timer::joints, Timer::impulses};
+  constexpr Timer timers[] = {Timer::integrate, Timer::joints, Timer::impulses, Timer::plan};
   return timers[std::size_t(stage)];
 }
 Timer timer_of(const PlanEntry& entry) {
@@ -26,6 +26,7 @@ Timer timer_of(const PlanEntry& entry) {
 
 bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
   if (s.integrate == place || s.joints == place || s.impulses == place) return true;
+  if (place == Place::gl && s.sleep && s.islands == place) return true;
   return std::ranges::any_of(own.ordered(), [&](const auto& k) { return place == Place::gl ? !k->in_cpp() : k->body.empty(); });
 }
 
@@ -185,6 +186,7 @@ Status Runner::upload(Buffer buffer, WorldState& state, const Schedule& schedule
   if (of_table(buffer)) (void)state.tables.bytes(buffer);  // another device may have it
   copy.version = version;
   report.transfer_bytes += copy.bytes;
+  report.upload_bytes += copy.bytes;
   return d.backend->upload(buffer);
 }
 
@@ -193,6 +195,7 @@ Status Runner::transfer(const PlanEntry& entry, WorldState& state, StepReport& r
   Copy& copy = d.copy(entry.buffer);
   report.transfer_bytes += copy.bytes;
   if (Status ok = d.backend->download(entry.buffer); !ok) return ok;
+  if (!of_table(entry.buffer)) return {};
   state.tables.touch(entry.buffer);
   copy.version = state.tables.version(entry.buffer) + 1;
   return {};
@@ -290,7 +293,7 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   if (gl_ && entry.place == Place::cpu && !runs[0].ranges.empty())
     for (const Access& a : accesses(entry))
       if (a.write && of_table(a.buffer)) state.tables.touch(a.buffer);
-  if (bound_.plan->flight && !entry.own) {
+  if (bound_.plan->flight && !entry.own && stage(entry) != Stage::islands) {
     Status ok = backend.run(runs);
     if (!ok || runs[0].ranges.empty()) return ok;
     const Result<bool> left = backend.take_flag(Buffer::velocity_parts, left_quad());
@@ -301,10 +304,11 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   if (watched_ && entry.again == 0) return run_watched(entry.place, runs, state);
   if (entry.again == 0) return backend.run(runs);
   if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
+  const Buffer flag = stage(entry) == Stage::islands ? Buffer::island_labels : Buffer::velocity_parts;
   for (std::uint32_t i = 0; i < entry.again; i++) {
-    const Result<bool> struck = backend.take_flag(Buffer::velocity_parts, struck_quad());
-    if (!struck) return struck.error();
-    if (!*struck) break;
+    const Result<bool> more = backend.take_flag(flag, struck_quad());
+    if (!more) return more.error();
+    if (!*more) break;
     if (Status ok = backend.run(runs); !ok) return ok;
   }
   return {};

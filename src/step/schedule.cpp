@@ -249,7 +249,9 @@ void Schedule::list_memory(std::vector<BufferUse>& uses) {
                                                                         {Buffer::tree_parents, &blocks.parents},
                                                                         {Buffer::tree_ends, &blocks.ends},
                                                                         {Buffer::tree_order, &blocks.order},
-                                                                        {Buffer::contact_paths, &contacts.paths()}};
+                                                                        {Buffer::contact_paths, &contacts.paths()},
+                                                                        {Buffer::island_ends, &islands.ends()},
+                                                                        {Buffer::island_labels, &islands.labels_to_fill()}};
   for (const auto& [buffer, list] : lists)
     if (!list->empty()) uses.push_back({schema(buffer).name, "", Place::cpu, list->capacity() * sizeof(list->front())});
 }

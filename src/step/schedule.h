@@ -11,6 +11,7 @@
 #include "plan/pivots.h"
 #include "plan/tree_paths.h"
 #include "step/backend.h"
+#include "step/island_lists.h"
 #include "step/own_lists.h"
 #include "world/state.h"
 
@@ -158,7 +159,7 @@ class Schedule {
   /// Lists and slots, those that are there.
   void list_memory(std::vector<BufferUse>& uses);
   /// Counts the changes of all that stands here, but for how it is packed.
-  std::uint64_t changes() const { return changes_ + own.version + own.near.version; }
+  std::uint64_t changes() const { return changes_ + own.version + own.near.version + islands.version(); }
   std::span<const std::uint32_t> rows_that_move() const { return rows_; }
 
   std::vector<std::uint32_t> bodies;  // rows that move; those of an octave padded with row 0 to a multiple of `padding`
@@ -169,7 +170,8 @@ class Schedule {
   std::uint64_t bodies_version = 0;
   ColouredSlots joints, contacts;  // joints: those that stand in no tree
   TreeSlots trees;
-  OwnLists own;  // of kernels of the host's own
+  OwnLists own;         // of kernels of the host's own
+  IslandLists islands;  // of a device that finds them
 
   static constexpr std::uint32_t padding = 32;  // the widest backend
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "step/inside.h"
+#include "step/transfer_bytes.h"
 
 namespace pcphys {
 
@@ -69,7 +70,14 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   in.choose_order(order, world.state(), schedule.trees, dt);
   wanted.octaves = order.classes(schedule.moving);
   wanted.second_order = order.reasons();
-  return make_plan(wanted, in.own.ordered());
+  if (in.finds_islands() && wanted.bodies && (wanted.contacts() || world.joint_count() > 0)) {
+    schedule.islands.list(world.state());
+    wanted.islands = true;
+  }
+  if (ok = in.order_own(world.state(), dt, schedule); !ok) return ok.error();
+  StepPlan plan = make_plan(wanted, in.own.ordered());
+  measure_transfers(plan, world.state(), schedule);
+  return plan;
 }
 
 Status Stepper::add_kernel(World& world, const KernelDef& def) {

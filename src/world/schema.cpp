@@ -31,6 +31,8 @@ constexpr BufferSchema buffer_schemas[] = {
     {"body_joints", Table::body, 0, "the joints of each body, in the order of their ids"},
     {"near_first", Table::body, 0, "where the list of a body's neighbours begins"},
     {"near_rows", Table::body, 0, "lists of neighbours"},
+    {"island_ends", Table::body, 0, "the two body rows of an edge: bodies that act on each other"},
+    {"island_labels", Table::body, 0, "of a body the lowest row of its island; of row 0 whether some were lowered"},
 #define PC_ROWS(domain, buffer, reals) {#buffer, Table::domain, reals, "scratch of the solver"},
 #include "kernels/kernels.inl"
 #undef PC_ROWS
@@ -96,7 +98,7 @@ std::string_view name(Table table) {
   return names[std::size_t(table)];
 }
 std::string_view name(Stage stage) {
-  constexpr std::string_view names[] = {"integrate", "joints", "impulses"};
+  constexpr std::string_view names[] = {"integrate", "joints", "impulses", "islands"};
   return names[std::size_t(stage)];
 }
 

@@ -36,6 +36,7 @@ class Tables {
   std::size_t real_bytes() const { return precision_ == Precision::f32 ? 4 : 8; }
   std::uint32_t rows(Table table) const { return rows_[std::size_t(table)]; }
   std::size_t row_bytes(Buffer buffer) const { return columns_[index(buffer)].row_bytes; }
+  Table table_of(Buffer buffer) const { return columns_[index(buffer)].table; }
 
   /// New rows hold every property's initial value.
   void resize(Table table, std::uint32_t rows);
