@@ -6,7 +6,8 @@
 namespace pcphys {
 namespace {
 
-constexpr std::uint32_t grain = 16;  // rows that are worth another thread
+constexpr std::uint32_t grain = 16;        // rows that are worth another thread
+constexpr std::uint32_t most_numbers = 9;  // of a value
 
 const std::uint32_t* list(std::span<void* const> buffers, Buffer buffer) {
   return static_cast<const std::uint32_t*>(buffers[std::size_t(buffer)]);
@@ -59,13 +60,14 @@ template <class T> void add_ends(const Ends& e, std::uint32_t begin, std::uint32
   for (std::uint32_t n = begin; n < end; n++) {
     const std::uint32_t row = e.bodies[n], first = e.joints[row], last = e.joints[row + 1];
     if (first == last) continue;
-    T* const value = reinterpret_cast<T*>(e.column + row * e.stride);
-    for (std::uint32_t c = 0; c < e.numbers; c++) {
-      T sum = 0;
-      for (std::uint32_t at = first; at < last; at++)
-        if ((e.joints[at] & 1) == e.side) sum += terms[(e.joints[at] >> 1) * std::size_t{e.numbers} + c];
-      value[c] += sum;
+    T sums[most_numbers] = {};
+    for (std::uint32_t at = first; at < last; at++) {
+      if ((e.joints[at] & 1) != e.side) continue;
+      const T* const term = terms + (e.joints[at] >> 1) * std::size_t{e.numbers};
+      for (std::uint32_t c = 0; c < e.numbers; c++) sums[c] += term[c];
     }
+    T* const value = reinterpret_cast<T*>(e.column + row * e.stride);
+    for (std::uint32_t c = 0; c < e.numbers; c++) value[c] += sums[c];
   }
 }
 using AddEnds = void (*)(const Ends&, std::uint32_t begin, std::uint32_t end);
