@@ -1,10 +1,11 @@
-// Kernels of the host's own over pairs, and totals:
+// Kernels of the host's own over pairs, over joints with their bodies, and totals:
 //   own/all_pairs/PLACE/PRECISION/BODIES   magnets, each on each: interactions/s, and arithmetic operations/s (a division and a root
 //                                          count as one). With PCPHYS_PEAK_GFLOPS, the device's figure in that precision as its maker
 //                                          gives it (two operations a fused multiply-add, of which pcphys makes none: half of it is
 //                                          the limit), `of_limit` is the share that was reached.
 //   own/near/PLACE/PRECISION/BODIES        the same within a cut-off at one density (about 30 neighbours), lists made anew in each
 //                                          step: `ns_per_nlogn` is level where the time grows as n log n; `lists_ms` is theirs alone.
+//   own/joined/PLACE/PRECISION/BODIES      cords, one from each body to the next
 //   own/total/PLACE/PRECISION/BODIES       the sum of a number of each body
 // One sub-step a step; the time is that of the stage in which the kernel runs, until the device is done; of `near` that of the step.
 #include <benchmark/benchmark.h>
@@ -34,7 +35,18 @@ struct Variant {
   const char* precision_name;
   Precision precision;
 };
-enum class What { all_pairs, near, total };
+PCPHYS_KERNEL(cord,
+              (PC_A(Vec3) position_a, PC_B(Vec3) position_b, PC_IN(Real) rest_length, PC_ADD_A(Vec3) force_a,
+               PC_ADD_B(Vec3) force_b, PC_PARAM(Real) stiffness),
+              {
+                Vec3 way = pc_sub(position_b, position_a);
+                Real size = pc_length(way);
+                Real pull = stiffness * pc_max(size - rest_length, PC_REAL(0.0));
+                force_a = pc_scale(way, pull * pc_inverse_or_zero(size));
+                force_b = pc_negate(force_a);
+              })
+
+enum class What { all_pairs, near, joined, total };
 
 Result<World> magnets(Precision precision, int count) {
   World world(WorldDef{precision, {}});
@@ -57,6 +69,16 @@ Result<World> magnets(Precision precision, int count) {
 }
 
 Status add(Stepper& stepper, World& world, What what) {
+  if (what == What::joined) {
+    SpringDef ends;  // without stiffness: it holds nothing
+    const std::vector<BodyId> bodies = world.bodies();
+    for (std::size_t i = 1; i < bodies.size(); i++) {
+      ends.a = bodies[i - 1];
+      ends.b = bodies[i];
+      if (const auto made = world.create_spring(ends); !made) return made.error();
+    }
+    return stepper.add_kernel(world, {.text = cord::text(), .over = joint_table, .parameters = {{"stiffness", 1e-3}}});
+  }
   if (what == What::total) return stepper.add_kernel(world, {.text = sum_mass::text()});
   KernelDef def{.text = magnet::text(), .parameters = {{"strength", 1e-3}, {"softening", 0.01}}};
   if (what == What::near) def.cutoff = cutoff;
@@ -67,7 +89,7 @@ void tell(benchmark::State& state, What what, double pairs) {
   using benchmark::Counter;
   const double n = double(state.range(0));
   const auto rate = [](double of) { return Counter(of, Counter::kIsIterationInvariantRate); };
-  if (what == What::total) state.counters["rows/s"] = rate(n);
+  if (what == What::total || what == What::joined) state.counters["rows/s"] = rate(n);
   if (what != What::all_pairs) return;
   state.counters["interactions/s"] = rate(pairs);
   state.counters["operations/s"] = rate(pairs * operations);
@@ -123,7 +145,7 @@ const bool registered = [] {
   constexpr struct {
     const char* name;
     What what;
-  } kinds[] = {{"all_pairs", What::all_pairs}, {"near", What::near}, {"total", What::total}};
+  } kinds[] = {{"all_pairs", What::all_pairs}, {"near", What::near}, {"joined", What::joined}, {"total", What::total}};
   for (const auto& kind : kinds)
     for (const Variant& v : variants) {
       const std::string name = std::string("own/") + kind.name + "/" + v.place_name + "/" + v.precision_name;

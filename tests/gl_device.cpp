@@ -26,12 +26,10 @@ std::unique_ptr<GlContext> require_context() {
   return std::move(*made);
 }
 
-/// A cache folder of the test's own, gone with it.
+/// A cache folder of the process's own, gone with the test: others may run beside it.
 class TemporaryCache {
  public:
-  TemporaryCache()
-      : folder_(std::filesystem::temp_directory_path() /
-                ("pcphys-gl-test-" + std::to_string(getpid()) + "-" + std::to_string(std::rand()))) {
+  TemporaryCache() : folder_(std::filesystem::temp_directory_path() / ("pcphys-gl-test-" + std::to_string(getpid()))) {
     if (const char* before = std::getenv("PCPHYS_CACHE")) before_ = before, had_ = true;
     std::filesystem::remove_all(folder_);
     setenv("PCPHYS_CACHE", folder_.c_str(), 1);

@@ -280,3 +280,27 @@ TEST_CASE("what sleeps is given nothing; objects may come and go") {
     CHECK(must(world.get(count, b)) == must(world.get(count, a)) + 3);
   }
 }
+
+TEST_CASE("a spring without stiffness and damping is a link and no work, until it is given some") {
+  World world(WorldDef{Precision::f64, {0, -9.81, 0}}), without(WorldDef{Precision::f64, {0, -9.81, 0}});
+  std::vector<BodyId> ends, others;
+  for (World* w : {&world, &without}) {
+    std::vector<BodyId>& made = w == &world ? ends : others;
+    made = add_chain(*w, {}, 3);
+    made.push_back(body(*w, {2, 0, 0}, 1));
+  }
+  const SpringId spring = must(world.create_spring(link(ends[1], ends[3], 0.5)));
+  Stepper one, two;
+  run(world, one, 20);
+  run(without, two, 20);
+  CHECK(states(world, ends) == states(without, others));
+  CHECK(to_text(one.plan()) == to_text(two.plan()));
+  must(world.set_spring(spring, 0.5, 40, 0));
+  run(world, one, 20);
+  run(without, two, 20);
+  CHECK(states(world, ends) != states(without, others));
+  CHECK(to_text(one.plan()).find("joint_drives") != std::string::npos);
+  must(world.set_spring(spring, 0.5, 0, 0));
+  run(world, one, 1);
+  CHECK(to_text(one.plan()).find("joint_drives") == std::string::npos);
+}

@@ -52,27 +52,38 @@ struct Ends {
   const std::byte* terms;
   std::byte* column;
   std::size_t stride;
-  std::uint32_t numbers, side;  // 0: of those of which the body is a; 1: of which it is b
+  std::uint32_t side;  // 0: of those of which the body is a; 1: of which it is b
 };
-template <class T> void add_ends(const Ends& e, std::uint32_t begin, std::uint32_t end) {
+template <class T, std::uint32_t numbers> void add_ends(const Ends& e, std::uint32_t begin, std::uint32_t end) {
   const T* const terms = reinterpret_cast<const T*>(e.terms);
   for (std::uint32_t n = begin; n < end; n++) {
     const std::uint32_t row = e.bodies[n], first = e.joints[row], last = e.joints[row + 1];
     if (first == last) continue;
-    T* const value = reinterpret_cast<T*>(e.column + row * e.stride);
-    for (std::uint32_t c = 0; c < e.numbers; c++) {
-      T sum = 0;
-      for (std::uint32_t at = first; at < last; at++)
-        if ((e.joints[at] & 1) == e.side) sum += terms[(e.joints[at] >> 1) * std::size_t{e.numbers} + c];
-      value[c] += sum;
+    T sums[numbers] = {};
+    for (std::uint32_t at = first; at < last; at++) {
+      if ((e.joints[at] & 1) != e.side) continue;
+      const T* const term = terms + (e.joints[at] >> 1) * std::size_t{numbers};
+      for (std::uint32_t c = 0; c < numbers; c++) sums[c] += term[c];
     }
+    T* const value = reinterpret_cast<T*>(e.column + row * e.stride);
+    for (std::uint32_t c = 0; c < numbers; c++) value[c] += sums[c];
   }
 }
 using AddEnds = void (*)(const Ends&, std::uint32_t begin, std::uint32_t end);
+template <class T> AddEnds add_ends_of(std::uint32_t numbers) {
+  switch (numbers) {
+    case 1: return add_ends<T, 1>;
+    case 3: return add_ends<T, 3>;
+    case 4: return add_ends<T, 4>;
+    case 6: return add_ends<T, 6>;
+    default: return add_ends<T, 9>;
+  }
+}
 AddEnds add_ends_of(PropertyType type, std::size_t real_bytes) {
-  if (type == PropertyType::int32) return add_ends<std::int32_t>;
-  if (type == PropertyType::uint32) return add_ends<std::uint32_t>;
-  return number_bytes(type, real_bytes) == 4 ? add_ends<float> : add_ends<double>;
+  if (type == PropertyType::int32) return add_ends<std::int32_t, 1>;
+  if (type == PropertyType::uint32) return add_ends<std::uint32_t, 1>;
+  const bool single = number_bytes(type, real_bytes) == 4;
+  return single ? add_ends_of<float>(components(type)) : add_ends_of<double>(components(type));
 }
 
 }  // namespace
@@ -138,7 +149,6 @@ void OwnRuns::join(const KernelRun& run, std::span<void* const> buffers, Columns
                     with.at[i],
                     columns.at[i],
                     columns.strides[i],
-                    components(a.type),
                     a.of_three() - 1u};
     const AddEnds add = add_ends_of(a.type, k.real_bytes);
     share(run.ranges[1], workers, [&](std::uint32_t begin, std::uint32_t end) { add(ends, begin, end); });

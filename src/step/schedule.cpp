@@ -142,8 +142,10 @@ void TreeSlots::build(const WorldState& state) {
   nodes_.build(forest_, masses);
   find_parallel(links);
   closing_.assign(forest_.closing().begin(), forest_.closing().end());
-  for (std::uint32_t row = 1; row < state.joints.size(); row++)
-    if (state.joints[row].spring && !state.asleep(state.joints[row])) closing_.push_back(row);
+  for (std::uint32_t row = 1; row < state.joints.size(); row++) {
+    const JointRecord& joint = state.joints[row];  // a spring without stiffness and damping does nothing
+    if (joint.spring && joint.driven() && !state.asleep(joint)) closing_.push_back(row);
+  }
   std::ranges::sort(closing_);
   pivots_ = find_pivots(forest_, state, solved_);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);

@@ -106,7 +106,7 @@ class TreeSlots {
   /// By joint row: whether it joins two bodies that a tree's joint joins already. What the tree leaves it to answer is
   /// singular: such joints stay rows.
   std::span<const char> parallel() const { return parallel_; }
-  /// Rows of the joints that stand in no tree, and of springs between two points; ascending.
+  /// Rows of the joints that stand in no tree, and of springs between two points that pull or damp; ascending.
   std::span<const std::uint32_t> closing() const { return closing_; }
   /// Of them the joints that trees answer.
   std::span<const std::uint32_t> answered() const { return answered_; }

@@ -26,8 +26,11 @@ struct JointRecord {
   std::uint32_t body_a = 0, body_b = 0;  // id indices
   JointDef def;                          // of a spring: bodies and anchors
   std::optional<SpringDef> spring;       // between two points, in place of a joint
-  /// Whether it has a motor or a spring.
-  bool driven() const { return spring || def.motor.torque > 0 || def.spring.stiffness > 0 || def.spring.damping > 0; }
+  /// Whether it has a motor or a spring, or is one that pulls or damps.
+  bool driven() const {
+    if (spring) return spring->stiffness > 0 || spring->damping > 0;
+    return def.motor.torque > 0 || def.spring.stiffness > 0 || def.spring.damping > 0;
+  }
 };
 /// Host columns of a shape; the shape table's row is index + 1 (row 0 pads).
 struct ShapeRecord {
