@@ -85,6 +85,11 @@ void require_gl() {
   REQUIRE_MESSAGE(report.f64.parity(), "this device promises no parity in double");
 }
 
+bool names_line(std::string_view said, int line) {
+  const std::string number = std::to_string(line);
+  return said.find(":" + number + "(") != said.npos || said.find("(" + number + ")") != said.npos;
+}
+
 BodyDef ball(Vec3 position, double radius) {
   BodyDef def;
   def.pose.position = position;

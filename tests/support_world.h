@@ -47,6 +47,9 @@ Status step_status(Stepper& stepper, World& world, double dt = frame);
 /// A test must not pass because there was nothing to test: llvmpipe comes with the scripts.
 void require_gl();
 
+/// Whether what a GLSL compiler said names a line: Mesa writes file:line(column), NVIDIA file(line).
+bool names_line(std::string_view said, int line);
+
 /// A ball at a place.
 BodyDef ball(Vec3 position, double radius = 0.5);
 BodyDef fixed_box(Vec3 position, Vec3 half_extents);
