@@ -127,17 +127,8 @@ TEST_CASE("of one side alone it runs there, and the plan says where") {
 }
 
 TEST_CASE("what the GLSL compiler says comes with the host's own file and line") {
-  require_gl();
   Populated p;
-  StepSettings settings;
-  settings.set_all(Place::gl);
-  must(p.stepper.configure(settings));
   KernelDef def = glsl("(PC_A(Real) heat_a, PC_ADD_B(Real) heat_b)", "{\n  Real x = heat_a;\n  heat_b = x + nothing;\n}");
   def.text.line = 40;
-  const Status refused = p.stepper.add_kernel(p.world, def);
-  REQUIRE(!refused);
-  CHECK(refused.error().code == ErrorCode::device_error);
-  CHECK(refused.error().message.find("mine.glsl") != std::string::npos);
-  CHECK_MESSAGE(names_line(refused.error().message, 42), refused.error().message);
-  run(p.world, p.stepper, 1);
+  check_glsl_error(p.world, def, 42);
 }

@@ -83,19 +83,10 @@ TEST_CASE("a property that was removed under a pair kernel") {
 }
 
 TEST_CASE("what the GLSL compiler says comes with the host's own file and line") {
-  require_gl();
   Populated p;
-  StepSettings settings;
-  settings.set_all(Place::gl);
-  must(p.stepper.configure(settings));
   KernelDef def = glsl("(PC_SELF(Real) a, PC_OTHER(Real) a_other, PC_SUM(Real) b)", "{\n  Real x = a;\n  b = x + nothing;\n}");
   def.text.line = 40;
-  const Status refused = p.stepper.add_kernel(p.world, def);
-  REQUIRE(!refused);
-  CHECK(refused.error().code == ErrorCode::device_error);
-  CHECK(refused.error().message.find("mine.glsl") != std::string::npos);
-  CHECK_MESSAGE(names_line(refused.error().message, 42), refused.error().message);
-  run(p.world, p.stepper, 1);
+  check_glsl_error(p.world, def, 42);
 }
 
 TEST_CASE("of one side alone it runs there, and the plan shows what crosses") {
@@ -111,8 +102,10 @@ TEST_CASE("of one side alone it runs there, and the plan shows what crosses") {
     REQUIRE_MESSAGE(bool(report), report.error.message);
     CHECK(double(must(p.world.get(must(p.world.property<Real>("b")), p.world.bodies()[0]))) == (on_gl ? 6 : 4));
     const std::string plan = to_text(p.stepper.plan());
-    CHECK(plan.find(on_gl ? "upload a" : "upload b") != std::string::npos);
-    CHECK(plan.find(on_gl ? "download b" : "download") != std::string::npos);
+    CHECK_MESSAGE(plan.find(on_gl ? "gl    integrate  k " : "cpu   integrate  here ") != std::string::npos, plan);
+    // what the kernel alone uses crosses only where it stands on the other side
+    CHECK_MESSAGE((plan.find("upload a\n") != std::string::npos) == on_gl, plan);
+    CHECK_MESSAGE((plan.find("download b  B\n") != std::string::npos) == on_gl, plan);
     CHECK(report.transfer_bytes > 0);
   }
 }

@@ -85,9 +85,16 @@ void require_gl() {
   REQUIRE_MESSAGE(report.f64.parity(), "this device promises no parity in double");
 }
 
-bool names_line(std::string_view said, int line) {
-  const std::string number = std::to_string(line);
-  return said.find(":" + number + "(") != said.npos || said.find("(" + number + ")") != said.npos;
+void check_glsl_error(World& world, const KernelDef& def, int line) {
+  require_gl();
+  StepSettings settings;
+  settings.set_all(Place::gl);
+  Stepper stepper(settings);
+  CHECK_REFUSED(world, stepper.add_kernel(world, def), ErrorCode::device_error, def.text.file);
+  const std::string said = stepper.add_kernel(world, def).error().message, number = std::to_string(line);
+  // Mesa writes file:line(column), NVIDIA file(line)
+  CHECK_MESSAGE((said.find(":" + number + "(") != said.npos || said.find("(" + number + ")") != said.npos), said);
+  run(world, stepper, 1);
 }
 
 BodyDef ball(Vec3 position, double radius) {

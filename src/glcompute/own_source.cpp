@@ -5,6 +5,7 @@
 #include <map>
 
 #include "glcompute/compile_log.h"
+#include "glcompute/own_sums.h"
 #include "glcompute/own_text.h"
 #include "glcompute/source_text.h"
 
@@ -47,98 +48,7 @@ std::string element_main(const OwnKernel& k) {
   return text + store_changed(k, own, "pc_row") + "}\n";
 }
 
-// ---- sums between two programs ------------------------------------------------------------------------
-/// Statements for each number of what is summed: `each` with argument, suffix, and the word where it stands.
-using EachNumber = std::function<std::string(const OwnArgument&, const std::string&, const std::string&)>;
-std::string for_sums(const OwnKernel& k, const EachNumber& each) {
-  std::string text;
-  std::uint32_t word = 0;
-  for (const OwnArgument& a : k.arguments) {
-    if (!a.summed()) continue;
-    text += OwnText::for_parts(a.type, [&](std::uint32_t, const std::string& part) {
-      const std::string at = number(word) + "u";
-      word += number_words(a.type, k.real_bytes);
-      return each(a, part, at);
-    });
-  }
-  return text;
-}
-std::string declare_sums(const OwnKernel& k, const std::string& prefix) {
-  std::string text;
-  for (const OwnArgument& a : k.arguments)
-    if (a.summed()) text += "  " + OwnText::precise(a) + OwnText::type(a.type) + " " + prefix + a.name + ";\n";
-  return text;
-}
-std::string clear(const OwnKernel& k, const std::string& prefix) {
-  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string&) {
-    return "  " + prefix + a.name + part + " = " + OwnText::number_type(a.type) + "(0);\n";
-  });
-}
-std::string combined(const OwnArgument& a, const std::string& x, const std::string& y) {
-  if (a.kind == OwnArgument::Kind::least) return y + " < " + x + " ? " + y + " : " + x;
-  if (a.kind == OwnArgument::Kind::most) return x + " < " + y + " ? " + y + " : " + x;
-  return x + " + " + y;
-}
-std::string combine(const OwnKernel& k, const std::string& into, const std::string& with) {
-  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string&) {
-    const std::string x = into + a.name + part;
-    return "  " + x + " = " + combined(a, x, with + a.name + part) + ";\n";
-  });
-}
-bool wide(const OwnKernel& k, PropertyType type) { return number_words(type, k.real_bytes) == 2; }
-/// Value `index` of the block of sums; words of neighbours stand side by side.
-std::string put(const OwnKernel& k, const std::string& prefix, const std::string& index) {
-  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
-    return "  pc_put(" + word + ", " + index + ", " + prefix + a.name + part + ");\n";
-  });
-}
-std::string value_at(const OwnKernel& k, const OwnArgument& a, const std::string& word, const std::string& index) {
-  const char* form = a.type == PropertyType::int32    ? "int"
-                     : a.type == PropertyType::uint32 ? "uint"
-                     : wide(k, a.type)                ? "double"
-                                                      : "float";
-  return std::string("pc_get_") + form + "(" + word + ", " + index + ")";
-}
-std::string get(const OwnKernel& k, const std::string& prefix, const std::string& index) {
-  return for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
-    return "  " + prefix + a.name + part + " = " + value_at(k, a, word, index) + ";\n";
-  });
-}
-/// What was summed, into properties.
-std::string apply(const OwnKernel& k, const OwnText& own) {
-  std::string text;
-  for (const OwnArgument& a : k.arguments) {
-    if (!a.summed()) continue;
-    text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
-      const std::string place = own.place(a, c, "pc_row"), sum = "pc_sum_" + a.name + part;
-      if (!a.adds()) return "  " + place + " = " + sum + ";\n";
-      return "  " + a.name + part + " = " + place + ";\n  " + a.name + part + " = " + a.name + part + " + " + sum + ";\n  " +
-             place + " = " + a.name + part + ";\n";
-    });
-  }
-  return text;
-}
-/// The block, and numbers in it as bits. `stride`: how many values there is room for.
-std::string sums_block(const OwnKernel& k, std::size_t binding) {
-  std::string text = "layout(std430, binding = " + number(binding) + ") restrict buffer Block_sums { uint io_sums[]; };\n";
-  text += "uint pc_stride;\n";
-  text += "void pc_put(uint word, uint pc_i, uint x) { io_sums[word * pc_stride + pc_i] = x; }\n";
-  text += "void pc_put(uint word, uint pc_i, int x) { io_sums[word * pc_stride + pc_i] = uint(x); }\n";
-  text += "void pc_put(uint word, uint pc_i, float x) { io_sums[word * pc_stride + pc_i] = floatBitsToUint(x); }\n";
-  text += "uint pc_get_uint(uint word, uint pc_i) { return io_sums[word * pc_stride + pc_i]; }\n";
-  text += "int pc_get_int(uint word, uint pc_i) { return int(io_sums[word * pc_stride + pc_i]); }\n";
-  text += "float pc_get_float(uint word, uint pc_i) { return uintBitsToFloat(io_sums[word * pc_stride + pc_i]); }\n";
-  const bool doubles = std::ranges::any_of(k.arguments, [&](const OwnArgument& a) { return a.summed() && wide(k, a.type); });
-  if (!doubles) return text;
-  text +=
-      "void pc_put(uint word, uint pc_i, double x) { uvec2 b = unpackDouble2x32(x); pc_put(word, pc_i, b.x); "
-      "pc_put(word + 1u, pc_i, b.y); }\n";
-  text +=
-      "double pc_get_double(uint word, uint pc_i) { return packDouble2x32(uvec2(pc_get_uint(word, pc_i), "
-      "pc_get_uint(word + 1u, pc_i))); }\n";
-  return text;
-}
-
+// ---- what mains begin with -----------------------------------------------------------------------------
 const std::string uniforms = "uniform uvec2 pc_range;\nuniform uvec4 pc_work;\n";
 std::string begin_main(std::uint32_t local_size) {
   return "layout(local_size_x = " + number(local_size) + ") in;\n" + uniforms + "void main() {\n";
