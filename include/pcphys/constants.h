@@ -16,6 +16,9 @@ inline constexpr double hull_planarity = 1e-5;
 inline constexpr double largest_input = 1e15;
 /// A body whose coordinates [m], speed [m/s] or spin [rad/s] would go beyond this within a step is frozen.
 inline constexpr double largest_state = 1e18;
+/// In sub-steps shorter than this [s] and single precision the visits of contacts keep what rounding drops from bodies that are
+/// by far the heavier, and what slides goes by the load that was found (docs/impulses.md).
+inline constexpr double short_substep = 1.001e-3;
 /// Masses [kg] and moments of inertia [kg m^2] outside this interval are refused: float32 must hold them, their
 /// inverses and the products of both.
 inline constexpr double smallest_mass = 1e-30, largest_mass = 1e30;

@@ -7,8 +7,11 @@ PC_FN void pc_kick(PC_IO Index i, PC_INOUT(BodyState) b, Vec3 impulse, Vec3 torq
   b.v = v.sum; b.l = l.sum; Mask keeps = pc_and(moves, uneven);
   PC_SCATTER_IF(keeps, velocity_parts, i, 2u, pc_quad(pc_snap3(v.low), linear_low.s)); PC_SCATTER_IF(keeps, velocity_parts, i, 3u, pc_quad(pc_snap3(l.low), angular_low.s));
 }
-PC_FN void pc_apply_low(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple) {
-  Real light = pc_max(a.inverse_mass, b.inverse_mass); precise Real little = light * PC_REAL(0.125); Mask uneven = pc_min(a.inverse_mass, b.inverse_mass) < little;
+// More than eight times as heavy as the other, or standing.
+PC_FN Mask pc_uneven(BodyState a, BodyState b) {
+  Real light = pc_max(a.inverse_mass, b.inverse_mass); precise Real little = light * PC_REAL(0.125); return pc_min(a.inverse_mass, b.inverse_mass) < little;
+}
+PC_FN void pc_apply_low(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple, Mask uneven) {
   if (PC_ANY(uneven)) {  // lint: allow (others get what pc_apply gives)
     Vec3 torque_a = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arms.b, impulse));
     pc_kick(PC_PASS ia, a, impulse, torque_a, PC_REAL(-1.0), uneven); pc_kick(PC_PASS ib, b, impulse, torque_b, PC_REAL(1.0), uneven);

@@ -60,6 +60,15 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
 }
 #ifndef PC_MEAN
 #include "contact_settle.inl"
+// What slides, by the load that the normal rows have left in place of the one that was foreseen. Where sub-steps are so short that loads are
+// those of roundings, the two differ in each by chance, and what slides would take up the sum.
+PC_FN Friction pc_by_load(PC_IO Slot m, Friction f, Real ahead, Real pressed) {
+  Real mu = PC_LD(contact_rows, m, ROW_MU_KINETIC); precise Real limit = ahead * mu; precise Real most = limit * limit * PC_REAL(0.999);
+  precise Real square = f.next1 * f.next1 + f.next2 * f.next2; precise Real by_load = pressed * pc_inverse_or_zero(ahead);
+  Real share = pc_select(square > most, by_load, PC_REAL(1.0)); precise Real n1 = f.next1 * share; precise Real n2 = f.next2 * share;
+  precise Real c1 = f.change1 + (n1 - f.next1); precise Real c2 = f.change2 + (n2 - f.next2);
+  Friction r = f; r.next1 = pc_snap(n1); r.next2 = pc_snap(n2); r.change1 = c1; r.change2 = c2; return r;
+}
 #endif
 
 // Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
@@ -114,6 +123,9 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real arriving = load - (v.vn + gap_rate) * stops; Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, mass, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
+  }
+  if (PC_ANY(pc_min(PC_INFO(fine), PC_INFO(load_ahead)) > PC_REAL(0.0))) {  // lint: allow (the same for all lanes)
+    precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3; now.f = pc_by_load(PC_PASS m, now.f, ahead, pressed);
   }
 #endif
 #ifdef PC_PLACED

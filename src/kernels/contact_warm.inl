@@ -47,5 +47,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     w.impulse = pc_scale(w.impulse, share); w.couple = pc_scale(w.couple, share);
     for (uint i = 0u; i < 7u; i++) { precise Real kept = PC_LD(contact_impulses, m, i) * share; PC_ST(contact_impulses, m, i, kept); }
   }
-  pc_apply_low(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple);
+  pc_apply_low(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple, pc_uneven(a, b));
 }

@@ -68,6 +68,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.rounding = Scalar(constants::rest_roundings * epsilon);
   biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
 
+  biased.fine = sizeof(Scalar) == 4 && h < constants::short_substep;
   biased.substeps = Scalar(from.substeps << octave);
   biased.largest_state = Scalar(constants::largest_state);
 
