@@ -82,17 +82,27 @@ struct Run {
       made ? void(id = *made) : check(made.error());
     }
   }
-  /// All bodies anew, as fixed ones.
-  void fix() {
+  /// All bodies anew, spheres and boxes of one shape.
+  template <class Change> void bodies(Change&& change) {
     for (scenes::SceneBody& body : scene.bodies) {
-      check(world.destroy(body.id));
       BodyDef def;
-      def.kind = BodyKind::fixed;
-      def.shapes = {body.shape};
-      def.pose = body.start;
+      def.kind = *world.kind(body.id);
+      def.shapes = *world.shapes(body.id);
+      def.pose = *world.pose(body.id);
+      if (def.kind == BodyKind::dynamic) def.mass = world.mass_properties(body.id)->mass;
+      if (def.kind == BodyKind::dynamic) def.velocity = *world.velocity(body.id);
+      def.material = *world.material(body.id);
+      check(world.destroy(body.id));
+      change(def);
       const auto made = world.create_body(def);
       made ? void(body.id = *made) : check(made.error());
     }
+  }
+  void fix() {
+    bodies([](BodyDef& def) { def.kind = BodyKind::fixed; });
+  }
+  void still() {
+    bodies([](BodyDef& def) { def.rotates = false; });
   }
   void pendulum() {
     BodyDef def;
@@ -139,6 +149,20 @@ const std::vector<Kind>& kinds() {
        [](Run& r) {
          r.make("balls", some), r.materials({0, 0, 0});
        }},
+      {"balls, friction; none",
+       [](Run& r) {
+         r.make("balls", some), r.materials({0.5, 0.5, 0});
+       },
+       [](Run& r) {
+         r.make("balls", some), r.materials({0, 0, 0});
+       }},
+      {"balls without friction, rotating; not",
+       [](Run& r) {
+         r.make("balls", some), r.materials({0, 0, 0});
+       },
+       [](Run& r) {
+         r.make("balls", some), r.materials({0, 0, 0}), r.still();
+       }},
       {"balls, e = 0.5; e = 0",
        [](Run& r) {
          r.make("balls", some), r.materials({0.5, 0.5, 0.5});
@@ -175,6 +199,11 @@ const std::vector<Kind>& kinds() {
       {"ballistic, drag; none", [](Run& r) { r.make("ballistic", many), r.drag(); }, [](Run& r) { r.make("ballistic", many); }},
       {"ballistic, unequal moments; equal", [](Run& r) { r.make("ballistic", many), r.unequal_moments(); },
        [](Run& r) { r.make("ballistic", many); }},
+      {"ballistic, rotating; not", [](Run& r) { r.make("ballistic", many); },
+       [](Run& r) {
+         r.make("ballistic", many);
+         r.still();
+       }},
       {"ballistic, meets others; filtered", [](Run& r) { r.make("ballistic", many), r.filters({}); },
        [](Run& r) { r.make("ballistic", many); }},
       {"ballistic, a pendulum beside; alone", [](Run& r) { r.make("ballistic", many), r.pendulum(); },

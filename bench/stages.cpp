@@ -66,6 +66,7 @@ class Bench {
     wanted.shapes = detector_.possible();
     wanted.free_contacts = schedule_.contacts.any_without_trees();
     wanted.tree_contacts = schedule_.contacts.any_with_trees();
+    wanted.friction = found_.friction || found_.rolling;
     wanted.restitution = found_.restitution;
     if (wanted.trees) state().tables.resize(Table::node, schedule_.trees.nodes().rows());
     plan_ = make_plan(wanted);

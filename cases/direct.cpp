@@ -36,7 +36,7 @@ StepPlan plan_of_contact(Place place, bool restitution) {
   PlanSignature signature;
   signature.substeps = 1;
   signature.places.fill(place);
-  signature.bodies = signature.shapes = signature.free_contacts = true;
+  signature.bodies = signature.shapes = signature.free_contacts = signature.friction = true;
   signature.restitution = signature.impacts = restitution;
   return make_plan(signature);
 }

@@ -51,10 +51,6 @@ std::vector<BodyId> add_pendulum(World& world) {
   return {bob};
 }
 
-bool runs(const StepPlan& plan, std::string_view kernel) {
-  return std::ranges::any_of(plan.entries, [&](const PlanEntry& e) { return kernel_name(e) == kernel; });
-}
-
 }  // namespace
 
 TEST_CASE("a flight has the bits of its sub-steps one after the other") {

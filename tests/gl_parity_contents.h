@@ -27,7 +27,7 @@ inline Table table_of(Buffer buffer) { return schema(buffer).table; }
 inline bool is_index(Buffer buffer) { return schema(buffer).reals == 0; }
 inline bool is_tree_rows(Buffer buffer) { return buffer == Buffer::tree_rows || buffer == Buffer::tree_drive_rows; }
 inline bool is_rows(Buffer buffer) {
-  return buffer == Buffer::contact_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows ||
+  return buffer == Buffer::contact_rows || buffer == Buffer::frictionless_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows ||
          is_tree_rows(buffer) || buffer == Buffer::contact_reach;
 }
 inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || buffer == Buffer::joint_ends; }

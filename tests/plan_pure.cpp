@@ -11,7 +11,7 @@ namespace {
 /// Every signature there is, for two numbers of sub-steps.
 template <class Visit> void for_all_signatures(Visit&& visit) {
   for (const Mix& mix : mixes())
-    for (unsigned bits = 0; bits < 1024; bits++)
+    for (unsigned bits = 0; bits < 2048; bits++)
       for (std::uint32_t substeps : {1u, 4u}) {
         PlanSignature s;
         s.substeps = substeps;
@@ -26,15 +26,11 @@ template <class Visit> void for_all_signatures(Visit&& visit) {
         s.trees = bits & 128;
         s.tree_contacts = s.trees && bits & 256;
         s.tree_joints = s.trees && bits & 512;
+        s.friction = bits & 1024;
         visit(s);
       }
 }
 
-int runs(const StepPlan& plan, std::string_view kernel) {
-  int n = 0;
-  for (const PlanEntry& e : plan.entries) n += e.kind == PlanEntry::Kind::kernel && kernel_name(e) == kernel;
-  return n;
-}
 std::string reason(const StepPlan& plan, std::string_view what) {
   for (const LeftOut& l : plan.left_out)
     if (l.what == what) return l.why;
@@ -226,8 +222,12 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
     for (const char* kernel : {"tree_prepare", "tree_solve", "tree_again", "tree_relax"})
       CHECK(runs(plan, kernel) == (s.bodies && s.trees ? int(s.substeps) : 0));
     if (!s.contacts()) CHECK(runs(plan, "contact_prepare") + runs(plan, "contact_store") == 0);
-    for (const char* kernel : {"contact_warm", "contact_solve"}) CHECK((runs(plan, kernel) > 0) == (s.bodies && s.free_contacts));
-    CHECK(runs(plan, "contact_refresh") == (s.bodies && s.free_contacts && s.gyroscopic ? 2 * int(s.substeps) : 0));
+    CHECK((reason(plan, "friction") != "") == s.frictionless());
+    for (const std::string kernel : {"contact_warm", "contact_solve"}) {
+      CHECK((runs(plan, kernel) > 0) == (s.bodies && s.free_contacts && !s.frictionless()));
+      CHECK((runs(plan, kernel + "_frictionless") > 0) == (s.bodies && s.frictionless()));
+    }
+    CHECK(runs(plan, s.frictionless() ? "contact_refresh_frictionless" : "contact_refresh") == (s.bodies && s.free_contacts && s.gyroscopic ? 2 * int(s.substeps) : 0));
     for (const char* kernel : {"tree_contact_warm", "tree_contact_prepare"})
       CHECK(runs(plan, kernel) == (s.bodies && s.tree_contacts ? int(s.substeps) : 0));
     CHECK(runs(plan, "tree_contact_solve") == (s.bodies && s.tree_contacts ? 2 * int(s.substeps) : 0));

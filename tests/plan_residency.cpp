@@ -108,7 +108,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
 
 template <class Visit> void for_all_needs(Visit&& visit) {
   for (const Mix& mix : mixes())
-    for (unsigned bits = 0; bits < 64; bits++)
+    for (unsigned bits = 0; bits < 128; bits++)
       for (std::uint32_t substeps : {1u, 2u, 4u, 8u}) {
         PlanSignature s;
         s.substeps = substeps;
@@ -120,6 +120,7 @@ template <class Visit> void for_all_needs(Visit&& visit) {
         s.trees = bits & 8;
         s.tree_contacts = s.trees && bits & 16;
         s.tree_joints = s.trees && bits & 32;
+        s.friction = bits & 64;
         s.shapes |= s.contacts();
         INFO(mix.text() << ", trees " << s.trees << ", joints " << s.free_joints << s.tree_joints << ", contacts "
                         << s.free_contacts << s.tree_contacts << ", restitution " << s.restitution << ", sub-steps " << substeps);

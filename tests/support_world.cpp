@@ -1,5 +1,6 @@
 #include "support_world.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "world/state.h"
@@ -69,6 +70,11 @@ void run(World& world, Stepper& stepper, int steps, double dt) {
     const StepReport& report = stepper.step(world, dt);
     if (!report) FAIL("step " << i << " was refused: " << report.error.message);
   }
+}
+
+int runs(const StepPlan& plan, std::string_view kernel) {
+  return int(std::ranges::count_if(
+      plan.entries, [&](const PlanEntry& e) { return e.kind == PlanEntry::Kind::kernel && kernel_name(e) == kernel; }));
 }
 
 Status step_status(Stepper& stepper, World& world, double dt) {

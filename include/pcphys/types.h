@@ -89,6 +89,9 @@ struct BodyDef {
   double linear_drag = 0;   // F in v' = -F v [1/s]; the original's default is 0.25
   double angular_drag = 0;  // the same of the angular momentum [1/s]
   bool can_sleep = true;    // false: it keeps its island awake (docs/sleeping.md)
+  /// false: a dynamic body that no contact, force or spring turns, as if its moments of inertia were infinite; they read as zero. It
+  /// takes no joints. Where no body rotates, steps compute no rotation (docs/leaving-out.md).
+  bool rotates = true;
 };
 
 /// Freedom of b's frame relative to a's. Angles [rad]: roll about the frames' x axis (twist), pitch

@@ -177,7 +177,7 @@ void Detector::follow_rest(const WorldState& s) {
 }
 
 bool Detector::some_material(const WorldState& s, std::initializer_list<std::uint32_t> offsets) {
-  for (std::uint32_t row = 0; row < s.bodies.size(); row++)
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++)  // the ground has no shapes
     for (std::uint32_t k : offsets)
       if (s.tables.get(Buffer::material, row, k) > 0) return true;
   return false;

@@ -35,6 +35,7 @@ class Detector {
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
+    bool friction = false;                    // some contact resists sliding
     bool restitution = false;                 // some contact bounces
     bool impacts = false;                     // or is between shapes that meet in flight
     bool rolling = false;                     // some contact resists rolling or turning
@@ -61,8 +62,9 @@ class Detector {
   bool possible() const { return possible_; }
   /// Of boxes, pairs and contacts, about.
   std::size_t memory_bytes() const;
-  /// Whether some body has restitution, rolling or torsional friction.
+  /// Whether some body has restitution, any friction, rolling or torsional friction.
   static bool may_bounce(const WorldState& state) { return some_material(state, {2}); }
+  static bool may_resist(const WorldState& state) { return some_material(state, {0, 1, 4, 5}); }
   static bool may_resist_rolling(const WorldState& state) { return some_material(state, {4, 5}); }
 
  private:

@@ -2,6 +2,9 @@
 #include "cpu/kernels.h"
 #include "cpu/prelude.h"
 
+// variants of a text have no use for all of its parameters
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+
 namespace pcphys {
 namespace PC_NAMESPACE {
 

@@ -173,8 +173,10 @@ PC_INLINE void pc_lower(uint* list, uint i, uint value) {
 #define PC_ROW_QUAD(buffer, row, k) pc_row_quad(row, k)
 #define PC_SCATTER(buffer, i, k, q) pc_scatter(io.buffer, i, quads_##buffer, k, q)
 #define PC_SCATTER_IF(mask, buffer, i, k, q) pc_scatter_if(mask, io.buffer, i, quads_##buffer, k, q)
-#define PC_LD(buffer, slot, f) pc_load(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES)
-#define PC_ST(buffer, slot, f, x) pc_store(io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES, x)
+// (in two steps, so that a text may be given another buffer by its name)
+#define PC_FIELD(buffer, slot, f) (io.buffer + (std::size_t((slot).block) * reals_##buffer + (f)) * PC_LANES)
+#define PC_LD(buffer, slot, f) pc_load(PC_FIELD(buffer, slot, f))
+#define PC_ST(buffer, slot, f, x) pc_store(PC_FIELD(buffer, slot, f), x)
 #define PC_ENDS(buffer, slot, side) pc_index(io.buffer + (std::size_t((slot).block) * 2u + (side)) * PC_LANES)
 #define PC_ORDER(buffer, slot) pc_index(io.buffer + std::size_t((slot).block) * PC_LANES)
 // lists: what is the same for all lanes of a block, one of each lane from `i` on, slots of the same lanes elsewhere

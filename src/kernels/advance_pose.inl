@@ -4,8 +4,16 @@
 // small turns in single precision would otherwise add up a million roundings of 6e-8 (docs/integrate.md).
 // Rotation: free_rotation.inl.
 // Where every body has three equal moments (PC_ROUND) only that rotation is left: the same bits, less work.
+// Where no body rotates (PC_STILL) it is left out.
 // The original's scheme (PC_SEED) has no gyroscopic terms: w is constant, so that L = I w turns as the body does.
 
+PC_FN Vec3 pc_move(PC_IO PC_INOUT(BodyPose) p, Quad linear) {
+  Vec3 step = pc_scale(linear.v, PC_INFO(h));
+  TwoSum place = pc_two_sum(p.place.v, pc_add(p.place_low.v, step));
+  p.place.v = place.sum; p.place_low.v = pc_snap3(place.low); return step;
+}
+
+#ifndef PC_STILL
 #ifdef PC_ROUND
 PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
   precise Real world_time = inverse.v.x * h;
@@ -20,11 +28,7 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
 
 struct Moved { Vec3 step; Quaternion before; Quaternion change; };  // of the orientation: what it was, and what was added to it
 PC_FN Moved pc_advance(PC_IO PC_INOUT(BodyPose) p, Quad linear, PC_INOUT(Quad) angular, Quad inverse) {
-  Real h = PC_INFO(h);
-  Moved moved; moved.step = pc_scale(linear.v, h);
-  TwoSum place = pc_two_sum(p.place.v, pc_add(p.place_low.v, moved.step));
-  p.place.v = place.sum; p.place_low.v = pc_snap3(place.low);
-
+  Real h = PC_INFO(h); Moved moved; moved.step = pc_move(PC_PASS p, linear);
   Quaternion q = pc_quaternion(p.turned.v, p.turned.s); moved.before = q;
 #ifdef PC_SEED
   Vec3 w0 = pc_sym_mul(pc_world_inertia(q, inverse.v), angular.v);
@@ -38,3 +42,4 @@ PC_FN Moved pc_advance(PC_IO PC_INOUT(BodyPose) p, Quad linear, PC_INOUT(Quad) a
   p.turned = next.q; p.turned_low = next.low;
   return moved;
 }
+#endif

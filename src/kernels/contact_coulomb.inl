@@ -4,6 +4,12 @@
 // what is that slow may stick again, and the load is not known better.
 struct Friction { Real next1; Real next2; Real next_twist; Real change1; Real change2; Real change_twist; Twist after; };
 
+#ifdef PC_FRICTIONLESS
+PC_FN Friction pc_no_friction(Twist v) {
+  Real zero = PC_REAL(0.0); Friction r; r.next1 = zero; r.next2 = zero; r.next_twist = zero; r.change1 = zero; r.change2 = zero; r.change_twist = zero; r.after = v; return r;
+}
+PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real mass_scale, Real f1, Real f2, Real ft) { return pc_no_friction(v); }
+#else
 // f1, f2, ft: the impulses that act already.
 PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real mass_scale, Real f1, Real f2, Real ft) {
   precise Real static_limit = load * PC_LD(contact_rows, m, ROW_MU_STATIC); precise Real kinetic_limit = load * PC_LD(contact_rows, m, ROW_MU_KINETIC);
@@ -26,3 +32,4 @@ PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real mass_scale, Rea
   Friction r; r.next1 = h1; r.next2 = h2; r.next_twist = ht; r.change1 = c1; r.change2 = c2; r.change_twist = ct;
   r.after = v; r.after.vn = vn; r.after.w1 = w1; r.after.w2 = w2; return r;
 }
+#endif

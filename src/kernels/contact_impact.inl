@@ -206,13 +206,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   j0 = pc_select(hits, j0, zero); j1 = pc_select(hits, j1, zero); j2 = pc_select(hits, j2, zero); j3 = pc_select(hits, j3, zero);
 
   Push push = pc_push(PC_PASS m, j0, j1, j2, j3); push.m1 = pc_select(whirls, zero, push.m1); push.m2 = pc_select(whirls, zero, push.m2);
-  // by symmetry the responses of sliding and twist to the normal rows are those of the rows to them
-  Twist after = v;
-  precise Real v1_after = v.v1 + (PC_LD(contact_rows, m, ROW_C) * push.n + PC_LD(contact_rows, m, ROW_C + 3u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 6u) * push.m2);
-  precise Real v2_after = v.v2 + (PC_LD(contact_rows, m, ROW_C + 1u) * push.n + PC_LD(contact_rows, m, ROW_C + 4u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 7u) * push.m2);
-  precise Real wn_after = v.wn + (PC_LD(contact_rows, m, ROW_C + 2u) * push.n + PC_LD(contact_rows, m, ROW_C + 5u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 8u) * push.m2);
-  after.v1 = v1_after; after.v2 = v2_after; after.wn = wn_after;
-  Friction f = pc_coulomb(PC_PASS m, after, push.n, PC_REAL(1.0), zero, zero, zero);
+  Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), push.n, PC_REAL(1.0), zero, zero, zero);
   precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
 
   // another sweep is to follow; what is stopped slowly is for the next sub-step
@@ -221,13 +215,13 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
   Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
   BodyState before_a = a; BodyState before_b = b;
-  Vec3 impulse = pc_combine(t1, f.change1, t2, f.change2, n, push.n); Vec3 couple = pc_combine(t1, push.m1, t2, push.m2, n, f.change_twist);
+  Wrench w = pc_wrench(n, t1, t2, push, f.change1, f.change2, f.change_twist);
   // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not close all at once: the
   // impulse leaves no more energy than e allows
   Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b)));
-  precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, impulse, couple);
+  precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, w.impulse, w.couple);
   Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
-  pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(impulse, share), pc_scale(couple, share));
+  pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
   pc_keep_impact(PC_PASS m, 0u, j0, share); pc_keep_impact(PC_PASS m, 1u, j1, share); pc_keep_impact(PC_PASS m, 2u, j2, share); pc_keep_impact(PC_PASS m, 3u, j3, share);
   Real strike = pc_select(strikes, PC_REAL(1.0), zero);
   pc_set_back(PC_PASS ia, before_a, a, t, hits, strike); pc_set_back(PC_PASS ib, before_b, b, t, hits, strike);

@@ -19,6 +19,7 @@ struct Responses {
 
 // Effective masses and the responses between rows; `w0` to `w3`: 1 where the point exists.
 PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2, Real w3) {
+#ifndef PC_FRICTIONLESS
   // friction block and twist
   precise Real det = r.l.xx * r.l.yy - r.l.xy * r.l.xy; Real inverse_det = pc_inverse_or_zero(det);
   precise Real t11 = r.l.yy * inverse_det; precise Real t12 = -(r.l.xy * inverse_det); precise Real t22 = r.l.xx * inverse_det;
@@ -28,6 +29,7 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
   pc_st_mass(ROW_C, r.l.xz); pc_st_mass(ROW_C + 1u, r.l.yz); pc_st_mass(ROW_C + 2u, r.wn.z);
   pc_st_mass(ROW_C + 3u, r.w1.x); pc_st_mass(ROW_C + 4u, r.w1.y); pc_st_mass(ROW_C + 5u, r.a.xz);
   pc_st_mass(ROW_C + 6u, r.w2.x); pc_st_mass(ROW_C + 7u, r.w2.y); pc_st_mass(ROW_C + 8u, r.a.yz);
+#endif
   pc_st_mass(ROW_K, pc_min(r.l.zz, pc_min(r.l.xx, r.l.yy)));
 
   // normal rows: u_i = K [1, b_i, -a_i] and their products

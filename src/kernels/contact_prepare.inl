@@ -23,7 +23,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
   Quad head = PC_GATHER(contact, record, 0u);
   Quad p0 = PC_GATHER(contact, record, 1u); Quad p1 = PC_GATHER(contact, record, 2u); Quad p2 = PC_GATHER(contact, record, 3u); Quad p3 = PC_GATHER(contact, record, 4u);
-  Quad pushes = PC_GATHER(contact, record, 5u); Quad drag = PC_GATHER(contact, record, 6u); Quad mean = PC_GATHER(contact, record, 8u); Quad material = PC_GATHER(contact, record, 7u);
+  Quad pushes = PC_GATHER(contact, record, 5u); Quad mean = PC_GATHER(contact, record, 8u); Quad material = PC_GATHER(contact, record, 7u);
   Quad place_a = PC_GATHER(pose, ia, 0u); Quad place_b = PC_GATHER(pose, ib, 0u); Quad low_a = PC_GATHER(pose, ia, 2u); Quad low_b = PC_GATHER(pose, ib, 2u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
@@ -77,9 +77,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(contact_rows, m, ROW_S, pc_told_gap(p0.s, noise)); PC_ST(contact_rows, m, ROW_S + 1u, pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise));
   PC_ST(contact_rows, m, ROW_S + 2u, pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise)); PC_ST(contact_rows, m, ROW_S + 3u, pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise));
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
+#ifndef PC_FRICTIONLESS
   PC_ST(contact_rows, m, ROW_MU_STATIC, material.v.x);
   PC_ST(contact_rows, m, ROW_MU_KINETIC, material.v.y);
   PC_ST(contact_rows, m, ROW_RADIUS, radius);
+#endif
   PC_ST(contact_rows, m, ROW_E, material.v.z);
   PC_ST(contact_rows, m, ROW_APPROACH, pc_min(approach0, zero)); PC_ST(contact_rows, m, ROW_APPROACH + 1u, pc_min(approach1, zero)); PC_ST(contact_rows, m, ROW_APPROACH + 2u, pc_min(approach2, zero)); PC_ST(contact_rows, m, ROW_APPROACH + 3u, pc_min(approach3, zero));
 
@@ -90,9 +92,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // remembered impulses; they scale with the sub-step
   Real ratio = PC_INFO(impulse_ratio);
   precise Real l0 = pushes.v.x * w0 * ratio; precise Real l1 = pushes.v.y * w1 * ratio; precise Real l2 = pushes.v.z * w2 * ratio; precise Real l3 = pushes.s * w3 * ratio;
-  precise Real f1 = pc_dot(t1, drag.v) * w0 * ratio; precise Real f2 = pc_dot(t2, drag.v) * w0 * ratio; precise Real ft = drag.s * w0 * ratio;
   PC_ST(contact_impulses, m, 0u, l0); PC_ST(contact_impulses, m, 1u, l1); PC_ST(contact_impulses, m, 2u, l2); PC_ST(contact_impulses, m, 3u, l3);
+#ifndef PC_FRICTIONLESS
+  Quad drag = PC_GATHER(contact, record, 6u);
+  precise Real f1 = pc_dot(t1, drag.v) * w0 * ratio; precise Real f2 = pc_dot(t2, drag.v) * w0 * ratio; precise Real ft = drag.s * w0 * ratio;
   PC_ST(contact_impulses, m, IMPULSE_T, f1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, f2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, ft);
+#endif
   PC_ST(contact_impulses, m, IMPULSE_LARGEST, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, zero); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, zero);
   precise Real load = l0 + l1 + l2 + l3; PC_ST(contact_impulses, m, IMPULSE_BEFORE, load);
   precise Vec3 means = mean.v * ratio; precise Real last_mean = mean.s * ratio;

@@ -35,7 +35,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   Mask relax = PC_INFO(load_ahead) > zero;
   PC_ST(contact_rows, m, ROW_SCALE, pc_select(far, pc_select(relax, zero, PC_REAL(1.0)), PC_LD(contact_rows, m, ROW_SCALE)));
+#ifndef PC_FRICTIONLESS
   PC_ST(contact_rows, m, ROW_TWIST, pc_select(pc_and(far, relax), zero, PC_LD(contact_rows, m, ROW_TWIST)));
   pc_drop(PC_PASS m, IMPULSE_T, far); pc_drop(PC_PASS m, IMPULSE_T + 1u, far); pc_drop(PC_PASS m, IMPULSE_T + 2u, far);
+#endif
 }
 #undef PC_SOME_ROWS

@@ -46,18 +46,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
   Mask bounced = push.n > PC_REAL(0.0);
-  // by symmetry the responses of sliding and twist to the normal rows are those of the rows to them
-  Twist after = v;
-  precise Real v1_after = v.v1 + (PC_LD(contact_rows, m, ROW_C) * push.n + PC_LD(contact_rows, m, ROW_C + 3u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 6u) * push.m2);
-  precise Real v2_after = v.v2 + (PC_LD(contact_rows, m, ROW_C + 1u) * push.n + PC_LD(contact_rows, m, ROW_C + 4u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 7u) * push.m2);
-  precise Real wn_after = v.wn + (PC_LD(contact_rows, m, ROW_C + 2u) * push.n + PC_LD(contact_rows, m, ROW_C + 5u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 8u) * push.m2);
-  after.v1 = v1_after; after.v2 = v2_after; after.wn = wn_after;
   precise Real load = k0 + k1 + k2 + k3;
-  Friction f = pc_friction(PC_PASS m, after, load, mass_scale);
+  Friction f = pc_friction(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), load, mass_scale);
   Real zero = PC_REAL(0.0);
   Real c1 = pc_select(bounced, f.change1, zero); Real c2 = pc_select(bounced, f.change2, zero); Real ct = pc_select(bounced, f.change_twist, zero);
   // a bounce is an impact: the velocity it leaves is the one to be read, whole (see synchronise)
   Real touch = pc_select(bounced, push.n, zero);
   a.phase = pc_select(a.inverse_mass > zero, pc_max(a.phase, touch), a.phase); b.phase = pc_select(b.inverse_mass > zero, pc_max(b.phase, touch), b.phase);
-  pc_apply(PC_PASS ia, ib, a, b, arms, pc_combine(t1, c1, t2, c2, n, push.n), pc_combine(t1, push.m1, t2, push.m2, n, ct));
+  Wrench w = pc_wrench(n, t1, t2, push, c1, c2, ct); pc_apply(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple);
 }

@@ -13,23 +13,30 @@ const uint ROW_B = 16u;        // b_i along t2
 const uint ROW_S = 20u;        // separation at the start of the step
 const uint ROW_MASS = 24u;     // effective mass of each normal row
 const uint ROW_D = 28u;        // response of normal row j to normal row i: 01 02 03 12 13 23
-const uint ROW_TT = 34u;       // inverse of the friction block: 11 12 22
-const uint ROW_KW = 37u;       // response of the twist to friction 1, 2
-const uint ROW_TWIST = 39u;    // effective mass of the twist
-const uint ROW_C = 40u;        // response of V_n, W_1, W_2 to friction 1, 2 and twist
-const uint ROW_MU_STATIC = 49u;
-const uint ROW_MU_KINETIC = 50u;
-const uint ROW_RADIUS = 51u;   // lever of the twist friction: root mean square distance of the points
-const uint ROW_E = 52u;        // restitution
-const uint ROW_APPROACH = 53u; // below 0: relative normal velocity of each point at the start of the step; above: impulses of contact_impact
-const uint ROW_SHARE = 57u;   // of body a in what the arms must shift by, see pc_arms
-const uint ROW_K = 58u;       // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
-const uint ROW_SCALE = 59u;   // of all effective masses in this sub-step, see pc_mass_scale
-const uint ROW_IMPACT = 60u;  // contact_impact's: below 0 none of it, 0 where it bounces, above 0 always
-const uint ROW_PATH = 61u;    // b's way against a until they meet
-const uint ROW_SEEN = 61u;    // the same place, where no shapes meet in flight: how often the bodies had been struck when contact_impact last looked
+const uint ROW_E = 34u;        // restitution
+const uint ROW_SHARE = 35u;    // of body a in what the arms must shift by, see pc_arms
+const uint ROW_APPROACH = 36u; // below 0: relative normal velocity of each point at the start of the step; above: impulses of contact_impact
+const uint ROW_K = 40u;        // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
+const uint ROW_SCALE = 41u;    // of all effective masses in this sub-step, see pc_mass_scale
+const uint ROW_IMPACT = 42u;   // contact_impact's: below 0 none of it, 0 where it bounces, above 0 always
+const uint ROW_PATH = 43u;     // b's way against a until they meet
+const uint ROW_SEEN = 43u;     // the same place, where no shapes meet in flight: how often the bodies had been struck when contact_impact last looked
+#ifndef PC_FRICTIONLESS  // what follows is friction's: where nothing has any, rows end here (frictionless_rows)
+const uint ROW_MU_STATIC = 46u;
+const uint ROW_MU_KINETIC = 47u;
+const uint ROW_TT = 48u;       // inverse of the friction block: 11 12 22
+const uint ROW_KW = 51u;       // response of the twist to friction 1, 2
+const uint ROW_TWIST = 53u;    // effective mass of the twist
+const uint ROW_C = 54u;        // response of V_n, W_1, W_2 to friction 1, 2 and twist
+const uint ROW_RADIUS = 63u;   // lever of the twist friction: root mean square distance of the points
+#endif
 // impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
 // the step 8..11; 12..15: slow means where a body stands in a joint tree, else the normal impulses that the sub-step before began with
+#ifdef PC_FRICTIONLESS
+const uint IMPULSES = 4u;
+#else
+const uint IMPULSES = 7u;
+#endif
 const uint IMPULSE_T = 4u;
 const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;

@@ -10,9 +10,12 @@ const uint SETTLE_ROUNDS = 16u;  // of a visit that takes rounds; all lanes make
 PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real arriving, Real coming, Real mass, Friction f) {
   precise Real least = mass * PC_INFO(least_load); Mask loaded = pc_max(load, pc_max(arriving, coming)) > least;
   precise Real more = arriving - load * PC_INFO(settled_load); precise Real less = load - pc_max(arriving, PC_REAL(0.0)) * PC_INFO(settled_load);
+  Mask several = pc_and(PC_LD(contact_rows, m, ROW_MASS + 1u) > PC_REAL(0.0), loaded); Mask changes = pc_max(more, less) > PC_REAL(0.0);
+#ifndef PC_FRICTIONLESS
   precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC) * PC_INFO(settled_friction); precise Real square = limit * limit;
-  Mask several = pc_and(PC_LD(contact_rows, m, ROW_MASS + 1u) > PC_REAL(0.0), loaded); Mask biased = PC_INFO(load_ahead) < PC_REAL(0.5);
-  return pc_and(several, pc_or(pc_max(more, less) > PC_REAL(0.0), pc_and(biased, change > square)));
+  Mask biased = PC_INFO(load_ahead) < PC_REAL(0.5); changes = pc_or(changes, pc_and(biased, change > square));
+#endif
+  return pc_and(several, changes);
 }
 
 // In a round all rows move at once, so that no point comes before another: each by a share of what would stop its own point that
@@ -47,12 +50,7 @@ PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real loos
 
     precise Real n0 = k0 - l0; precise Real n1 = k1 - l1; precise Real n2 = k2 - l2; precise Real n3 = k3 - l3;
     Push push = pc_push(PC_PASS m, n0, n1, n2, n3);
-    // by symmetry the responses of sliding and twist to the normal rows are those of the rows to them
-    precise Real t1 = v.v1 + (PC_LD(contact_rows, m, ROW_C) * push.n + PC_LD(contact_rows, m, ROW_C + 3u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 6u) * push.m2);
-    precise Real t2 = v.v2 + (PC_LD(contact_rows, m, ROW_C + 1u) * push.n + PC_LD(contact_rows, m, ROW_C + 4u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 7u) * push.m2);
-    precise Real tn = v.wn + (PC_LD(contact_rows, m, ROW_C + 2u) * push.n + PC_LD(contact_rows, m, ROW_C + 5u) * push.m1 + PC_LD(contact_rows, m, ROW_C + 8u) * push.m2);
-    Twist felt = v; felt.v1 = t1; felt.v2 = t2; felt.wn = tn; precise Real load = k0 + k1 + k2 + k3;
-    f = pc_friction(PC_PASS m, felt, load, mass_scale);
+    precise Real load = k0 + k1 + k2 + k3; f = pc_friction(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), load, mass_scale);
   }
   r.k0 = pc_select(unsettled, k0, r.k0); r.k1 = pc_select(unsettled, k1, r.k1); r.k2 = pc_select(unsettled, k2, r.k2); r.k3 = pc_select(unsettled, k3, r.k3);
   r.f.next1 = pc_select(unsettled, f.next1, r.f.next1); r.f.next2 = pc_select(unsettled, f.next2, r.f.next2); r.f.next_twist = pc_select(unsettled, f.next_twist, r.f.next_twist);

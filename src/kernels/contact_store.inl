@@ -3,17 +3,24 @@
 #include "contact_rows.inl"
 #include "contact_lasting.inl"
 
+#ifdef PC_FRICTIONLESS
+PC_FN Quad pc_lasting_friction(PC_IO Slot m, Real share) { return pc_quad(pc_zero3(), PC_REAL(0.0)); }
+#else
+PC_FN Quad pc_lasting_friction(PC_IO Slot m, Real share) {
+  Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(pc_ld3_rows(PC_PASS m, ROW_N), t1);
+  precise Vec3 friction = (t1 * PC_LD(contact_impulses, m, IMPULSE_T) + t2 * PC_LD(contact_impulses, m, IMPULSE_T + 1u)) * share;
+  precise Real twist = PC_LD(contact_impulses, m, IMPULSE_T + 2u) * share; return pc_quad(pc_snap3(friction), pc_snap(twist));
+}
+#endif
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index record = PC_ORDER(contact_order, m);
-  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Lasting l = pc_lasting(PC_PASS m);
   Real ratio = PC_INFO(impulse_ratio); precise Real share = l.share * ratio;
-  precise Vec3 friction = (t1 * PC_LD(contact_impulses, m, IMPULSE_T) + t2 * PC_LD(contact_impulses, m, IMPULSE_T + 1u)) * share;
-  precise Real twist = PC_LD(contact_impulses, m, IMPULSE_T + 2u) * share;
   precise Real l0 = l.l0 * ratio; precise Real l1 = l.l1 * ratio; precise Real l2 = l.l2 * ratio; precise Real l3 = l.l3 * ratio;
   PC_SCATTER(contact, record, 5u, pc_quad(Vec3(l0, l1, l2), l3));
   precise Real m0 = PC_LD(contact_impulses, m, IMPULSE_MEAN) * ratio; precise Real m1 = PC_LD(contact_impulses, m, IMPULSE_MEAN + 1u) * ratio;
   precise Real m2 = PC_LD(contact_impulses, m, IMPULSE_MEAN + 2u) * ratio; precise Real m3 = PC_LD(contact_impulses, m, IMPULSE_MEAN + 3u) * ratio;
   PC_SCATTER(contact, record, 8u, pc_quad(Vec3(pc_snap(m0), pc_snap(m1), pc_snap(m2)), pc_snap(m3)));
-  PC_SCATTER(contact, record, 6u, pc_quad(pc_snap3(friction), pc_snap(twist)));
+  PC_SCATTER(contact, record, 6u, pc_lasting_friction(PC_PASS m, share));
 }

@@ -60,15 +60,6 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
 }
 #ifndef PC_MEAN
 #include "contact_settle.inl"
-// What slides, by the load that the normal rows have left in place of the one that was foreseen. Where sub-steps are so short that loads are
-// those of roundings, the two differ in each by chance, and what slides would take up the sum.
-PC_FN Friction pc_by_load(PC_IO Slot m, Friction f, Real ahead, Real pressed) {
-  Real mu = PC_LD(contact_rows, m, ROW_MU_KINETIC); precise Real limit = ahead * mu; precise Real most = limit * limit * PC_REAL(0.999);
-  precise Real square = f.next1 * f.next1 + f.next2 * f.next2; precise Real by_load = pressed * pc_inverse_or_zero(ahead);
-  Real share = pc_select(square > most, by_load, PC_REAL(1.0)); precise Real n1 = f.next1 * share; precise Real n2 = f.next2 * share;
-  precise Real c1 = f.change1 + (n1 - f.next1); precise Real c2 = f.change2 + (n2 - f.next2);
-  Friction r = f; r.next1 = pc_snap(n1); r.next2 = pc_snap(n2); r.change1 = c1; r.change2 = c2; return r;
-}
 #endif
 
 // Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
@@ -124,16 +115,26 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }
-  if (PC_ANY(pc_min(PC_INFO(fine), PC_INFO(load_ahead)) > PC_REAL(0.0))) {  // lint: allow (the same for all lanes)
-    precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3; now.f = pc_by_load(PC_PASS m, now.f, ahead, pressed);
+#ifndef PC_FRICTIONLESS
+  // what slides goes by the load that was found in place of the one that was foreseen: where loads change, or are those of roundings, the two differ
+  // in each sub-step, and what slides would take up the sum
+  if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) {  // lint: allow (the same for all lanes)
+    precise Real found = now.k0 + now.k1 + now.k2 + now.k3; Friction by_load = pc_friction(PC_PASS m, v, found, mass_scale);
+    now.f.next1 = pc_select(unsettled, now.f.next1, by_load.next1); now.f.next2 = pc_select(unsettled, now.f.next2, by_load.next2); now.f.next_twist = pc_select(unsettled, now.f.next_twist, by_load.next_twist);
+    now.f.change1 = pc_select(unsettled, now.f.change1, by_load.change1); now.f.change2 = pc_select(unsettled, now.f.change2, by_load.change2); now.f.change_twist = pc_select(unsettled, now.f.change_twist, by_load.change_twist);
   }
+#endif
 #endif
 #ifdef PC_PLACED
   now.k0 = pc_select(acts, now.k0, l0); now.k1 = pc_select(acts, now.k1, l1); now.k2 = pc_select(acts, now.k2, l2); now.k3 = pc_select(acts, now.k3, l3);
+#ifndef PC_FRICTIONLESS
   now.f.next1 = pc_select(acts, now.f.next1, PC_LD(contact_impulses, m, IMPULSE_T)); now.f.next2 = pc_select(acts, now.f.next2, PC_LD(contact_impulses, m, IMPULSE_T + 1u));
   now.f.next_twist = pc_select(acts, now.f.next_twist, PC_LD(contact_impulses, m, IMPULSE_T + 2u));
 #endif
+#endif
+#ifndef PC_FRICTIONLESS
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
+#endif
   PC_ST(contact_impulses, m, 0u, now.k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));
   if (more) {  // lint: allow (as said)
     PC_ST(contact_impulses, m, 1u, now.k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));
@@ -143,7 +144,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real c0 = now.k0 - l0; precise Real c1 = now.k1 - l1; precise Real c2 = now.k2 - l2; precise Real c3 = now.k3 - l3;
   precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3;
   Push push = pc_push(PC_PASS m, c0, c1, c2, c3);
-  Visit r; r.impulse = pc_combine(t1, now.f.change1, t2, now.f.change2, n, push.n); r.couple = pc_combine(t1, push.m1, t2, push.m2, n, now.f.change_twist);
+  Wrench w = pc_wrench(n, t1, t2, push, now.f.change1, now.f.change2, now.f.change_twist); Visit r; r.impulse = w.impulse; r.couple = w.couple;
   precise Real held = pc_min(PC_LD(contact_impulses, m, IMPULSE_BEFORE), pressed); Mask touches = pc_max(load, pressed) > PC_REAL(0.0);
   r.touch = pc_select(touches, pc_max(held, PC_TINY), PC_REAL(0.0)); return r;
 }

@@ -16,9 +16,12 @@ PC_FN Real pc_size(Vec3 a) { precise Real s = pc_abs(a.x) + pc_abs(a.y) + pc_abs
 // As world/range.cpp; what is no number is not below anything.
 PC_FN Mask pc_inside(PC_IO BodyMotion m, BodyPose p, Vec3 inverse) {
   Real limit = PC_INFO(largest_state);
-  precise Real turned = pc_size(p.turned.v) + pc_abs(p.turned.s);
+#ifdef PC_STILL
+  Mask place = pc_size(p.place.v) < limit;
+#else
+  precise Real turned = pc_size(p.turned.v) + pc_abs(p.turned.s); Mask place = pc_and(pc_size(p.place.v) < limit, turned < PC_REAL(4.0));
+#endif
   precise Real spin = pc_size(m.angular.v) * pc_max(inverse.x, pc_max(inverse.y, inverse.z));
-  Mask place = pc_and(pc_size(p.place.v) < limit, turned < PC_REAL(4.0));
   return pc_and(place, pc_and(pc_size(m.linear.v) < limit, spin < limit));
 }
 
@@ -28,8 +31,10 @@ PC_FN void pc_kernel(PC_IO Index i) {
   BodyForce f; f.push = PC_GATHER(force, i, 0u); f.turn = PC_GATHER(force, i, 1u);
   Quad linear_before = PC_GATHER(velocity_parts, i, 0u);
   Quad angular_before = PC_GATHER(velocity_parts, i, 1u);
-  BodyPose p; p.place = PC_GATHER(pose, i, 0u); p.turned = PC_GATHER(pose, i, 1u);
-  p.place_low = PC_GATHER(pose, i, 2u); p.turned_low = PC_GATHER(pose, i, 3u);
+  BodyPose p; p.place = PC_GATHER(pose, i, 0u); p.place_low = PC_GATHER(pose, i, 2u);
+#ifndef PC_STILL
+  p.turned = PC_GATHER(pose, i, 1u); p.turned_low = PC_GATHER(pose, i, 3u);
+#endif
   Quad inverse = PC_GATHER(mass, i, 1u);
 
   pc_begin(m, pc_velocity_shift(PC_PASS m.linear, m.angular, linear_before, angular_before, f.push, f.turn));
@@ -39,7 +44,11 @@ PC_FN void pc_kernel(PC_IO Index i) {
   for (uint k = 0u; k < PC_COUNT(substeps); k++) {
     linear_before = m.linear; angular_before = m.angular;
     pc_integrate(PC_PASS m, f);
+#ifdef PC_STILL
+    pc_move(PC_PASS p, m.linear);
+#else
     pc_advance(PC_PASS p, m.linear, m.angular, inverse);
+#endif
   }
   HalfChanges c = pc_half_changes(PC_PASS m.linear, m.angular, linear_before, angular_before, PC_GATHER(mass, i, 0u), f);
 
@@ -50,9 +59,11 @@ PC_FN void pc_kernel(PC_IO Index i) {
   PC_SCATTER_IF(moves, motion, i, 0u, m.linear);
   PC_SCATTER_IF(moves, motion, i, 1u, m.angular);
   PC_SCATTER_IF(moves, pose, i, 0u, p.place);
-  PC_SCATTER_IF(moves, pose, i, 1u, p.turned);
   PC_SCATTER_IF(moves, pose, i, 2u, p.place_low);
+#ifndef PC_STILL
+  PC_SCATTER_IF(moves, pose, i, 1u, p.turned);
   PC_SCATTER_IF(moves, pose, i, 3u, p.turned_low);
+#endif
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(c.u, PC_REAL(0.0)));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(c.l, PC_REAL(0.0)));
   PC_SCATTER_IF(moves, velocity_parts, i, 2u, m.linear_low);

@@ -159,6 +159,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (s.bodies && !s.drag) out("drag", "no body has any");
   const bool seed = s.integrator == Integrator::seed;
   if (s.bodies && s.gyroscopic && seed) out("gyroscopic terms", "the original's scheme has none");
+  if (s.bodies && !s.rotates) out("rotation", "no body rotates");
   if (s.bodies && !s.gyroscopic) out("gyroscopic terms", "every body has three equal moments of inertia");
   if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
   if (plan.flight && s.resident && s.places[std::size_t(Stage::integrate)] == Place::gl)
@@ -178,6 +179,7 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (!s.contacts())
     out("impulses", idle ? all_sleep : s.shapes ? "nothing touches in this step" : "no two shapes could ever touch");
   if (s.free_contacts && !s.gyroscopic) out("refreshed contacts", "every body has three equal moments of inertia");
+  if (s.frictionless()) out("friction", "no contact has any");
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
   if (s.contacts() && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
@@ -188,13 +190,27 @@ struct Motion {
   Kernel begin, integrate, advance, synchronise, restagger;
 };
 Motion motion(const PlanSignature& s) {
-  const Kernel round = Kernel::advance_round;  // the same in every scheme
+  const Kernel round = s.rotates ? Kernel::advance_round : Kernel::advance_still;  // the same in every scheme
   if (s.integrator == Integrator::seed)
     return {Kernel::begin_seed, s.drag ? Kernel::integrate_seed : Kernel::integrate, s.gyroscopic ? Kernel::advance_seed : round,
             Kernel::synchronise_seed, Kernel::restagger};  // one octave alone
   const Kernel advance = s.gyroscopic ? Kernel::advance : round;
   if (s.drag) return {Kernel::begin_drag, Kernel::integrate_drag, advance, Kernel::synchronise_drag, Kernel::restagger_drag};
   return {Kernel::begin, Kernel::integrate, advance, Kernel::synchronise, Kernel::restagger};
+}
+
+/// The kernels of contacts that bodies answer.
+struct Contacts {
+  Kernel prepare, refresh, impact, warm, solve, placed, restitution, touch, store;
+};
+Contacts contacts(const PlanSignature& s) {
+  if (s.frictionless())
+    return {Kernel::contact_prepare_frictionless,     Kernel::contact_refresh_frictionless, Kernel::contact_impact_frictionless,
+            Kernel::contact_warm_frictionless,        Kernel::contact_solve_frictionless,   Kernel::contact_solve_placed_frictionless,
+            Kernel::contact_restitution_frictionless, Kernel::contact_touch_frictionless,   Kernel::contact_store_frictionless};
+  return {Kernel::contact_prepare, Kernel::contact_refresh,      Kernel::contact_impact,
+          Kernel::contact_warm,    Kernel::contact_solve,        Kernel::contact_solve_placed,
+          Kernel::contact_restitution, Kernel::contact_touch,    Kernel::contact_store};
 }
 
 // what acts on trees first: the floor under what lies on them comes later (see Colouring)
@@ -218,9 +234,9 @@ void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uin
 }
 void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   solve_on_trees(b, s, phase, substep);
-  if (s.free_contacts) b.kernel(Kernel::contact_solve, phase, substep);
+  if (s.free_contacts) b.kernel(contacts(s).solve, phase, substep);
   for (unsigned visit = 1; s.free_contacts && s.placed && visit < constants::settling_visits; visit++)
-    b.kernel(Kernel::contact_solve_placed, phase, substep);
+    b.kernel(contacts(s).placed, phase, substep);
 }
 
 /// A sub-step; `count`: of how many.
@@ -230,7 +246,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.pivots || (k + 1 == count && s.integrator != Integrator::seed)) b.kernel(Kernel::remember, Phase::biased, k);
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
-  if (k > 0) look_at_inertia(b, s, k);
+  if (k > 0 && s.rotates) look_at_inertia(b, s, k);
   b.own(Stage::integrate, true, k, count);
   b.own(Stage::joints, false, k, count);
   if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
@@ -239,13 +255,13 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
   if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
   b.own(Stage::impulses, false, k, count);
-  if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::biased, k);
+  if (s.free_contacts && s.gyroscopic) b.kernel(contacts(s).refresh, Phase::biased, k);
   // before what lasts of the contacts acts again: an impact is between velocities that bodies have
   if (s.free_contacts && s.impacts) {
-    b.kernel(Kernel::contact_impact, Phase::biased, k);
-    b.kernel(Kernel::contact_impact, Phase::relax, k, constants::impact_sweeps - 1);
+    b.kernel(contacts(s).impact, Phase::biased, k);
+    b.kernel(contacts(s).impact, Phase::relax, k, constants::impact_sweeps - 1);
   }
-  if (s.free_contacts) b.kernel(Kernel::contact_warm, Phase::biased, k);
+  if (s.free_contacts) b.kernel(contacts(s).warm, Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
@@ -264,7 +280,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_relax, Phase::relax, k);
   solve_free_joints(b, s, Phase::relax, k);
-  if (s.free_contacts && s.gyroscopic) b.kernel(Kernel::contact_refresh, Phase::relax, k);
+  if (s.free_contacts && s.gyroscopic) b.kernel(contacts(s).refresh, Phase::relax, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
   solve_contacts(b, s, Phase::relax, k);
   b.own(Stage::impulses, true, k, count, false);
@@ -275,8 +291,9 @@ void fly(Builder& b, const PlanSignature& s) {
   const std::uint32_t last = s.substeps - 1;
   b.enter(0);
   b.own(Stage::integrate, false, 0, s.substeps);
+  const Kernel still = s.drag ? Kernel::fly_still_drag : Kernel::fly_still;
   const Kernel round = s.drag ? Kernel::fly_round_drag : Kernel::fly_round, any = s.drag ? Kernel::fly_drag : Kernel::fly;
-  b.kernel(s.gyroscopic ? any : round, Phase::first, 0);
+  b.kernel(!s.rotates ? still : s.gyroscopic ? any : round, Phase::first, 0);
   b.own(Stage::impulses, true, last, s.substeps, true);
 }
 
@@ -296,11 +313,11 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   look_at_drives(b, s, Phase::first, 0);
   b.kernel(with.begin, Phase::first, 0);
   look_at_inertia(b, s, 0);
-  if (s.contacts()) b.kernel(Kernel::contact_prepare, Phase::first, 0);
+  if (s.contacts()) b.kernel(contacts(s).prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < count; k++) substep(b, s, with, k, count);
-  if (s.contacts() && s.restitution) b.kernel(Kernel::contact_restitution, Phase::relax, last);
-  if (s.contacts() && s.touches) b.kernel(Kernel::contact_touch, Phase::relax, last);
-  if (s.contacts()) b.kernel(Kernel::contact_store, Phase::last, last);
+  if (s.contacts() && s.restitution) b.kernel(contacts(s).restitution, Phase::relax, last);
+  if (s.contacts() && s.touches) b.kernel(contacts(s).touch, Phase::relax, last);
+  if (s.contacts()) b.kernel(contacts(s).store, Phase::last, last);
   b.kernel(with.synchronise, Phase::relax, last);
   if (octave > 0) {
     // what is remembered is of the world's sub-step, whatever the octave of the next step

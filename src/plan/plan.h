@@ -22,6 +22,7 @@ struct PlanSignature {
   bool bodies = false;                      // some move
   bool sleepers = false;                    // some sleep
   bool drag = false;                        // of some body
+  bool rotates = true;                      // some body does (BodyDef::rotates)
   bool gyroscopic = false;                  // some body has unequal moments
   bool trees = false;                       // joints that stand in a tree
   bool pivots = false;                      // trees of one body that turns about its pin
@@ -34,6 +35,7 @@ struct PlanSignature {
   bool shapes = false;                      // some pair could ever touch
   bool free_contacts = false;               // some do in this step, of bodies that stand in no tree
   bool tree_contacts = false;               // and of bodies that do
+  bool friction = false;                    // some contact resists sliding, rolling or turning
   bool restitution = false;                 // some contact bounces
   bool placed = false;                      // some contact is of a body that was just placed
   bool impacts = false;                     // or is between shapes that meet in flight
@@ -43,6 +45,8 @@ struct PlanSignature {
   bool islands_known = false;               // or has said it
   bool joints() const { return free_joints || tree_joints; }
   bool contacts() const { return free_contacts || tree_contacts; }
+  /// Nothing that touches has friction, and no tree answers it: rows end where those of friction would begin.
+  bool frictionless() const { return free_contacts && !tree_contacts && !friction; }
   /// Pins of pivots that nothing else acts on have nothing to solve.
   bool solves_trees() const { return trees && (!pivots_bare || tree_contacts || tree_joints); }
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;

@@ -282,6 +282,7 @@ struct Stepper::Inside {
     if (const std::uint32_t rows = schedule.trees.nodes().rows();
         (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
+    wanted.friction = found.friction || found.rolling;
     wanted.restitution = found.restitution;
     wanted.placed = found.placed && wanted.free_contacts;
     wanted.impacts = found.impacts;

@@ -22,6 +22,7 @@ inline PlanSignature signature(const StepSettings& settings, const WorldState& w
   s.bodies = schedule.moving > 0;
   s.sleepers = world.sleepers > 0;
   s.drag = schedule.drag;
+  s.rotates = schedule.rotates;
   s.gyroscopic = schedule.gyroscopic;
   s.trees = schedule.trees.forest().trees() > 0;
   s.pivots = !schedule.trees.pivots().empty();

@@ -216,13 +216,14 @@ void TreeSlots::pack(std::uint32_t width) {
 void Schedule::update_structure(const WorldState& state) {
   rows_.clear();
   own.forget();
-  drag = gyroscopic = false;
+  drag = gyroscopic = rotates = false;
   double lightest = 0, heaviest = 0;  // as inverse masses
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
     if (!state.goes(row)) continue;
     rows_.push_back(row);
     drag |= state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0;
     const Vec3 inverse = state.tables.get3(Buffer::mass, row, 4);
+    rotates |= inverse.x > 0;
     gyroscopic |= inverse.x != inverse.y || inverse.y != inverse.z;
     const double inverse_mass = state.tables.get(Buffer::motion, row, 3);
     if (inverse_mass <= 0) continue;

@@ -166,6 +166,7 @@ class Schedule {
   std::uint32_t moving = 0;           // without the padding
   std::span<const std::uint32_t> moving_bodies() const { return std::span(bodies).first(body_ranges_.back().end); }
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
+  bool rotates = false;                   // some body that moves rotates
   bool uneven = false;                    // masses differ by more than constants::uneven_masses
   std::uint64_t bodies_version = 0;
   ColouredSlots joints, contacts;  // joints: those that stand in no tree

@@ -63,6 +63,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.shapes = detector.possible();
   wanted.free_contacts = wanted.shapes && (wanted.bodies || !wanted.sleepers);
   wanted.tree_contacts = wanted.free_contacts && wanted.trees;
+  wanted.friction = detector.may_resist(world.state());
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
   wanted.touches = EventRecorder::of_contacts(in.settings) && wanted.contacts();

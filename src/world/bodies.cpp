@@ -25,6 +25,10 @@ Result<MassProperties> mass_of(const BodyDef& def) {
   return MassProperties{*def.mass, scale * m->moments};
 }
 
+Error no_rotation() {
+  return {ErrorCode::bad_argument, "The body does not rotate (BodyDef::rotates), so it has no angular velocity; create one that does."};
+}
+
 void write_material(Tables& t, std::uint32_t row, const Material& m) {
   t.set(Buffer::material, row, 0, m.static_friction);
   t.set(Buffer::material, row, 1, m.kinetic_friction);
@@ -79,8 +83,10 @@ Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
   if (!ok) return ok.error();
   if (def.kind != BodyKind::dynamic) return MassProperties{};
   Result<MassProperties> mass = mass_of(def);
-  if (mass) ok = check(*mass);
+  if (mass) ok = check(*mass, def.rotates);
+  if (ok && !def.rotates && def.angular_velocity != Vec3{}) ok = no_rotation();
   if (!ok) return ok.error();
+  if (mass && !def.rotates) mass->moments = {};
   return mass;
 }
 
@@ -240,6 +246,7 @@ Status World::set_angular_velocity(BodyId body, Vec3 w) {
   const std::uint32_t row = state_->body_ids.row(body.index);
   if (state_->bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
+  if (!state_->rotates(row) && w != Vec3{}) return no_rotation();
   state_->change(row);
   state_->bring_in_phase(row);
   state_->set_angular_velocity(row, w);
@@ -303,6 +310,7 @@ Status World::set_orientation_last(BodyId body, Quat last) {
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
+  if (!s.rotates(row)) return no_rotation();
   s.change(row);
   // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
   Quat d = s.orientation(row) * conjugate(last);
@@ -326,13 +334,14 @@ Result<MassProperties> World::mass_properties(BodyId body) const {
 
 Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
   if (!valid(body)) return stale("body");
-  if (Status ok = check(mass); !ok) return ok;
   WorldState& s = *state_;
   const std::uint32_t row = s.body_ids.row(body.index);
+  const bool rotates = s.rotates(row);
+  if (Status ok = check(mass, rotates); !ok) return ok;
   if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
   s.change(row);
   const Vec3 w = s.angular_velocity(row);
-  s.set_mass(row, mass);
+  s.set_mass(row, {mass.mass, rotates ? mass.moments : Vec3{}});
   s.structure_version++;
   s.bring_in_phase(row);
   s.set_angular_velocity(row, w);

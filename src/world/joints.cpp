@@ -128,6 +128,9 @@ Result<JointId> World::create_joint(const JointDef& given) {
   JointDef def = given;
   Status ok = check_ends(*this, def.a, def.b, "joint");
   if (ok) ok = check(def);
+  for (const BodyId body : {def.a, def.b})
+    if (ok && !state_->rotates(state_->body_ids.row(body.index)))
+      ok = Error{ErrorCode::bad_joint, "A body that does not rotate (BodyDef::rotates) takes no joint; create one that does, or a spring."};
   if (!ok) return ok.error();
   return state_->joint_ids.id<JointId>(new_row(*state_, def, {}));
 }

@@ -146,7 +146,7 @@ void WorldState::set_mass(std::uint32_t row, const MassProperties& m) {
   const Vec3 i = m.moments;
   tables.set3(Buffer::mass, row, 0, i);
   tables.set(Buffer::mass, row, 3, m.mass);
-  tables.set3(Buffer::mass, row, 4, {1 / i.x, 1 / i.y, 1 / i.z});
+  tables.set3(Buffer::mass, row, 4, i.x > 0 ? Vec3{1 / i.x, 1 / i.y, 1 / i.z} : Vec3{});
   tables.set(Buffer::motion, row, 3, 1 / m.mass);
   tables.set(Buffer::mass, row, 7, middle_axis(i));
 }
@@ -212,7 +212,7 @@ void WorldState::sum_forces(std::uint32_t row) {
 
 void WorldState::give_forces(std::uint32_t row, Vec3 force, Vec3 torque) {
   tables.set3(gathered ? gathered->force : Buffer::force, row, 0, force);
-  tables.set3(gathered ? gathered->torque : Buffer::force, row, gathered ? 0 : 4, torque);
+  tables.set3(gathered ? gathered->torque : Buffer::force, row, gathered ? 0 : 4, rotates(row) ? torque : Vec3{});
 }
 
 void WorldState::change_forces(std::uint32_t row) {

@@ -191,6 +191,11 @@ struct WorldState {
   void bring_in_phase(std::uint32_t row);
   void set_angular_velocity(std::uint32_t row, Vec3 w);
   void set_mass(std::uint32_t row, const MassProperties& mass);
+  /// BodyDef::rotates: the moments of others are stored as zero, and so are their inverses.
+  bool rotates(std::uint32_t row) const {
+    const Vec3 moments = bodies[row].frozen ? frozen.at(bodies[row].index).moments : tables.get3(Buffer::mass, row, 0);
+    return bodies[row].kind != BodyKind::dynamic || moments.x > 0;
+  }
   /// Takes a force out of the world's list, not out of its body's.
   void drop_force(std::uint32_t force);
   /// Of constants and callbacks. Where kernels of the host's own make forces (`gathered`), they begin with these.

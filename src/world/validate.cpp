@@ -109,7 +109,9 @@ Status check(const Material& m) {
   return {};
 }
 
-Status check(const MassProperties& m) {
+Status check(const MassProperties& given, bool rotates) {
+  MassProperties m = given;
+  if (!rotates) m.moments = {1, 1, 1};
   if (!std::isfinite(m.mass) || !finite(m.moments))
     return Error{ErrorCode::not_finite, "The mass or a moment of inertia is not a number; give finite ones."};
   if (!(m.mass > 0))

@@ -17,7 +17,8 @@ Status check_finite(Vec3 value, const char* what);
 Status check_unit(Quat& value, const char* what);
 Status check(const ShapeDef& shape);
 Status check(const Material& material);
-Status check(const MassProperties& mass);
+/// `rotates`: BodyDef::rotates; the moments of others are not looked at.
+Status check(const MassProperties& mass, bool rotates = true);
 Status check(AngleFreedom& freedom);
 /// Everything of a body; `orientation` is then the normalised one. Answers its mass, nothing unless it is dynamic.
 Result<MassProperties> check(const BodyDef& def, Quat& orientation);
