@@ -66,6 +66,7 @@ struct OwnKernel {
   std::vector<Access> first, second;  // of all forms but the first, which are two programs: what each of them binds
   std::size_t real_bytes = 4;         // of the world
   std::vector<std::byte> parameters;  // in the world's precision, each from a multiple of `parameter_bytes` on
+  std::vector<std::byte> parameters_before;  // as the last step had them; empty: the host has changed none since
   static constexpr std::size_t parameter_bytes = 12 * 8;
 
   bool writes(Buffer buffer) const {
