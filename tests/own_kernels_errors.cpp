@@ -2,6 +2,7 @@
 // removed stops the step, not the world.
 #include "glcompute/compile_log.h"
 #include "pcphys/write_kernel.h"
+#include "plan/kernel_lines.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -29,12 +30,60 @@ PCPHYS_KERNEL(drain, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), { fuel = fuel -
 PCPHYS_KERNEL(refill, (PC_OUT(Real) fuel, PC_PARAM(Real) full), { fuel = full; })
 PCPHYS_KERNEL(reset, (PC_OUT(Real) fuel), { fuel = PC_REAL(0.0); })
 
+const int no_glsl_line = __LINE__ + 1;
 PCPHYS_KERNEL(no_glsl, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), {
+  // what is left; and half of it
   Real left = fuel;
+  /* three times,
+     no more */
   for (uint i = 0u; i < 3u; i++) left = left - flow;
   auto half = left * PC_REAL(0.5);
   fuel = half;
 })
+
+// In C++ what is read only would be refused by the compiler, so these have no C++ side: the text as the preprocessor leaves it.
+#define GLSL_ALONE(Name, signature, ...)                                                       \
+  struct Name {                                                                                \
+    static KernelText text() { return {#Name, #signature, #__VA_ARGS__, __FILE__, __LINE__}; } \
+  };
+const int writes_line = __LINE__ + 1;
+GLSL_ALONE(writes_what_it_reads, (PC_INOUT(Real) fuel, PC_IN(Real) a), {
+  // `a` is only read
+  Real full = PC_REAL(1.0);
+
+  fuel = full;
+  a = full;
+})
+const int unknown_name_line = __LINE__ + 1;
+GLSL_ALONE(unknown_name,
+           (PC_INOUT(Real) fuel,  // kg
+            PC_IN(Real) oil),
+           { fuel = oil; })
+const int wrong_type_line = __LINE__ + 1;
+GLSL_ALONE(wrong_type,  // the property is a Real
+           (PC_INOUT(Vec3) fuel, PC_IN(Real) a), { fuel = fuel; })
+const int read_only_line = __LINE__ + 1;
+GLSL_ALONE(read_only,
+           (PC_IN(Real) fuel, PC_INOUT(Vec3) force,  // these may be
+            PC_INOUT(Vec3) position),
+           { position = position; })
+
+/// The file as the compiler was given it may be relative to where it ran.
+constexpr const char* this_file = PCPHYS_SOURCE_DIR "/tests/own_kernels_errors.cpp";
+KernelText here(KernelText text) {
+  text.file = this_file;
+  return text;
+}
+std::string refusal(World& world, const KernelText& text) {
+  StepSettings settings;
+  settings.set_all(Place::gl);
+  Stepper stepper(settings);
+  KernelDef def{.text = text};
+  if (std::string(text.signature).find("flow") != std::string::npos) def.parameters = {{"flow", 0.1}};
+  const Status refused = stepper.add_kernel(world, def);
+  REQUIRE(!refused);
+  return refused.error().message;
+}
 
 }  // namespace
 
@@ -131,23 +180,79 @@ TEST_CASE("GLSL that does not compile comes back with the host's own lines") {
   CHECK(must(p.world.get(must(p.world.property<Real>("fuel")), p.world.bodies()[0])) == 0);
 }
 
-TEST_CASE("of a text that the preprocessor made one line of, the statement at fault is quoted") {
+TEST_CASE("of a text that the preprocessor made one line of, errors name the line of its file") {
   require_gl();
   Populated p;
-  StepSettings settings;
-  settings.set_all(Place::gl);
-  Stepper stepper(settings);
-  const Status refused = stepper.add_kernel(p.world, {.text = no_glsl::text(), .parameters = {{"flow", 0.1}}});
-  REQUIRE(!refused);
-  const std::string& said = refused.error().message;
-  CHECK_MESSAGE(said.find("\n  there: auto half = left * ") != said.npos, said);
-  CHECK_MESSAGE(said.find("own_kernels_errors.cpp:" + std::to_string(no_glsl::text().line)) != said.npos, said);
+  const std::string said = refusal(p.world, here(no_glsl::text()));
+  CHECK_MESSAGE(said.find(std::string("there: ") + this_file + ":" + std::to_string(no_glsl_line + 6) +
+                          ": auto half = left * ") != said.npos,
+                said);
+  const std::string constant = refusal(p.world, here(writes_what_it_reads::text()));
+  CHECK_MESSAGE(
+      constant.find(std::string("there: ") + this_file + ":" + std::to_string(writes_line + 5) + ": a =") != constant.npos,
+      constant);
+}
+
+TEST_CASE("where that file is not at hand, or is another by now, the statement is quoted") {
+  require_gl();
+  Populated p;
+  for (const char* file : {"not_there.cpp", PCPHYS_SOURCE_DIR "/tests/own_kernels.cpp"}) {
+    KernelText text = no_glsl::text();
+    text.file = file;
+    const std::string said = refusal(p.world, text);
+    CHECK_MESSAGE(said.find("\n  there: auto half = left * ") != said.npos, said);
+    CHECK_MESSAGE(said.find(file + (":" + std::to_string(no_glsl::text().line))) != said.npos, said);
+    CHECK_MESSAGE(said.find(std::string("was not found in ") + file) != said.npos, said);
+  }
+}
+
+TEST_CASE("what is refused of a signature names the line of the argument") {
+  Populated p;
+  const auto at = [](int line) { return std::string(this_file) + ":" + std::to_string(line); };
+  CHECK(refusal(p.world, here(unknown_name::text())).find(at(unknown_name_line + 2) + ".") != std::string::npos);
+  CHECK(refusal(p.world, here(wrong_type::text())).find(at(wrong_type_line + 1) + ".") != std::string::npos);
+  CHECK(refusal(p.world, here(read_only::text())).find(at(read_only_line + 2) + ".") != std::string::npos);
+  CHECK(refusal(p.world, text("k", "(PC_IN(Real) oil)", "{}")).ends_with("At mine.glsl:1."));
+}
+
+TEST_CASE("lines are found by the macro's first line and by its last, and what NVIDIA says comes with them") {
+  const std::string file =
+      "\n// leak, of fuel\nMINE (leak,  // why\n  (PC_INOUT(Real) fuel,\n   PC_IN(Real) a), {\n  /* one\n  two */ fuel = b;\n"
+      "  if (a > fuel) fuel =\n    a;\n})\nMINE(leak, (PC_IN(Real) a), {})\n";
+  OwnKernel k;
+  k.name = "leak";
+  k.signature = "(PC_INOUT(Real) fuel, PC_IN(Real) a)";
+  k.body = "{ fuel = b; if (a > fuel) fuel = a; }";
+  k.file = "mine.cpp";
+  for (const int line : {3, 9, 10}) {
+    k.line = line;
+    const std::optional<KernelLines> found = find_lines(file, k);
+    REQUIRE(found);
+    CHECK(found->signature.line == 4);
+    CHECK(found->signature.line_at(k.signature.find("PC_IN(")) == 5);
+    CHECK(found->body.line == 5);
+    CHECK(found->body.text == "{ \n\nfuel = b; \nif (a > fuel) fuel = \na; \n}");
+  }
+  k.line = 2;
+  CHECK(!find_lines(file, k));
+  k.line = 10;
+  k.body = "{ fuel = b; if (a < fuel) fuel = a; }";
+  CHECK(!find_lines(file, k));
+  k.body = "{\n\n fuel = b;\n}";
+  k.line = 5;
+  k.own_lines = true;
+  const ProgramSource source = must(own_kernel_source(k, {}));
+  const std::string place = std::to_string(std::ranges::find(source.files, "mine.cpp") - source.files.begin());
+  for (const std::string& said :
+       {place + "(7) : error C1503: undefined variable \"b\"", place + ":7(9): error: `b' undeclared",
+        std::string("0:7(1): error: assignment to read-only variable"), std::string("0(7) : error C7563")})
+    CHECK(with_quotes(said, source) == said + "\n  there: mine.cpp:7: fuel = b;");
 }
 
 TEST_CASE("statements and what compilers say of them") {
   CHECK(by_statement("{ a = b; for (uint i = 0u; i < 3u; i++) { c(i); } }  // d; e") ==
         "{\na = b;\nfor (uint i = 0u; i < 3u; i++) {\nc(i);\n}\n}\n");
-  const ProgramSource source{"#version 430\n#line 1 0\nvoid f();\n#line 7 1\n{\n  x = y;\n}\n#line 1 0\nvoid main() {}\n", {}};
+  const ProgramSource source{"#version 430\n#line 1 0\nvoid f();\n#line 7 1\n{\n  x = y;\n}\n#line 1 0\nvoid main() {}\n", {}, 0};
   CHECK(with_quotes("1:8(7): error: `y' undeclared", source) == "1:8(7): error: `y' undeclared\n  there: x = y;");  // Mesa
   CHECK(with_quotes("1(8) : error C1503: undefined variable \"y\"\n0(2) : error", source) ==                        // NVIDIA
         "1(8) : error C1503: undefined variable \"y\"\n  there: x = y;\n0(2) : error");

@@ -39,6 +39,12 @@ bool find_mark(std::string_view said, Mark& mark) {
   return take(said, mark.line);
 }
 
+std::string place_of(const Mark& mark, const ProgramSource& source) {
+  const std::string& file = mark.file < source.files.size() ? source.files[mark.file] : "";
+  if (mark.file == 0 || file.empty() || file.ends_with(counted_by_statement)) return {};
+  return file + ":" + std::to_string(mark.line) + ": ";
+}
+
 std::string_view line_at(std::string_view text, const Mark& wanted) {
   constexpr std::string_view directive = "#line ";
   Mark here;
@@ -55,6 +61,15 @@ std::string_view line_at(std::string_view text, const Mark& wanted) {
     here.line++;
   }
   return {};
+}
+
+/// Mesa says file 0 of what is assigned and must not be, whatever #line gave: then it is of the host's own text, if that has such a line.
+std::string_view line_at(const ProgramSource& source, Mark& mark) {
+  const Mark host{mark.line, source.host};
+  const std::string_view at = mark.file == 0 && source.host != 0 ? line_at(source.text, host) : std::string_view();
+  if (at.empty()) return line_at(source.text, mark);
+  mark = host;
+  return at;
 }
 
 }  // namespace
@@ -77,8 +92,10 @@ std::string with_quotes(std::string_view log, const ProgramSource& source) {
     const std::string_view said = take_line(log);
     text += (text.empty() ? "" : "\n") + std::string(said);
     Mark mark;
-    const std::string_view at = find_mark(said, mark) ? line_at(source.text, mark) : std::string_view();
-    if (!at.empty()) text += "\n  there: " + std::string(at.substr(0, longest_quote)) + (at.size() > longest_quote ? "..." : "");
+    const std::string_view at = find_mark(said, mark) ? line_at(source, mark) : std::string_view();
+    if (!at.empty())
+      text += "\n  there: " + place_of(mark, source) + std::string(at.substr(0, longest_quote)) +
+              (at.size() > longest_quote ? "..." : "");
   }
   return text;
 }

@@ -277,10 +277,10 @@ std::string second_main(const OwnKernel& k) {
   return k.form == OwnKernel::Form::joined ? ends_main(k) : pair_totals_main(k);
 }
 
-/// A text of one line has no lines to speak of: its statements are counted instead.
+/// A joined text has no lines to speak of: its statements are counted instead.
 Status add_body(const OwnKernel& k, SourceText& text) {
-  if (k.body.find('\n') != k.body.npos) return text.add_text(k.body, k.file, std::uint32_t(k.line));
-  return text.add_text(by_statement(k.body), k.file + ":" + number(std::uint64_t(k.line)) + " statement by statement", 1);
+  if (k.own_lines) return text.add_text(k.body, k.file, std::uint32_t(k.line));
+  return text.add_text(by_statement(k.body), k.file + ":" + number(std::uint64_t(k.line)) + std::string(counted_by_statement), 1);
 }
 
 }  // namespace
@@ -299,7 +299,9 @@ Result<ProgramSource> own_kernel_source(const OwnKernel& k, const SourceOptions&
   text.add(own.variables() + info_declaration() + own.function());
   if (Status status = add_body(k, text); !status) return status.error();
   text.add("\n#line 1 0\n" + first_main(k));
-  return text.take();
+  ProgramSource source = text.take();
+  source.host = std::uint32_t(source.files.size() - 1);
+  return source;
 }
 
 Result<ProgramSource> own_totals_source(const OwnKernel& k, const SourceOptions& options) {

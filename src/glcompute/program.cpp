@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glcompute/compile_log.h"
+#include "plan/kernel_lines.h"
 
 namespace pcphys {
 namespace {
@@ -168,10 +169,28 @@ Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, c
   return KernelProgram{*program, glGetUniformLocation(*program, "pc_range")};
 }
 
-Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache) {
+namespace {
+
+/// What is said of a joined text is asked for once more, of the text with the lines of its file.
+Result<std::uint32_t> link_own(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache) {
   const Result<ProgramSource> source = own_kernel_source(kernel, options);
-  if (!source) return source.error();
-  const Result<std::uint32_t> program = link_program(*source, kernel.name, cache);
+  Result<std::uint32_t> program = source ? link_program(*source, kernel.name, cache) : Result<std::uint32_t>(source.error());
+  if (program || kernel.own_lines) return program;
+  const std::optional<KernelLines> lines = read_lines(kernel);
+  if (!lines)
+    return Error{program.error().code, program.error().message + " The text was not found in " + kernel.file +
+                                           ", so that its lines are not known: its statements are quoted."};
+  OwnKernel laid_out = kernel;
+  laid_out.body = lines->body.text;
+  laid_out.line = lines->body.line;
+  laid_out.own_lines = true;
+  return link_own(laid_out, options, cache);
+}
+
+}  // namespace
+
+Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache) {
+  const Result<std::uint32_t> program = link_own(kernel, options, cache);
   if (!program) return program.error();
   const auto location = [](GLuint id, const std::string& name) { return glGetUniformLocation(id, name.c_str()); };
   OwnProgram own{

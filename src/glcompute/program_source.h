@@ -28,6 +28,7 @@ struct SourceOptions {
 struct ProgramSource {
   std::string text;
   std::vector<std::string> files;  // by the number that #line gives them, for the driver's messages
+  std::uint32_t host = 0;          // the number of the file with the host's own text; 0: none
 };
 
 Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options);

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "pcphys/constants.h"
+#include "plan/kernel_lines.h"
 #include "plan/own_words.h"
 #include "world/validate.h"
 
@@ -49,9 +50,11 @@ std::string property_of(const OwnArgument& a) {
 /// Words and signs of a signature.
 class Tokens {
  public:
-  explicit Tokens(std::string_view text) : rest_(text) {}
+  /// `reached`: where in the text the last one stands.
+  Tokens(std::string_view text, std::size_t& reached) : rest_(text), size_(text.size()), reached_(reached) {}
   std::string_view next() {
     while (!rest_.empty() && (rest_[0] == ' ' || rest_[0] == '\n' || rest_[0] == '\t')) rest_.remove_prefix(1);
+    reached_ = size_ - rest_.size();
     if (rest_.empty()) return {};
     const auto part_of_word = [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -66,19 +69,21 @@ class Tokens {
 
  private:
   std::string_view rest_;
+  std::size_t size_, &reached_;
 };
 
-Status parse(OwnKernel& k, std::string_view signature) {
+Status parse(OwnKernel& k) {
   const Error wrong =
-      bad(k, "has the signature `" + std::string(signature) +
+      bad(k, "has the signature `" + k.signature +
                  "`; write it as (PC_IN(Vec3) position, PC_INOUT(Real) fuel, PC_PARAM(Real) flow), with PC_OUT for what "
                  "is written anew, and types Real, Vec3, Quaternion, Quad, Sym3, Mat3, float, double, int or uint.");
-  Tokens tokens(signature);
+  Tokens tokens(k.signature, k.reached);
   if (!tokens.take("(")) return wrong;
   std::string_view sign = ",";
   while (sign == ",") {
     OwnArgument argument;
     const auto* kind = std::ranges::find(kind_words, tokens.next());
+    argument.at = k.reached;
     if (kind == std::end(kind_words) || !tokens.take("(")) return wrong;
     const auto* type = std::ranges::find(type_words, tokens.next(), &TypeWord::word);
     if (type == std::end(type_words) || !tokens.take(")")) return wrong;
@@ -92,6 +97,7 @@ Status parse(OwnKernel& k, std::string_view signature) {
     sign = tokens.next();
   }
   if (sign != ")" || !tokens.next().empty()) return wrong;
+  k.reached = 0;
   if (k.arguments.size() > OwnKernel::most_arguments)
     return bad(k, "has " + std::to_string(k.arguments.size()) + " arguments; at most 32 are possible.");
   return {};
@@ -197,16 +203,19 @@ Status check_ending(const OwnKernel& k, const OwnArgument& a) {
 }
 
 /// Of a joint with its bodies: what does not go with that.
-Status check_joined(const OwnKernel& k) {
+Status check_joined(OwnKernel& k) {
   using Kind = OwnArgument::Kind;
   if (k.table != Table::joint)
     return bad(k, "names the bodies of a joint (PC_A, PC_B); let it run over joints: .over = joint_table.");
-  for (const OwnArgument& a : k.arguments)
+  for (const OwnArgument& a : k.arguments) {
+    k.reached = a.at;
     if (a.kind == Kind::self || a.kind == Kind::other || (a.summed() && a.of_three() == 0))
       return bad(
           k, "is of a joint and its bodies, and says " + std::string(kind_words[std::size_t(a.kind)]) + " of " + quoted(a.name) +
                  "; what bodies are given is PC_ADD_A or PC_ADD_B, and a total of all joints is made by another kernel of a "
                  "property that this one writes (PC_OUT).");
+  }
+  k.reached = 0;
   return {};
 }
 
@@ -233,6 +242,7 @@ Status find_form(OwnKernel& k) {
   if (k.form != Form::pair && has(Kind::add))
     return bad(k, "says PC_ADD, which is for sums over pairs: declare what is read as PC_SELF and PC_OTHER.");
   for (const OwnArgument& a : k.arguments) {
+    k.reached = a.at;
     if (Status ok = check_ending(k, a); !ok) return ok;
     const bool ordered = components(a.type) == 1 || a.type == PropertyType::vec3 || a.type == PropertyType::vec4;
     if (a.summed() && (a.type == PropertyType::quat || (a.kind >= Kind::least && !ordered)))
@@ -241,6 +251,7 @@ Status find_form(OwnKernel& k) {
                                               ", which has none; sums are of numbers, vectors and matrices, PC_MIN and PC_MAX of "
                                               "numbers and vectors."};
   }
+  k.reached = 0;
   if ((k.form == Form::pair ? k.loop != nullptr : k.pairs != nullptr))
     return bad(k, k.form == Form::pair ? "is of pairs; write it with PCPHYS_PAIR_KERNEL."
                                        : "names no PC_SELF and no PC_OTHER; write it with PCPHYS_KERNEL.");
@@ -292,6 +303,41 @@ Status check_blocks(const OwnKernel& k) {
                     "(docs/properties.md); a vec4 or a mat3 may hold several of your own.");
 }
 
+Status fill(const WorldState& s, const KernelDef& def, OwnKernel& k) {
+  if (k.name.empty()) return bad(k, "has no name.");
+  if (k.body.empty() && !k.in_cpp()) return bad(k, "has neither a C++ nor a GLSL side; write it with PCPHYS_KERNEL.");
+  if (k.stage == Stage::islands)
+    return bad(k, "is of the stage islands, which has kernels of the library alone; use integrate, joints or impulses.");
+  const Result<Table> table = s.table_of(def.over);
+  if (!table) return table.error();
+  k.table = *table;
+  Status ok = parse(k);
+  if (ok) ok = find_form(k);
+  if (ok) use_lists(k);
+  for (OwnArgument& a : k.arguments) {
+    if (!ok) break;
+    k.reached = a.at;
+    ok = a.kind == OwnArgument::Kind::parameter ? bind_parameter(k, a, def.parameters) : bind_property(s, k, a);
+  }
+  if (!ok) return ok;
+  k.reached = 0;
+  for (const KernelParameter& p : def.parameters)
+    if (!contains(k.arguments, p.name, &OwnArgument::name))
+      return bad(k, "is given the parameter " + quoted(p.name) + ", which its signature does not have.");
+  if (ok = check_blocks(k); !ok) return ok;
+  const bool forces = k.writes(Buffer::force);
+  if (forces && (k.stage != Stage::integrate || k.after))
+    return bad(k, "writes force or torque, which the stage integrate takes up; run it before that stage.");
+  if (std::ranges::none_of(k.accesses, &Access::write))
+    return bad(k,
+               k.form == OwnKernel::Form::pair ? "writes nothing; declare what it sums as PC_ADD or PC_SUM."
+               : k.form == OwnKernel::Form::joined
+                   ? "writes nothing; declare what it gives to bodies as PC_ADD_A or PC_ADD_B, or what it changes of the joint "
+                     "as PC_INOUT or PC_OUT."
+                   : "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
+  return {};
+}
+
 }  // namespace
 
 std::uint32_t pair_chunk(std::uint32_t count) {
@@ -307,7 +353,9 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   auto k = std::make_shared<OwnKernel>();
   k->serial = ++serials;
   k->name = def.text.name;
+  k->signature = def.text.signature;
   k->body = def.text.body ? def.text.body : "";
+  k->own_lines = k->body.find('\n') != k->body.npos;
   k->file = def.text.file;
   k->line = def.text.line;
   k->real_bytes = s.tables.real_bytes();
@@ -319,36 +367,10 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   k->after = def.after;
   k->once_a_step = def.once_a_step;
   k->follows = def.follows;
-  if (k->name.empty()) return bad(*k, "has no name.");
-  if (k->body.empty() && !k->in_cpp()) return bad(*k, "has neither a C++ nor a GLSL side; write it with PCPHYS_KERNEL.");
-  if (k->stage == Stage::islands)
-    return bad(*k, "is of the stage islands, which has kernels of the library alone; use integrate, joints or impulses.");
-  const Result<Table> table = s.table_of(def.over);
-  if (!table) return table.error();
-  k->table = *table;
-  Status ok = parse(*k, def.text.signature);
-  if (ok) ok = find_form(*k);
-  if (ok) use_lists(*k);
-  for (OwnArgument& a : k->arguments) {
-    if (!ok) break;
-    ok = a.kind == OwnArgument::Kind::parameter ? bind_parameter(*k, a, def.parameters) : bind_property(s, *k, a);
-  }
-  if (!ok) return ok.error();
-  for (const KernelParameter& p : def.parameters)
-    if (!contains(k->arguments, p.name, &OwnArgument::name))
-      return bad(*k, "is given the parameter " + quoted(p.name) + ", which its signature does not have.");
-  if (ok = check_blocks(*k); !ok) return ok.error();
-  const bool forces = k->writes(Buffer::force);
-  if (forces && (k->stage != Stage::integrate || k->after))
-    return bad(*k, "writes force or torque, which the stage integrate takes up; run it before that stage.");
-  if (std::ranges::none_of(k->accesses, &Access::write))
-    return bad(*k,
-               k->form == OwnKernel::Form::pair ? "writes nothing; declare what it sums as PC_ADD or PC_SUM."
-               : k->form == OwnKernel::Form::joined
-                   ? "writes nothing; declare what it gives to bodies as PC_ADD_A or PC_ADD_B, or what it changes of the joint "
-                     "as PC_INOUT or PC_OUT."
-                   : "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
-  return k;
+  const Status ok = fill(s, def, *k);
+  if (ok) return k;
+  const std::string place = place_in_signature(*k, k->reached);
+  return Error{ok.error().code, ok.error().message + (place.empty() ? "" : " At " + place + ".")};
 }
 
 Status check_properties(const WorldState& s, const OwnKernel& k) {

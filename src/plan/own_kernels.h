@@ -21,6 +21,7 @@ struct OwnArgument {
   std::string property;  // that it names: without _other, _self, _a or _b
   Kind kind = Kind::in;
   PropertyType type = PropertyType::real;
+  std::size_t at = 0;  // in the signature
   // of a property
   Table table{};
   Buffer buffer{};
@@ -47,8 +48,10 @@ struct OwnKernel {
   enum class Form : std::uint8_t { element, pair, joined, reduction };
 
   std::uint64_t serial = 0;  // another for each kernel of the process
-  std::string name, body, file;
+  std::string name, signature, body, file;
   int line = 0;
+  bool own_lines = false;   // the body has the lines of its file, from `line` on; else the preprocessor joined them
+  std::size_t reached = 0;  // how far its signature was read and resolved: where what is refused stands
   Form form = Form::element;
   KernelLoop loop = nullptr;
   PairsLoop pairs = nullptr;
@@ -63,6 +66,7 @@ struct OwnKernel {
   std::vector<Access> first, second;  // of all forms but the first, which are two programs: what each of them binds
   std::size_t real_bytes = 4;         // of the world
   std::vector<std::byte> parameters;  // in the world's precision, each from a multiple of `parameter_bytes` on
+  std::vector<std::byte> parameters_before;  // as the last step had them; empty: the host has changed none since
   static constexpr std::size_t parameter_bytes = 12 * 8;
 
   bool writes(Buffer buffer) const {
@@ -78,7 +82,8 @@ std::uint32_t pair_chunk(std::uint32_t count);
 /// Rows that a level of a reduction makes one of.
 inline constexpr std::uint32_t reduction_block = 64;
 
-/// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers), unknown_name, wrong_type.
+/// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers), unknown_name, wrong_type;
+/// they name the kernel's file and line, within the signature the line of the argument.
 Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& state, const KernelDef& def);
 
 /// Whether the properties that it was resolved to are still there; stale_id, naming the one that is not.

@@ -20,6 +20,7 @@
 #include "plan/step_infos.h"
 #include "step/called_forces.h"
 #include "step/check_settings.h"
+#include "step/force_jumps.h"
 #include "step/own_work.h"
 #include "step/plans.h"
 #include "step/processor_state.h"
@@ -66,6 +67,7 @@ struct Stepper::Inside {
   int tries = 0;                                // of this step
   Vec3 sound_gravity;                           // the last that was looked at
   CalledForces called;
+  ForceJumps jumps;
   StepPlan no_plan;
   Clock::time_point began;
 
@@ -154,6 +156,7 @@ struct Stepper::Inside {
       if (leaving.empty()) return put_rest_back(s, ok);
       freeze_leaving(s);
     }
+    ForceJumps::forget(own.ordered());
     record_events(s, dt);
     if (settings.sleep) let_sleep(s, dt);
     recorder.follow_sleep(settings, s);
@@ -277,6 +280,7 @@ struct Stepper::Inside {
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
     if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
+    jumps.act(s, own.ordered(), schedule.moving_bodies(), h, runner);
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
     if (const std::uint32_t rows = schedule.trees.nodes().rows();

@@ -101,6 +101,7 @@ Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& pa
   OwnKernel* k = inside_->own.find(kernel);
   if (!k)
     return Error{ErrorCode::unknown_name, "There is no kernel \"" + std::string(kernel) + "\"; Stepper::add_kernel adds one."};
+  if (k->parameters_before.empty()) k->parameters_before = k->parameters;
   return set(*k, parameter);
 }
 
