@@ -130,7 +130,7 @@ template <class Scalar> void compare_gl(Precision precision, const CpuKernels& r
                   [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, gl->width(), kernel, info, state); });
   // as small forests stand: trees of several shapes side by side in one work group
   compare<Scalar>(reference, "GL, a tree a block", [&](Kernel kernel, std::size_t info, State<Scalar>& state) {
-    if (schema(kernel).domain == Domain::tree)
+    if (of_trees(schema(kernel).domain))
       run_gl(*gl, 1, kernel, info, state);
     else
       run_cpu(reference, kernel, info, state);

@@ -76,7 +76,7 @@ inline TreeLayout lay_out(const Forest& forest, std::uint32_t width) {
   pack_trees(forest, shapes, width, lists);
   layout.size = lists.parents.size() * width;
   for (std::uint32_t block = 0; block < lists.count(); block++) {
-    const std::uint32_t first = lists.blocks[2 * block], count = lists.blocks[2 * block + 1];
+    const std::uint32_t first = lists.blocks[3 * block], count = lists.blocks[3 * block + 1];
     for (std::uint32_t lane = 0; lane < width; lane++) {
       const bool padding = lists.ends[((first + 1) * 2 + 1) * width + lane] == 0;  // the first child has no joint
       for (std::uint32_t k = 0; k < count && !padding; k++) layout.slots.push_back((first + k) * width + lane);

@@ -84,6 +84,10 @@ Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device
 /// Its `width_for`, which no device changes.
 std::uint32_t gl_width_for(Domain domain, std::uint32_t count);
 
+/// How many invocations share a joint tree that stands alone in its block, of GL backends that are made from then on; 1: none do. Tests and
+/// benchmarks change it: the bits are the same. Before, it is what PCPHYS_GL_TEAM says, or 32.
+std::uint32_t& gl_team_size();
+
 /// Where steps get their GL backend from: make_gl_backend, until a test puts one there that fails.
 using GlBackendMaker = Result<std::unique_ptr<Backend>> (*)(Precision precision, int device, bool host_context);
 GlBackendMaker& gl_backend_maker();
