@@ -24,7 +24,6 @@ class GlBackend final : public Backend {
   GlBackend(std::unique_ptr<GlContext> context, Precision precision)
       : context_(std::move(context)), cache_(context_->identity()) {
     options_.precision = precision;
-    options_.team = gl_team_size();
   }
   ~GlBackend() override;
   Status start();
@@ -77,6 +76,9 @@ Status GlBackend::start() {
   if (!arithmetic) return arithmetic.error();
   options_.division = arithmetic->division;
   options_.square_root = arithmetic->square_root;
+  const GlTeam team = gl_team();
+  options_.team = team.size != 0 ? team.size : context_->report().software ? 1 : gl_team_size;
+  options_.scattered = team.scattered;
   memory_.start(options_.precision, context_->report().limits);
   return context_->check("starting the backend");
 }
@@ -246,12 +248,12 @@ std::uint32_t gl_width_for(Domain domain, std::uint32_t count) {
   return of_trees(domain) && count < fewest_alike ? 1 : gl_width;
 }
 
-std::uint32_t& gl_team_size() {
-  static std::uint32_t size = [] {
-    const char* wanted = std::getenv("PCPHYS_GL_TEAM");
-    return wanted != nullptr ? std::clamp(std::uint32_t(std::strtoul(wanted, nullptr, 10)), 1u, gl_largest_team) : gl_team;
+GlTeam& gl_team() {
+  static GlTeam team = [] {
+    const char* size = std::getenv("PCPHYS_GL_TEAM");
+    return GlTeam{size != nullptr ? std::min(std::uint32_t(std::strtoul(size, nullptr, 10)), gl_largest_team) : 0};
   }();
-  return size;
+  return team;
 }
 
 Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context) {

@@ -57,7 +57,7 @@ Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options)
   const bool shared = is_shared(kernel, options);
   SourceText text(options.precision);
   text.add(source_head(options));
-  if (shared) text.add("#define PC_TEAM " + number(options.team) + "u\n");
+  if (shared) text.add("#define PC_TEAM " + number(options.team) + "u\n" + (options.scattered ? "#define PC_SCATTERED\n" : ""));
   if (Status status = text.include("prelude.glsl"); !status) return status.error();
   text.add("#line 1 0\n" + buffer_declarations(what, options.precision, shared) + info_declaration());
   if (shared)

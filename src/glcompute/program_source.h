@@ -18,7 +18,7 @@ inline constexpr std::uint32_t gl_width = 32;
 /// Invocations of a work group.
 inline constexpr std::uint32_t gl_work_group = 64;
 /// And of one that shares a joint tree, and the most that GL promises.
-inline constexpr std::uint32_t gl_team = 32, gl_largest_team = 1024;
+inline constexpr std::uint32_t gl_team_size = 32, gl_largest_team = 1024;
 
 struct SourceOptions {
   Precision precision = Precision::f32;
@@ -26,6 +26,7 @@ struct SourceOptions {
   RoundingForm square_root = RoundingForm::builtin;
   std::uint32_t lanes = gl_width;  // of a block
   std::uint32_t team = 1;          // invocations that share a block of one lane, where a kernel's text says how
+  bool scattered = false;          // in another order, see GlTeam
 };
 
 struct ProgramSource {
