@@ -13,16 +13,46 @@ TreeShapes shapes_of(const Forest& forest) {
   return shapes;
 }
 
+/// What a work group goes by that shares a tree: spans cover all nodes in their order, each of one level that has several, or of levels of one
+/// each, of which as many as follow each other; groups are all children of a node, and begin where spans do.
+void check_levels(const TreeBlocks& blocks, std::uint32_t block) {
+  const std::uint32_t first = blocks.blocks[3 * block], count = blocks.blocks[3 * block + 1], at = blocks.blocks[3 * block + 2];
+  REQUIRE(at >= 3 * blocks.count());
+  const std::uint32_t spans = blocks.blocks.at(at), groups = blocks.blocks.at(at + 2 + 2 * spans) >> 1;
+  const auto node = [&](std::uint32_t s) { return blocks.blocks.at(at + 1 + 2 * s); };
+  const auto group = [&](std::uint32_t s) { return blocks.blocks.at(at + 2 + 2 * s) >> 1; };
+  const auto is_chain = [&](std::uint32_t s) { return (blocks.blocks.at(at + 2 + 2 * s) & 1) != 0; };
+  const auto group_node = [&](std::uint32_t g) { return blocks.blocks.at(at + 3 + 2 * spans + g); };
+  const auto parent = [&](std::uint32_t k) { return blocks.parents[first + k] >> 1; };
+  std::vector<std::uint32_t> level(count, 0), width(count, 0);
+  for (std::uint32_t k = 1; k < count; k++) level[k] = level[parent(k)] + 1;
+  for (const std::uint32_t l : level) width[l]++;
+  CHECK((node(0) == 0 && node(1) == 1 && node(spans) == count && !is_chain(0)));
+  for (std::uint32_t s = 1; s < spans; s++) {
+    REQUIRE(node(s) < node(s + 1));
+    CHECK(group_node(group(s)) == node(s));
+    for (std::uint32_t k = node(s); k < node(s + 1); k++)
+      CHECK((is_chain(s) ? width[level[k]] == 1 : width[level[k]] > 1 && level[k] == level[node(s)]));
+    if (!is_chain(s)) CHECK(node(s + 1) - node(s) == width[level[node(s)]]);
+    CHECK(!(is_chain(s) && s > 1 && is_chain(s - 1)));
+  }
+  CHECK((group_node(0) == 1 && group_node(groups) == count));
+  for (std::uint32_t g = 0; g < groups; g++) {
+    for (std::uint32_t k = group_node(g); k < group_node(g + 1); k++) CHECK(parent(k) == parent(group_node(g)));
+    CHECK((g == 0 || parent(group_node(g)) > parent(group_node(g - 1))));
+  }
+}
+
 /// Every tree stands in one lane of one block of its shape, in the order of the forest among those of its shape; all
 /// other lanes hold rows 0, and no block could have been left out.
 void check_blocks(const Forest& f, std::uint32_t width, const TreeBlocks& blocks) {
-  REQUIRE(blocks.blocks.size() == 2 * blocks.count());
+  REQUIRE(blocks.blocks.size() >= 3 * blocks.count());
   REQUIRE(blocks.ends.size() == blocks.parents.size() * 2 * width);
   std::vector<char> placed(f.trees(), 0);
   std::map<List, std::size_t> last_of_shape, room;  // the last tree seen of a shape; free lanes of its last block
   std::uint32_t next = 0;
   for (std::uint32_t b = 0; b < blocks.count(); b++) {
-    const std::uint32_t first = blocks.blocks[2 * b], count = blocks.blocks[2 * b + 1];
+    const std::uint32_t first = blocks.blocks[3 * b], count = blocks.blocks[3 * b + 1];
     CHECK(first == next);
     next = first + count;
     const List shape(blocks.parents.begin() + first, blocks.parents.begin() + next);
@@ -57,6 +87,8 @@ void check_blocks(const Forest& f, std::uint32_t width, const TreeBlocks& blocks
   }
   CHECK(next == blocks.parents.size());
   CHECK(std::ranges::count(placed, 0) == 0);
+  if (width > 1) CHECK(blocks.blocks.size() == 3 * blocks.count());
+  for (std::uint32_t b = 0; b < blocks.count() && width == 1; b++) check_levels(blocks, b);
 }
 
 /// A body with `bones` others on it, two of them in a row.

@@ -5,6 +5,8 @@
 // On a device that cannot round exactly (see `pcphys doctor`) parity is not promised, and this test says so.
 #include "gl_parity.h"
 
+#include <utility>
+
 #include "pcphys/device.h"
 
 namespace {
@@ -141,15 +143,24 @@ template <class Scalar> void compare_gl(Precision precision, const CpuKernels& r
   MESSAGE("device: " << report.renderer << ", " << report.version);
   REQUIRE_MESSAGE((precision == Precision::f64 ? report.f64 : report.f32).parity(), "this device promises no parity");
   const std::unique_ptr<Backend> gl = require_gl(precision);
+  const auto with = [&](GlTeam wanted) {
+    const GlTeam before = std::exchange(gl_team(), wanted);
+    std::unique_ptr<Backend> made = require_gl(precision);
+    gl_team() = before;
+    return made;
+  };
+  const std::unique_ptr<Backend> alone = with({1}), shared = with({32}), scattered = with({32, true});
   compare<Scalar>(reference, "GL",
                   [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, gl->width(), kernel, info, state); });
-  // as small forests stand: trees of several shapes side by side in one work group
-  compare<Scalar>(reference, "GL, a tree a block", [&](Kernel kernel, std::size_t info, State<Scalar>& state) {
-    if (schema(kernel).domain == Domain::tree)
-      run_gl(*gl, 1, kernel, info, state);
-    else
-      run_cpu(reference, kernel, info, state);
-  });
+  // as trees of few of a shape stand: trees of several shapes side by side in one work group, and one shared by a group
+  for (const auto& [backend, what] : {std::pair{alone.get(), "GL, a tree a block"}, std::pair{shared.get(), "GL, a tree a work group"},
+                                      std::pair{scattered.get(), "GL, a tree a work group in another order"}})
+    compare<Scalar>(reference, what, [&, at = backend](Kernel kernel, std::size_t info, State<Scalar>& state) {
+      if (of_trees(schema(kernel).domain))
+        run_gl(*at, 1, kernel, info, state);
+      else
+        run_cpu(reference, kernel, info, state);
+    });
 }
 
 template <class Scalar> void compare_lanes(const CpuKernels& reference, const CpuKernels& lanes) {

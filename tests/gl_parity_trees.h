@@ -1,6 +1,7 @@
 // The joint trees that parity is checked on, and how their nodes lie in memory. The logical order of nodes is that of
 // one lane: trees of one shape one after the other, nodes of a tree one after the other.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -16,6 +17,14 @@ struct TreeShape {
   bool hangs;
   std::vector<std::uint32_t> parents;
 };
+/// Levels of 3, 9, 27 and 40 nodes.
+inline std::vector<std::uint32_t> wide_tree() {
+  std::vector<std::uint32_t> parents;
+  for (std::uint32_t k = 1; k < 40; k++) parents.push_back((k - 1) / 3);
+  for (std::uint32_t k = 0; k < 40; k++) parents.push_back(13 + k * k % 27);
+  std::ranges::sort(parents);  // breadth first
+  return parents;
+}
 /// More trees than 32 lanes, fewer than 4, and numbers between, so that some lanes of each width are padding.
 inline const std::vector<TreeShape>& tree_shapes() {
   static const std::vector<TreeShape> shapes = {
@@ -26,6 +35,10 @@ inline const std::vector<TreeShape>& tree_shapes() {
       {6, true, {0, 1, 1, 2, 0}},
       {37, true, {0}},
       {1, true, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}},
+      // for work groups: more nodes in a level than invocations, with brothers and without; a chain below a bush; many children of one body
+      {1, false, wide_tree()},
+      {1, true, {0, 1, 1, 1, 2, 2, 3, 4, 5, 5, 9, 11, 12, 13}},
+      {1, false, std::vector<std::uint32_t>(200, 0)},
   };
   return shapes;
 }
@@ -76,7 +89,7 @@ inline TreeLayout lay_out(const Forest& forest, std::uint32_t width) {
   pack_trees(forest, shapes, width, lists);
   layout.size = lists.parents.size() * width;
   for (std::uint32_t block = 0; block < lists.count(); block++) {
-    const std::uint32_t first = lists.blocks[2 * block], count = lists.blocks[2 * block + 1];
+    const std::uint32_t first = lists.blocks[3 * block], count = lists.blocks[3 * block + 1];
     for (std::uint32_t lane = 0; lane < width; lane++) {
       const bool padding = lists.ends[((first + 1) * 2 + 1) * width + lane] == 0;  // the first child has no joint
       for (std::uint32_t k = 0; k < count && !padding; k++) layout.slots.push_back((first + k) * width + lane);

@@ -15,7 +15,7 @@ namespace {
 Table own_table(Domain domain) {
   if (one_by_one(domain)) return Table::body;
   const bool joints = domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint;
-  return joints || domain == Domain::tree ? Table::joint : Table::contact;
+  return joints || of_trees(domain) ? Table::joint : Table::contact;
 }
 }  // namespace
 
@@ -67,7 +67,7 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
       CHECK(bound.insert(a.buffer).second);
       writes |= a.write;
       const Table table = schema(a.buffer).table, own = own_table(s.domain);
-      const bool of_tree = s.domain == Domain::tree || s.domain == Domain::tree_contact || s.domain == Domain::tree_joint;
+      const bool of_tree = of_trees(s.domain) || s.domain == Domain::tree_contact || s.domain == Domain::tree_joint;
       const bool of_node = table == Table::node && of_tree;
       CHECK((table == own || table == Table::body || of_node || (table == Table::touch && own == Table::contact)));
       if (schema(a.buffer).reals == 0 && a.buffer != Buffer::island_labels) CHECK_FALSE(a.write);  // the host makes the lists
@@ -76,7 +76,7 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
     if (s.domain == Domain::body) CHECK(bound.contains(Buffer::bodies));
     if (s.domain == Domain::joint || s.domain == Domain::free_joint)
       CHECK((bound.contains(Buffer::joint_ends) || bound.contains(Buffer::joint_order)));
-    if (s.domain == Domain::tree) {
+    if (of_trees(s.domain)) {
       CHECK(bound.contains(Buffer::tree_blocks));
       CHECK((bound.contains(Buffer::tree_ends) || bound.contains(Buffer::tree_order)));
     }

@@ -11,6 +11,7 @@ In src/kernels/**/*.inl (the common subset of C++20 and GLSL):
     precise   a sum, difference or product of reals is the initialiser of a `precise` local
     literal   constants of reals stand in PC_REAL(...)
     reserved  no name that GLSL keeps for itself
+    nodes     a loop over the nodes of a tree is one of nodes.inl, which say how a work group may share it
 In src/cpu, src/glcompute and src/step (loops and bindings only; lanes*.h and prelude*.h define the types):
     backend   no floating-point literal, arithmetic or mathematical function
 Anywhere:
@@ -33,6 +34,7 @@ CURES = {
     "precise": "give the result a name first: precise Real x = ...;",
     "literal": "write PC_REAL({})",
     "reserved": "GLSL keeps this word: choose another name",
+    "nodes": "use PC_NODES, PC_DOWN, PC_UP, PC_CHILDREN or PC_ALL",
     "backend": "move it into a kernel in src/kernels (times: count nanoseconds as integers)",
     "unread": "write it as simple declarations and assignments",
     "marker": "write // lint: allow (reason)",

@@ -56,6 +56,7 @@ using element_island_labels = uint;
 #define PC_LOOP_free_joint PC_LOOP_contact
 #define PC_LOOP_tree_joint PC_LOOP_contact
 #define PC_LOOP_tree PC_LOOP_contact
+#define PC_LOOP_tree_nodes PC_LOOP_contact
 #define PC_LOOP_row for (uint k = call.begin; k < call.end; k++) pc_kernel(io, k);
 #define PC_LOOP_edge PC_LOOP_row
 #define PC_READ(buffer) io.buffer = static_cast<const element_##buffer*>(call.buffers[unsigned(Buffer::buffer)]);

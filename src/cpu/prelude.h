@@ -188,3 +188,4 @@ PC_INLINE void pc_lower(uint* list, uint i, uint value) {
 #define PC_NODE(slot, node) pc_node(slot, node)
 #define PC_IS(flag) pc_mask(flag)
 #define PC_RAISE(mask, buffer, k) if (pc_any(mask)) pc_raise(io.buffer + (k) * 4u + 3u)
+#include "kernels/nodes.inl"

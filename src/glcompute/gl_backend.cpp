@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <utility>
 
 #include "glcompute/context.h"
@@ -49,6 +50,7 @@ class GlBackend final : public Backend {
   Status hold();
   void release();
   Result<std::int32_t> bind(const KernelRun& run);
+  SourceOptions options_of(const KernelRun& run) const;
   KernelProgram& program_of(const KernelRun& run) { return programs_[run.lanes == 1][std::size_t(run.kernel)]; }
   Status run_at_once(const KernelRun& run);
   Status run_in_two(const KernelRun& run);
@@ -74,6 +76,9 @@ Status GlBackend::start() {
   if (!arithmetic) return arithmetic.error();
   options_.division = arithmetic->division;
   options_.square_root = arithmetic->square_root;
+  const GlTeam team = gl_team();
+  options_.team = team.size != 0 ? team.size : context_->report().software ? 1 : gl_team_size;
+  options_.scattered = team.scattered;
   memory_.start(options_.precision, context_->report().limits);
   return context_->check("starting the backend");
 }
@@ -147,14 +152,18 @@ void GlBackend::release() {
   held_ = false;
 }
 
+SourceOptions GlBackend::options_of(const KernelRun& run) const {
+  SourceOptions options = options_;
+  options.lanes = run.lanes;
+  return options;
+}
+
 /// For a dispatch; where the program has pc_range.
 Result<std::int32_t> GlBackend::bind(const KernelRun& run) {
   if (run.own) return own_.bind(*run.own, run.info, memory_);
   KernelProgram& program = program_of(run);
   if (program.id == 0) {
-    SourceOptions options = options_;
-    options.lanes = run.lanes;
-    const Result<KernelProgram> loaded = load_kernel(run.kernel, options, cache_);
+    const Result<KernelProgram> loaded = load_kernel(run.kernel, options_of(run), cache_);
     if (!loaded) return loaded.error();
     program = *loaded;
   }
@@ -180,7 +189,10 @@ void GlBackend::dispatch_all(const KernelRun& run, std::int32_t range_location) 
   for (const Range& range : run.ranges) {
     if (range.begin >= range.end) continue;
     if (barrier_due_) glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-    dispatch(range_location, range.begin * lanes, range.end * lanes, memory_.limits());
+    if (!run.own && is_shared(run.kernel, options_of(run)))
+      dispatch(range_location, range.begin, range.end, memory_.limits(), 1, 1);
+    else
+      dispatch(range_location, range.begin * lanes, range.end * lanes, memory_.limits());
     barrier_due_ = true;  // each range may read what the one before wrote
     writes_pending_ = true;
   }
@@ -233,7 +245,15 @@ Status GlBackend::finish() {
 
 /// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
 std::uint32_t gl_width_for(Domain domain, std::uint32_t count) {
-  return domain == Domain::tree && count < fewest_alike ? 1 : gl_width;
+  return of_trees(domain) && count < fewest_alike ? 1 : gl_width;
+}
+
+GlTeam& gl_team() {
+  static GlTeam team = [] {
+    const char* size = std::getenv("PCPHYS_GL_TEAM");
+    return GlTeam{size != nullptr ? std::min(std::uint32_t(std::strtoul(size, nullptr, 10)), gl_largest_team) : 0};
+  }();
+  return team;
 }
 
 Result<std::unique_ptr<Backend>> make_gl_backend(Precision precision, int device, bool host_context) {

@@ -68,3 +68,4 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 #define PC_NODE(slot, node) Slot(node, (slot).lane)
 #define PC_IS(flag) ((flag) != 0u)
 #define PC_RAISE(mask, buffer, k) if (mask) io_##buffer[k].w = PC_REAL(1.0)
+#include "nodes.inl"

@@ -209,12 +209,13 @@ Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& opt
   return own;
 }
 
-void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits, std::uint32_t rows) {
-  const std::uint64_t piece = std::uint64_t(limits.work_group_count) * gl_work_group;
+void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits, std::uint32_t rows,
+              std::uint32_t each) {
+  const std::uint64_t piece = std::uint64_t(limits.work_group_count) * each;
   for (std::uint64_t k = begin; k < end; k += piece) {
     const std::uint32_t stop = std::uint32_t(std::min<std::uint64_t>(end, k + piece));
     glUniform2ui(range_location, std::uint32_t(k), stop);
-    glDispatchCompute((stop - std::uint32_t(k) + gl_work_group - 1) / gl_work_group, rows, 1);
+    glDispatchCompute((stop - std::uint32_t(k) + each - 1) / each, rows, 1);
   }
 }
 

@@ -15,20 +15,23 @@ std::string element(Buffer buffer, Precision precision) {
   return scalar_elements(buffer, precision) ? "Real" : "Real4";
 }
 
-std::string buffer_declarations(const KernelSchema& kernel, Precision precision) {
+/// `shared`: what one invocation stores others of its work group read.
+std::string buffer_declarations(const KernelSchema& kernel, Precision precision, bool shared) {
   std::string text;
   std::uint32_t binding = 0;
   for (const Access& access : kernel.accesses) {
     const BufferSchema& buffer = schema(access.buffer);
     const std::string label(buffer.name);
-    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (access.write ? "" : "readonly ") +
+    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (!access.write ? "readonly " : shared ? "coherent " : "") +
             "buffer Block_" + label + " { " + element(access.buffer, precision) + " io_" + label + "[]; };\n";
     if (buffer.reals != 0) text += "#define quads_" + label + " " + number(quads(access.buffer)) + "u\n";
   }
   return text;
 }
 
-std::string main_text(Domain domain) {
+std::string main_text(Domain domain, bool shared) {
+  if (shared)
+    return "layout(local_size_x = PC_TEAM) in;\nuniform uvec2 pc_range;\nvoid main() { pc_kernel(Slot(gl_WorkGroupID.x + pc_range.x, 0u)); }\n";
   std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
   text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n"
@@ -45,14 +48,22 @@ bool scalar_elements(Buffer buffer, Precision precision) {
 
 std::uint32_t quads(Buffer buffer) { return schema(buffer).reals == 0 ? 1 : schema(buffer).reals / 4; }
 
+bool is_shared(Kernel kernel, const SourceOptions& options) {
+  return options.lanes == 1 && options.team > 1 && schema(kernel).domain == Domain::tree_nodes;
+}
+
 Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options) {
   const KernelSchema& what = schema(kernel);
+  const bool shared = is_shared(kernel, options);
   SourceText text(options.precision);
   text.add(source_head(options));
+  if (shared) text.add("#define PC_TEAM " + number(options.team) + "u\n" + (options.scattered ? "#define PC_SCATTERED\n" : ""));
   if (Status status = text.include("prelude.glsl"); !status) return status.error();
-  text.add("#line 1 0\n" + buffer_declarations(what, options.precision) + info_declaration());
+  text.add("#line 1 0\n" + buffer_declarations(what, options.precision, shared) + info_declaration());
+  if (shared)
+    if (Status status = text.include("team.glsl"); !status) return status.error();
   if (Status status = text.include(std::string(what.name) + ".inl"); !status) return status.error();
-  text.add("#line 1 0\n" + main_text(what.domain));
+  text.add("#line 1 0\n" + main_text(what.domain, shared));
   return text.take();
 }
 

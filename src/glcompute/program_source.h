@@ -17,12 +17,16 @@ namespace pcphys {
 inline constexpr std::uint32_t gl_width = 32;
 /// Invocations of a work group.
 inline constexpr std::uint32_t gl_work_group = 64;
+/// And of one that shares a joint tree, and the most that GL promises.
+inline constexpr std::uint32_t gl_team_size = 32, gl_largest_team = 1024;
 
 struct SourceOptions {
   Precision precision = Precision::f32;
   RoundingForm division = RoundingForm::builtin;
   RoundingForm square_root = RoundingForm::builtin;
   std::uint32_t lanes = gl_width;  // of a block
+  std::uint32_t team = 1;          // invocations that share a block of one lane, where a kernel's text says how
+  bool scattered = false;          // in another order, see GlTeam
 };
 
 struct ProgramSource {
@@ -32,6 +36,8 @@ struct ProgramSource {
 };
 
 Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options);
+/// Whether a work group shares each block.
+bool is_shared(Kernel kernel, const SourceOptions& options);
 /// Of a kernel of the host's own; errors of its text name its own file and lines.
 Result<ProgramSource> own_kernel_source(const OwnKernel& kernel, const SourceOptions& options);
 /// Its second program, where it is of pairs or makes one value of all rows.

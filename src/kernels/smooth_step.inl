@@ -71,24 +71,27 @@ PC_FN Real pc_smooth_rate(PC_IO Slot n, Slot up) {
 // Brings the velocities onto the pins, with the factor at the start.
 PC_FN void pc_smooth_onto_pins(PC_IO Slot m, Tree t) {
   Real open = PC_REAL(0.0);
-  for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); open = pc_max(open, pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)))); }
+  PC_NODES(k, 1u, t) { Slot n = PC_NODE(m, t.first + k); open = pc_max(open, pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)))); }
+  PC_MOST(open);
   if (PC_ANY(open > PC_REAL(0.5))) {  // lint: allow (a rate of nothing changes nothing)
-    for (uint k = 0u; k < t.count; k++) pc_smooth_restart(PC_PASS PC_NODE(m, t.first + k), open > PC_REAL(0.5));
-    for (uint k = 1u; k < t.count; k++) {
+    PC_NODES(k, 0u, t) pc_smooth_restart(PC_PASS PC_NODE(m, t.first + k), open > PC_REAL(0.5));
+    PC_MEET;
+    PC_NODES(k, 1u, t) {
       Slot n = PC_NODE(m, t.first + k); pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
       pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), open));
     }
     pc_tree_sweep(PC_PASS m, t, TREE_C, SMOOTH_V_SUM, PC_REAL(0.0));
-    for (uint k = 0u; k < t.count; k++) {
+    PC_NODES(k, 0u, t) {
       Slot n = PC_NODE(m, t.first + k); Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
       pc_smooth_add(PC_PASS n, SMOOTH_V, SMOOTH_V_LOW, pc_ld3_tree(PC_PASS n, TREE_X)); pc_smooth_add(PC_PASS n, SMOOTH_L, SMOOTH_L_LOW, pc_scale(spun, PC_LD(tree_rows, n, TREE_TOTAL)));
       pc_st3_tree(PC_PASS n, SMOOTH_W, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
     }
   }
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Vec3 zero = pc_zero3(); pc_st3_tree(PC_PASS n, SMOOTH_START, pc_ld3_tree(PC_PASS n, SMOOTH_L)); pc_st3_tree(PC_PASS n, SMOOTH_TURN, zero);
     pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_TURN_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, zero);
   }
+  PC_MEET;
 }
 
 // What acts on a node from outside of its pins, and what turning makes its pin open with.
@@ -138,10 +141,12 @@ PC_FN void pc_smooth_follow(PC_IO Slot n, Slot up) {
   pc_st3_tree(PC_PASS n, TREE_RC, arm); pc_st3_tree(PC_PASS n, TREE_RP, arm_up);
 }
 // What its pin does to a node and to its parent at the end.
-PC_FN void pc_smooth_pin(PC_IO Slot n, Slot up) {
-  Vec3 f = pc_ld3_tree(PC_PASS n, TREE_PIN); Real light = pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_MASS)); precise Real light_up = -pc_inverse_or_zero(PC_LD(tree_rows, up, TREE_MASS));
-  Real total = PC_LD(tree_rows, n, TREE_TOTAL); precise Real back = -total;
+PC_FN void pc_smooth_pin(PC_IO Slot n) {
+  Vec3 f = pc_ld3_tree(PC_PASS n, TREE_PIN); Real light = pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_MASS)); Real total = PC_LD(tree_rows, n, TREE_TOTAL);
   pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_V_SUM), f, light)); pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), pc_cross(pc_ld3_tree(PC_PASS n, TREE_RC), f), total));
+}
+PC_FN void pc_smooth_pin_parent(PC_IO Slot n, Slot up) {
+  Vec3 f = pc_ld3_tree(PC_PASS n, TREE_PIN); precise Real light_up = -pc_inverse_or_zero(PC_LD(tree_rows, up, TREE_MASS)); precise Real back = -PC_LD(tree_rows, n, TREE_TOTAL);
   pc_st3_tree(PC_PASS up, SMOOTH_V_SUM, pc_madd(pc_ld3_tree(PC_PASS up, SMOOTH_V_SUM), f, light_up)); pc_st3_tree(PC_PASS up, SMOOTH_L_SUM, pc_madd(pc_ld3_tree(PC_PASS up, SMOOTH_L_SUM), pc_cross(pc_ld3_tree(PC_PASS n, TREE_RP), f), back));
 }
 // The sums of all stages: momentum, turn and angular velocity at the end.
@@ -176,34 +181,42 @@ PC_FN void pc_smooth_remember(PC_IO Tree t, Slot n, uint k) {
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Real h = PC_INFO(h); precise Real half_h = h * PC_REAL(0.5); Real one = PC_REAL(1.0); Real two = PC_REAL(2.0);
-  for (uint k = 0u; k < t.count; k++) pc_smooth_start(PC_PASS PC_NODE(m, t.first + k));
+  PC_NODES(k, 0u, t) pc_smooth_start(PC_PASS PC_NODE(m, t.first + k));
   uint from = 1u;
   if (PC_ANY(pc_smooth_moves(PC_PASS root))) from = 0u;  // lint: allow (what stands stays as it is)
   for (uint stage = 0u; stage < 4u; stage++) {
-    if (stage > 0u) for (uint k = from; k < t.count; k++) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
-    for (uint k = 1u; k < t.count; k++) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    if (stage > 0u) PC_NODES(k, from, t) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
+    PC_MEET;
+    PC_NODES(k, 1u, t) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
     pc_factor(PC_PASS m, t, true);
     if (stage == 0u) pc_smooth_onto_pins(PC_PASS m, t);
-    for (uint k = from; k < t.count; k++) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
-    for (uint k = 1u; k < t.count; k++) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    PC_NODES(k, from, t) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
+    PC_NODES(k, 1u, t) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, PC_REAL(0.0));
     Real weight = one; Real way = one; Real next = half_h;
     if (stage == 1u || stage == 2u) weight = two;
     if (stage == 2u) next = h;
     if (stage == 3u) way = PC_REAL(0.0);
-    for (uint k = from; k < t.count; k++) pc_smooth_gain(PC_PASS PC_NODE(m, t.first + k), weight, way, next);
+    PC_NODES(k, from, t) pc_smooth_gain(PC_PASS PC_NODE(m, t.first + k), weight, way, next);
   }
   // the root's way, and its velocity at the end
-  precise Real sixth = h * PC_REAL(0.16666666666666666667); Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
-  precise Vec3 gone = (v + pc_ld3_tree(PC_PASS root, SMOOTH_WAY_SUM) * sixth) * h; pc_st3_tree(PC_PASS root, SMOOTH_WAY_SUM, gone);
-  pc_smooth_add(PC_PASS root, SMOOTH_V, SMOOTH_V_LOW, pc_scale(pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
-  for (uint k = from; k < t.count; k++) {
+  PC_ONE {
+    precise Real sixth = h * PC_REAL(0.16666666666666666667); Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
+    precise Vec3 gone = (v + pc_ld3_tree(PC_PASS root, SMOOTH_WAY_SUM) * sixth) * h; pc_st3_tree(PC_PASS root, SMOOTH_WAY_SUM, gone);
+    pc_smooth_add(PC_PASS root, SMOOTH_V, SMOOTH_V_LOW, pc_scale(pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
+  }
+  PC_NODES(k, from, t) {
     Slot n = PC_NODE(m, t.first + k); pc_smooth_finish(PC_PASS n);
     Index body = PC_ENDS(tree_ends, n, 0u); Quad turned = PC_GATHER(pose, body, 1u); Turn turn = pc_turn(pc_ld3_tree(PC_PASS n, SMOOTH_TURN));
     pc_smooth_face(PC_PASS n, pc_quaternion_mul(turn.q, pc_quaternion(turned.v, turned.s)));
   }
-  for (uint k = 1u; k < t.count; k++) pc_smooth_follow(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-  for (uint k = 1u; k < t.count; k++) pc_smooth_pin(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-  for (uint k = from; k < t.count; k++) pc_smooth_store(PC_PASS PC_NODE(m, t.first + k));
-  for (uint k = 1u; k < t.count; k++) pc_smooth_remember(PC_PASS t, PC_NODE(m, t.first + k), k);
+  PC_MEET;
+  PC_DOWN(k, 1u, t) pc_smooth_follow(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  PC_NODES(k, 1u, t) {
+    pc_smooth_pin(PC_PASS PC_NODE(m, t.first + k));
+    PC_THEN(PC_CHILDREN(k, t)) pc_smooth_pin_parent(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  }
+  PC_MEET;
+  PC_NODES(k, from, t) pc_smooth_store(PC_PASS PC_NODE(m, t.first + k));
+  PC_NODES(k, 1u, t) pc_smooth_remember(PC_PASS t, PC_NODE(m, t.first + k), k);
 }

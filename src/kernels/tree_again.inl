@@ -33,28 +33,28 @@ PC_FN Real pc_gap_over(PC_IO Slot n, Vec3 gap, Real share_squared) {
 // 1 where some gap of the tree at the prediction is.
 PC_FN Real pc_gap_left(PC_IO Slot m, Tree t, Real share_squared) {
   Real left = PC_REAL(0.0);
-  for (uint k = 1u; k < t.count; k++) {
+  PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); left = pc_max(left, pc_gap_over(PC_PASS n, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h)), share_squared));
   }
-  return left;
+  PC_MOST(left); return left;
 }
 // 1 where a joint has angles that are locked, or its body turns about it: those are corrected whatever the pins.
 PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
   if (pc_is_pivot(PC_PASS t) == 1u) return PC_REAL(1.0);
   Real kind = PC_REAL(0.0);
-  for (uint k = 1u; k < t.count; k++)
+  PC_NODES(k, 1u, t)
     for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
-  return pc_select(kind > PC_REAL(1.5), PC_REAL(1.0), PC_REAL(0.0));
+  PC_MOST(kind); return pc_select(kind > PC_REAL(1.5), PC_REAL(1.0), PC_REAL(0.0));
 }
 // One step of Newton's method on the pins at the prediction, where `wanted` is 1; nothing elsewhere.
 PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
-  for (uint k = 1u; k < t.count; k++) {
+  PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
     pc_again_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), wanted);
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
   }
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
-  for (uint k = 1u; k < t.count; k++) {
+  PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
     pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
     pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k, PC_REAL(1.0))));
@@ -65,17 +65,18 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
 // The push that closes gaps of more than 32 epsilon of the arm, of all trees of the block or of none.
 PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0);
-  for (uint k = 1u; k < t.count; k++) {
+  PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real here = pc_gap_over(PC_PASS n, gap, noise); open = pc_max(open, here);
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here)); pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
   }
-  if (pc_is_pivot(PC_PASS t) == 1u) { pc_st3_tree(PC_PASS PC_NODE(m, t.first + 1u), TREE_C, pc_zero3()); open = PC_REAL(0.0); }  // pivot_turn closes it
+  PC_MOST(open);
+  if (pc_is_pivot(PC_PASS t) == 1u) { PC_ONE pc_st3_tree(PC_PASS PC_NODE(m, t.first + 1u), TREE_C, pc_zero3()); open = PC_REAL(0.0); }  // pivot_turn closes it
   if (PC_ANY(open > PC_REAL(0.5))) {  // lint: allow (a push of nothing changes nothing)
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
     pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
-    for (uint k = 0u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
+    PC_NODES(k, 0u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
   } else {
-    for (uint k = 0u; k < t.count; k++) {  // what it would leave
+    PC_NODES(k, 0u, t) {  // what it would leave
       Slot n = PC_NODE(m, t.first + k); Vec3 zero = pc_zero3(); Six none = pc_six(zero, zero); pc_st6_tree(PC_PASS n, TREE_F, none); pc_st6_tree(PC_PASS n, TREE_X, none);
       pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, zero); pc_st3_tree(PC_PASS n, TREE_CHANGE, zero);
       if (k > 0u) pc_st3_tree(PC_PASS n, TREE_PUSH, zero);
@@ -87,7 +88,7 @@ PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
 // 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
-  for (uint k = 0u; k < t.count; k++) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
+  PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_gap_left(PC_PASS m, t, noise));
   for (uint turn = 0u; turn < 4u; turn++) {
     if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
@@ -96,6 +97,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_newton_step(PC_PASS m, t, wanted);
     wanted = pc_min(wanted, left);
   }
-  for (uint k = 1u; k < t.count; k++) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
+  PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
   pc_push_gaps(PC_PASS m, t);
 }

@@ -47,8 +47,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real total = PC_LD(tree_rows, root, TREE_TOTAL); Mask exists = total > PC_REAL(0.0); Real share = pc_inverse_or_zero(total);
   Sym6 h = pc_ldh_tree(PC_PASS root, TREE_H);
   Sym6 g; g.l = pc_sym_scale(h.l, share); g.a = pc_sym_scale(h.a, share); g.c = pc_mat3(pc_scale(h.c.a, share), pc_scale(h.c.b, share), pc_scale(h.c.c, share));
-  pc_store_response(PC_PASS PC_ORDER(tree_order, root), exists, g);
-  for (uint k = 1u; k < t.count; k++) {
+  PC_ONE pc_store_response(PC_PASS PC_ORDER(tree_order, root), exists, g);
+  PC_MEET;
+  PC_DOWN(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Index own = PC_ORDER(tree_order, n); Index up = PC_ORDER(tree_order, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
     Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); Sym3 d_inverse = pc_sym_scale(pc_lds_tree(PC_PASS n, TREE_D), share);
     pc_store_response(PC_PASS own, exists, pc_node_response(PC_PASS n, d_inverse, d, rc, pc_response(PC_PASS up)));

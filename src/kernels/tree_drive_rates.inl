@@ -6,7 +6,7 @@
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad turned = PC_GATHER(pose, body, 1u); Quad inverse = PC_GATHER(mass, body, 1u); Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
     pc_st3_drive(PC_PASS n, DRIVE_SPIN, pc_sym_mul(pc_world_inertia(pc_quaternion(turned.v, turned.s), inverse.v), angular.v));

@@ -30,7 +30,7 @@ PC_FN void pc_tree_drive(PC_IO Slot n, Slot up, uint b, Index joint, Quad power)
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
-  for (uint k = 1u; k < t.count; k++) {
+  PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Index joint = PC_ENDS(tree_ends, n, 1u); Quad power = PC_GATHER(joint_drive, joint, 2u);
     Mask driven = power.v.x > PC_REAL(0.5); PC_ST(tree_drive_rows, n, DRIVE_IS, pc_select(driven, PC_REAL(1.0), PC_REAL(0.0)));
     if (PC_ANY(driven)) pc_tree_drive(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), pc_is_flipped(PC_PASS t, k), joint, power);  // lint: allow (nothing reads them otherwise)

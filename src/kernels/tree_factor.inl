@@ -72,15 +72,16 @@ PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > 
 // `all`: of every node; else of those that are stale, and what others hand to them.
 PC_FN void pc_factor(PC_IO Slot m, Tree t, bool all) {
   Vec3 z = pc_zero3();
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     if (all || PC_ANY(pc_is_stale(PC_PASS n))) {  // lint: allow (others keep what they have)
       Sym6 h; h.l = pc_diagonal(PC_LD(tree_rows, n, TREE_MASS)); h.c = pc_mat3(z, z, z); h.a = pc_lds_tree(PC_PASS n, TREE_INERTIA);
       pc_sth_tree(PC_PASS n, TREE_H, h);
     }
   }
-  for (uint i = 1u; i < t.count; i++) {
-    uint k = t.count - i; uint parent = pc_parent(PC_PASS t, k); Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + parent);
+  PC_MEET;
+  PC_UP(k, t) {
+    uint parent = pc_parent(PC_PASS t, k); Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + parent);
     if (all || PC_ANY(pc_is_stale(PC_PASS n))) {  // lint: allow (others keep what they have)
       pc_factor_node(PC_PASS n, up, parent);
     } else if (PC_ANY(pc_is_stale(PC_PASS up))) {  // lint: allow (others keep what they have)
@@ -95,5 +96,5 @@ PC_FN void pc_factor(PC_IO Slot m, Tree t, bool all) {
     Sym6 h = pc_sym6_inverse(pc_ldh_tree(PC_PASS root, TREE_H)); r.l = pc_sym_select(free, h.l, none); r.a = pc_sym_select(free, h.a, none);
     r.c = pc_mat3(pc_select3(free, h.c.a, z), pc_select3(free, h.c.b, z), pc_select3(free, h.c.c, z));
   }
-  pc_sth_tree(PC_PASS root, TREE_H, r);
+  PC_ONE pc_sth_tree(PC_PASS root, TREE_H, r);
 }

@@ -4,24 +4,29 @@
 #include "tree_store.inl"
 #include "tree_momentum.inl"
 
+// A node follows its parent; what was pending is no more.
+PC_FN void pc_flush_node(PC_IO Slot m, Tree t, uint k) {
+  Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); Quad turned = PC_GATHER(node_pending, row, 0u);
+  if (k == 0u) {
+    Quad spun = PC_GATHER(node_pending, row, 1u); pc_st6_tree(PC_PASS n, TREE_X, pc_lower6_mul(pc_ldh_tree(PC_PASS n, TREE_ROOT_FACTOR), pc_six(turned.v, spun.v)));
+  } else {
+    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Six above = pc_ld6_tree(PC_PASS up, TREE_X); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
+    precise Vec3 l = above.l + pc_cross(above.a, pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc));
+    precise Vec3 q = pc_lower_mul(pc_lds_tree(PC_PASS n, TREE_FACTOR), turned.v) - pc_w_tmul(PC_PASS n, pc_six(l, above.a));
+    pc_st6_tree(PC_PASS n, TREE_X, pc_six(pc_add(l, pc_cross(rc, q)), pc_add(above.a, q)));
+  }
+  pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
+  Quad none = pc_quad(pc_zero3(), PC_REAL(0.0));
+  for (uint i = 0u; i < 4u; i++) PC_SCATTER(node_pending, row, i, none);
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
-  for (uint k = 0u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n);
-    Quad turned = PC_GATHER(node_pending, row, 0u); Quad impulse = PC_GATHER(node_pending, row, 2u); Quad torque = PC_GATHER(node_pending, row, 3u);
-    push = pc_add(push, impulse.v); PC_ST(tree_rows, n, TREE_TOUCH, impulse.s);
+  PC_ALL(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); Quad impulse = PC_GATHER(node_pending, row, 2u); Quad torque = PC_GATHER(node_pending, row, 3u);
+    push = pc_add(push, impulse.v); PC_ONE PC_ST(tree_rows, n, TREE_TOUCH, impulse.s);
     precise Vec3 moment = turn + torque.v + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), impulse.v); turn = moment;
-    if (k == 0u) {
-      Quad spun = PC_GATHER(node_pending, row, 1u); pc_st6_tree(PC_PASS n, TREE_X, pc_lower6_mul(pc_ldh_tree(PC_PASS n, TREE_ROOT_FACTOR), pc_six(turned.v, spun.v)));
-    } else {
-      Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Six above = pc_ld6_tree(PC_PASS up, TREE_X); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
-      precise Vec3 l = above.l + pc_cross(above.a, pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc));
-      precise Vec3 q = pc_lower_mul(pc_lds_tree(PC_PASS n, TREE_FACTOR), turned.v) - pc_w_tmul(PC_PASS n, pc_six(l, above.a));
-      pc_st6_tree(PC_PASS n, TREE_X, pc_six(pc_add(l, pc_cross(rc, q)), pc_add(above.a, q)));
-    }
-    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
-    Quad none = pc_quad(pc_zero3(), PC_REAL(0.0));
-    for (uint i = 0u; i < 4u; i++) PC_SCATTER(node_pending, row, i, none);
+    PC_THEN(PC_DOWN(k, 0u, t)) pc_flush_node(PC_PASS m, t, k);
   }
   Real share = pc_inverse_or_zero(PC_LD(tree_rows, root, TREE_TOTAL));
   pc_tree_add_changes(PC_PASS m, t, pc_scale(push, share), pc_scale(turn, share));

@@ -6,5 +6,5 @@
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
-  for (uint k = 1u; k < t.count; k++) pc_rescale_joint(PC_PASS PC_ENDS(tree_ends, PC_NODE(m, t.first + k), 1u));
+  PC_NODES(k, 1u, t) pc_rescale_joint(PC_PASS PC_ENDS(tree_ends, PC_NODE(m, t.first + k), 1u));
 }

@@ -7,13 +7,15 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_tu
   Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
   if (!PC_ANY(free)) return;  // lint: allow (what it would do to trees with a fixed root is nothing)
   Vec3 push = pc_negate(given_push); Vec3 turn = pc_negate(given_turn);
-  for (uint k = 0u; k < t.count; k++) {
+  PC_MEET;
+  PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_ld3_tree(PC_PASS n, TREE_PLACE); Vec3 p = pc_scale(pc_ld3_tree(PC_PASS n, TREE_X), PC_LD(tree_rows, n, TREE_MASS));
     push = pc_add(push, p); precise Vec3 all = turn + pc_ld3_tree(PC_PASS n, TREE_CHANGE) + pc_cross(r, p); turn = all;
   }
+  PC_MEET;
   Vec3 centre = pc_ld3_tree(PC_PASS root, TREE_CENTRE); Vec3 drift = pc_scale(push, PC_LD(tree_rows, root, TREE_ALL));
   Vec3 excess = pc_sym_mul(pc_lds_tree(PC_PASS root, TREE_RIGID), pc_sub(turn, pc_cross(centre, push))); Vec3 w = pc_select3(free, excess, pc_zero3());
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre);
     precise Vec3 v = pc_ld3_tree(PC_PASS n, TREE_X) - drift - pc_cross(w, r); precise Vec3 l = pc_ld3_tree(PC_PASS n, TREE_CHANGE) - pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w);
     pc_st3_tree(PC_PASS n, TREE_X, v); pc_st3_tree(PC_PASS n, TREE_CHANGE, l);
@@ -23,7 +25,7 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_tu
 // Adds the changes to the bodies' velocities and momenta, both momenta of a free tree kept; and that contacts touched them.
 PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
   pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
     angular.s = pc_max(angular.s, PC_LD(tree_rows, n, TREE_TOUCH));
@@ -36,7 +38,7 @@ PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given
 // Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
 // between heavy ones as the difference of large numbers.
 PC_FN void pc_tree_apply(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
   }

@@ -5,7 +5,8 @@
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
 PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted) {
   Real h = PC_INFO(h);
-  for (uint k = 0u; k < t.count; k++) {
+  PC_MEET;
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
     Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
     Quad moments = pc_quad(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), PC_LD(tree_rows, n, TREE_MOMENTS + 3u));
@@ -27,9 +28,10 @@ PC_FN void pc_pivot_residual(PC_IO Slot m, Tree t) {
   pc_st3_tree(PC_PASS n, TREE_C, pc_select3(pc_length(c) > noise, c, pc_zero3()));
 }
 PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted) {
-  if (pc_is_pivot(PC_PASS t) == 1u) { pc_pivot_residual(PC_PASS m, t); return; }
+  if (pc_is_pivot(PC_PASS t) == 1u) { PC_MEET; PC_ONE pc_pivot_residual(PC_PASS m, t); PC_MEET; return; }
   pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5));
-  for (uint k = 1u; k < t.count; k++) {
+  PC_MEET;
+  PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     Vec3 moved = pc_sub(pc_swing(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_RC)), pc_swing(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_RP)));
     precise Vec3 c = (pc_ld3_tree(PC_PASS n, TREE_X) - pc_ld3_tree(PC_PASS up, TREE_X)) + moved * PC_INFO(inverse_h);

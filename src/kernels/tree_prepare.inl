@@ -11,14 +11,14 @@
 const uint TREE_POSITION = TREE_H;
 const uint TREE_PRINCIPAL = TREE_H + 6u;
 PC_FN Quaternion pc_facing(PC_IO Slot n) { return pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u)); }
-PC_FN Real pc_tree_body(PC_IO Slot n) {
+PC_FN void pc_tree_body(PC_IO Slot n) {
   Index body = PC_ENDS(tree_ends, n, 0u);
   Quad place = PC_GATHER(pose, body, 0u); Quad turned = PC_GATHER(pose, body, 1u); Quad low = PC_GATHER(pose, body, 2u);
   Quad moments = PC_GATHER(mass, body, 0u); Quad inverse = PC_GATHER(mass, body, 1u);
   pc_st3_tree(PC_PASS n, TREE_POSITION, place.v); pc_st3_tree(PC_PASS n, TREE_POSITION + 3u, low.v);
   pc_st3_tree(PC_PASS n, TREE_FACING, turned.v); PC_ST(tree_rows, n, TREE_FACING + 3u, turned.s);
   pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
-  pc_st3_tree(PC_PASS n, TREE_PRINCIPAL, moments.v); PC_ST(tree_rows, n, TREE_MASS, moments.s); return moments.s;
+  pc_st3_tree(PC_PASS n, TREE_PRINCIPAL, moments.v); PC_ST(tree_rows, n, TREE_MASS, moments.s);
 }
 
 // One angle row at its nearer limit. It acts from the start where it did in the last sub-step; tree_solve adds others.
@@ -63,7 +63,7 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Vec3 rc = pc_rotate(qc, anchor_c.v); Vec3 rp = pc_rotate(qp, anchor_p.v);
   Vec3 apart = pc_add(pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION), pc_ld3_tree(PC_PASS up, TREE_POSITION)), pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION + 3u), pc_ld3_tree(PC_PASS up, TREE_POSITION + 3u)));
   pc_st3_tree(PC_PASS n, TREE_RC, rc); pc_st3_tree(PC_PASS n, TREE_RP, rp); pc_st3_tree(PC_PASS n, TREE_GAP, pc_add(apart, pc_sub(rc, rp)));
-  pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_ld3_tree(PC_PASS up, TREE_PLACE), apart));
+  pc_st3_tree(PC_PASS n, TREE_PLACE, apart);
   pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
   Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));
 
@@ -72,21 +72,30 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_zero3());  // of a pivot that no tree is solved for
 }
 
+// A node's place, from that of its parent and how far it is from there.
+PC_FN void pc_tree_place(PC_IO Slot n, Slot up) { pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_ld3_tree(PC_PASS up, TREE_PLACE), pc_ld3_tree(PC_PASS n, TREE_PLACE))); }
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
-  pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3()); pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_RC, pc_zero3());
+  PC_ONE { pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_PLACE, pc_zero3()); pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_RC, pc_zero3()); }
   // masses in units of the tree's: determinants stay in the range of reals whatever bodies weigh
   Real total = PC_REAL(0.0);
-  for (uint k = 0u; k < t.count; k++) { precise Real sum = total + pc_tree_body(PC_PASS PC_NODE(m, t.first + k)); total = sum; }
-  for (uint k = 0u; k < t.count; k++) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_TOTAL, total);
+  PC_NODES(k, 0u, t) {
+    pc_tree_body(PC_PASS PC_NODE(m, t.first + k));
+    PC_THEN(PC_ALL(k, 0u, t)) precise Real sum = total + PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_MASS); total = sum;
+  }
+  PC_NODES(k, 0u, t) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_TOTAL, total);
   Real share = pc_inverse_or_zero(total);
-  for (uint k = 1u; k < t.count; k++) pc_tree_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 1u, t) {
+    pc_tree_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
+    PC_THEN(PC_DOWN(k, 1u, t)) pc_tree_place(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  }
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); precise Real own = PC_LD(tree_rows, n, TREE_MASS) * share;
     pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_facing(PC_PASS n), pc_scale(pc_ld3_tree(PC_PASS n, TREE_PRINCIPAL), share)));
     PC_ST(tree_rows, n, TREE_MASS, own); PC_ST(tree_rows, n, TREE_TOUCH, PC_REAL(0.0)); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   }
   pc_tree_stiffness(PC_PASS m, t); pc_tree_whole(PC_PASS m, t);
   Real pivot = pc_select(PC_IS(pc_is_pivot(PC_PASS t)), PC_REAL(1.0), PC_REAL(0.0));
-  for (uint k = 1u; k < t.count; k++) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_PIVOT, pivot);
+  PC_NODES(k, 1u, t) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_PIVOT, pivot);
 }

@@ -50,8 +50,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first);
   // the factor is in units of the tree's mass
   Real total = PC_LD(tree_rows, root, TREE_TOTAL); Mask exists = total > PC_REAL(0.0); Real scale = pc_sqrt(pc_inverse_or_zero(total));
-  Index first = PC_ORDER(tree_order, root); pc_hand_root(PC_PASS root, first, exists, scale); pc_nothing_pending(PC_PASS first);
-  for (uint k = 1u; k < t.count; k++) {
+  PC_ONE { Index first = PC_ORDER(tree_order, root); pc_hand_root(PC_PASS root, first, exists, scale); pc_nothing_pending(PC_PASS first); }
+  PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); pc_hand_node(PC_PASS n, row, exists, scale); pc_nothing_pending(PC_PASS row);
   }
 }

@@ -64,7 +64,7 @@ PC_FN Real pc_at_limit(PC_IO Slot n) {
 }
 // An impulse against the turning of bodies with stiff pins. `held`: something acts on the tree from outside, or a limit does. Run after pc_tree_residual.
 PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     // (how far the arm swings against the parent, as an angle squared: a top may spin about it as it likes)
     Vec3 arm = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
@@ -79,34 +79,36 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
   pc_tree_residual(PC_PASS m, t, one);
   Vec3 push = pc_zero3(); Vec3 turn = pc_zero3(); Real load = PC_REAL(0.0);  // what contacts and loops give to the tree as a whole, and whether they do
-  for (uint k = 0u; k < t.count; k++) {
+  PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); push = pc_add(push, f.l);
     load = pc_max(load, pc_max(pc_largest(f.l), pc_largest(f.a)));
     precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l); turn = moment;
   }
-  for (uint k = 1u; k < t.count; k++) load = pc_max(load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
-  for (uint k = 1u; k < t.count; k++) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  PC_NODES(k, 1u, t) load = pc_max(load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
+  PC_MOST(load);
+  PC_NODES(k, 1u, t) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #ifdef PC_DRIVES
-  for (uint k = 1u; k < t.count; k++) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  PC_NODES(k, 1u, t) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #endif
   pc_tree_damping(PC_PASS m, t, load > PC_REAL(0.0));
   for (uint round = 0u; round < 4u; round++) {
     pc_factor(PC_PASS m, t, round == 0u);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
-    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one); PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
-    for (uint k = 1u; k < t.count; k++) {
+    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one); PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
+    PC_NODES(k, 1u, t) {
       Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Real here = pc_tree_revise(PC_PASS n, up, may_enter);
 #ifdef PC_DRIVES
       here = pc_max(here, pc_drive_revise(PC_PASS n, up, may_enter));
 #endif
       PC_ST(tree_rows, n, TREE_STALE, here); changed = pc_max(changed, here);
     }
+    PC_MOST(changed);
     if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
-    for (uint i = 1u; i < t.count; i++) {
-      uint k = t.count - i; Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    PC_UP(k, t) {
+      Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
       PC_ST(tree_rows, up, TREE_STALE, pc_max(PC_LD(tree_rows, up, TREE_STALE), PC_LD(tree_rows, n, TREE_STALE)));
     }
   }
-  for (uint k = 1u; k < t.count; k++) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
+  PC_NODES(k, 1u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
   pc_tree_apply(PC_PASS m, t, push, turn);
 }

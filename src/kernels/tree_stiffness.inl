@@ -23,15 +23,20 @@ PC_FN Stiffened pc_stiffened(PC_IO Sym3 i, Sym3 k) {
   Stiffened r; r.inertia = pc_sym3(xx, xy, xz, yy, yz, zz); r.fast = fast; return r;
 }
 
+// What a node's pin gives to the stiffness of its body, and to that of its parent.
+PC_FN void pc_stiffen(PC_IO Slot n) { pc_sts_tree(PC_PASS n, TREE_H, pc_geometric(pc_lds_tree(PC_PASS n, TREE_H), pc_ld3_tree(PC_PASS n, TREE_RC), pc_ld3_tree(PC_PASS n, TREE_PIN))); }
+PC_FN void pc_stiffen_parent(PC_IO Slot n, Slot up) {
+  pc_sts_tree(PC_PASS up, TREE_H, pc_geometric(pc_lds_tree(PC_PASS up, TREE_H), pc_ld3_tree(PC_PASS n, TREE_RP), pc_negate(pc_ld3_tree(PC_PASS n, TREE_PIN))));
+}
 // TREE_INERTIA and TREE_FAST of all nodes, from TREE_BODY and the impulses at TREE_PIN.
 PC_FN void pc_tree_stiffness(PC_IO Slot m, Tree t) {
-  for (uint k = 0u; k < t.count; k++) pc_sts_tree(PC_PASS PC_NODE(m, t.first + k), TREE_H, pc_diagonal(PC_REAL(0.0)));
-  for (uint k = 1u; k < t.count; k++) {
-    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Vec3 f = pc_ld3_tree(PC_PASS n, TREE_PIN);
-    pc_sts_tree(PC_PASS n, TREE_H, pc_geometric(pc_lds_tree(PC_PASS n, TREE_H), pc_ld3_tree(PC_PASS n, TREE_RC), f));
-    pc_sts_tree(PC_PASS up, TREE_H, pc_geometric(pc_lds_tree(PC_PASS up, TREE_H), pc_ld3_tree(PC_PASS n, TREE_RP), pc_negate(f)));
+  PC_NODES(k, 0u, t) pc_sts_tree(PC_PASS PC_NODE(m, t.first + k), TREE_H, pc_diagonal(PC_REAL(0.0)));
+  PC_NODES(k, 1u, t) {
+    pc_stiffen(PC_PASS PC_NODE(m, t.first + k));
+    PC_THEN(PC_CHILDREN(k, t)) pc_stiffen_parent(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
   }
-  for (uint k = 0u; k < t.count; k++) {
+  PC_MEET;
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Stiffened stiff = pc_stiffened(PC_PASS pc_lds_tree(PC_PASS n, TREE_BODY), pc_lds_tree(PC_PASS n, TREE_H));
     pc_sts_tree(PC_PASS n, TREE_INERTIA, stiff.inertia); PC_ST(tree_rows, n, TREE_FAST, stiff.fast);
   }

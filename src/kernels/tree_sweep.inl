@@ -25,11 +25,12 @@ PC_FN Vec3 pc_joint_push(PC_IO Slot n, Six f, Vec3 rc, Real limits) {
 }
 // Fills TREE_X of all nodes and, at `pin`, the impulses of the pins, from the right-hand sides at `c`.
 PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
-  for (uint k = 0u; k < t.count; k++) {
+  PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Six outside = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); pc_st6_tree(PC_PASS n, TREE_F, outside);
   }
-  for (uint i = 1u; i < t.count; i++) {
-    uint k = t.count - i; Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+  PC_MEET;
+  PC_UP(k, t) {
+    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 gap = pc_ld3_tree(PC_PASS n, c);
     Six w = pc_w_mul(PC_PASS n, pc_joint_push(PC_PASS n, f, rc, limits));
     precise Vec3 l = f.l - w.l + pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), gap);
@@ -39,8 +40,9 @@ PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
     pc_st6_tree(PC_PASS up, TREE_F, pc_six(pc_add(sum.l, l), sum_a));
   }
   Slot root = PC_NODE(m, t.first);
-  pc_st6_tree(PC_PASS root, TREE_X, pc_sym6_mul(pc_ldh_tree(PC_PASS root, TREE_H), pc_ld6_tree(PC_PASS root, TREE_F)));
-  for (uint k = 1u; k < t.count; k++) {
+  PC_ONE pc_st6_tree(PC_PASS root, TREE_X, pc_sym6_mul(pc_ldh_tree(PC_PASS root, TREE_H), pc_ld6_tree(PC_PASS root, TREE_F)));
+  PC_MEET;
+  PC_DOWN(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Six above = pc_ld6_tree(PC_PASS up, TREE_X);
     Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);

@@ -110,6 +110,7 @@ namespace {
 void add_block(std::span<const TreeNode> like, std::uint32_t width, TreeBlocks& out) {
   out.blocks.push_back(std::uint32_t(out.parents.size()));
   out.blocks.push_back(std::uint32_t(like.size()));
+  out.blocks.push_back(0);
   for (const TreeNode& node : like) out.parents.push_back(node.parent << 1 | std::uint32_t(node.flipped));
   out.ends.resize(out.parents.size() * 2 * width, 0);
   out.order.resize(out.parents.size() * width, 0);
@@ -127,6 +128,33 @@ void fill_lane(const Forest& forest, std::uint32_t i, std::uint32_t lane, std::u
   }
 }
 
+/// Of a block that is one tree.
+void add_levels(std::size_t block, TreeBlocks& out) {
+  const std::uint32_t first = out.blocks[3 * block], count = out.blocks[3 * block + 1];
+  const auto parent = [&](std::uint32_t k) { return out.parents[first + k] >> 1; };
+  const auto is_oldest = [&](std::uint32_t k) { return k == 1 || parent(k) != parent(k - 1); };
+  const std::size_t at = out.blocks.size();
+  out.blocks[3 * block + 2] = std::uint32_t(at);
+  out.blocks.insert(out.blocks.end(), {1, 0, 0});  // the root
+  std::uint32_t groups = 0;
+  bool in_chain = false;
+  for (std::uint32_t begin = 1, end = 1; begin < count; begin = end) {
+    const std::uint32_t above = end = begin;
+    while (end < count && parent(end) < above) end++;
+    const bool is_chain = end - begin == 1;
+    if (!is_chain || !in_chain) {
+      out.blocks[at]++;
+      out.blocks.insert(out.blocks.end(), {begin, groups << 1 | std::uint32_t(is_chain)});
+    }
+    in_chain = is_chain;
+    for (std::uint32_t k = begin; k < end; k++) groups += is_oldest(k);
+  }
+  out.blocks.insert(out.blocks.end(), {count, groups << 1});
+  for (std::uint32_t k = 1; k < count; k++)
+    if (is_oldest(k)) out.blocks.push_back(k);
+  out.blocks.push_back(count);
+}
+
 }  // namespace
 
 void pack_trees(const Forest& forest, const TreeShapes& shapes, std::uint32_t width, TreeBlocks& out, OctaveOf of) {
@@ -136,7 +164,7 @@ void pack_trees(const Forest& forest, const TreeShapes& shapes, std::uint32_t wi
   out.order.clear();
   out.ranges.assign(of.count, {0, 0});
   for (unsigned octave = 0; octave < of.count; octave++) {
-    out.ranges[octave].begin = out.count();
+    out.ranges[octave].begin = std::uint32_t(out.blocks.size() / 3);
     for (std::size_t shape = 0; shape < shapes.count(); shape++) {
       std::uint32_t lane = 0;
       for (const std::uint32_t i : shapes.trees(shape)) {
@@ -146,8 +174,9 @@ void pack_trees(const Forest& forest, const TreeShapes& shapes, std::uint32_t wi
         lane = (lane + 1) % width;
       }
     }
-    out.ranges[octave].end = out.count();
+    out.ranges[octave].end = std::uint32_t(out.blocks.size() / 3);
   }
+  for (std::size_t block = 0; width == 1 && block < out.count(); block++) add_levels(block, out);
 }
 
 }  // namespace pcphys

@@ -57,14 +57,18 @@ class Forest {
 
 /// The forest laid out for `width` lanes: trees of one shape share blocks, one tree a lane; what is left over of a block
 /// is padding (rows 0).
+///
+/// Levels are there where a block is one tree, for a work group that shares it (glcompute/team.glsl): the number of spans of nodes; of each, and of
+/// what follows the last, its first node, and its first group << 1 | whether it is a chain; then of each group, and of what follows the last, its
+/// first node. The root is a span, each level below it is another, and levels of one node in a row are one, a chain. Groups: nodes of one parent.
 struct TreeBlocks {
-  std::vector<std::uint32_t> blocks;   // of each block its first node and their number
+  std::vector<std::uint32_t> blocks;   // of each block its first node, their number, and where its levels begin; then levels
   std::vector<std::uint32_t> parents;  // of each node parent << 1 | flipped
   std::vector<std::uint32_t> ends;     // ends[(node * 2 + side) * width + lane]: body row, joint row
   std::vector<std::uint32_t> order;    // order[node * width + lane]: 1 + the node's place in the forest; 0 pads
   std::vector<Range> ranges;           // blocks of each octave
 
-  std::uint32_t count() const { return std::uint32_t(blocks.size() / 2); }
+  std::uint32_t count() const { return ranges.empty() ? 0 : ranges.back().end; }
 };
 
 /// Which trees of a forest have one shape: one topology, and joints the same way round.

@@ -52,13 +52,13 @@ bool needs_colours(Kernel kernel) {
 
 std::uint32_t side_by_side(Domain domain, const Schedule& schedule) {
   if (domain == Domain::body) return schedule.moving;
-  if (domain == Domain::tree) return schedule.trees.side_by_side();
+  if (of_trees(domain)) return schedule.trees.side_by_side();
   return (of_joints(domain) ? schedule.joints : schedule.contacts).side_by_side();
 }
 void pack(Domain domain, std::uint32_t lanes, Schedule& schedule) {
   if (of_joints(domain)) schedule.joints.pack(lanes);
   if (of_contacts(domain)) schedule.contacts.pack(lanes);
-  if (domain == Domain::tree) schedule.trees.pack(lanes);
+  if (of_trees(domain)) schedule.trees.pack(lanes);
 }
 std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsigned octave) {
   if (domain == Domain::body) return schedule.ranges(octave);
@@ -67,14 +67,14 @@ std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsign
   if (domain == Domain::joint) return schedule.joints.ranges(octave);
   if (domain == Domain::free_joint) return schedule.joints.free_ranges(octave);
   if (domain == Domain::tree_joint) return schedule.joints.tree_ranges(octave);
-  if (domain == Domain::tree) return schedule.trees.ranges(octave);
+  if (of_trees(domain)) return schedule.trees.ranges(octave);
   if (domain == Domain::free_contact) return schedule.contacts.free_ranges(octave);
   if (domain == Domain::tree_contact) return schedule.contacts.tree_ranges(octave);
   return schedule.contacts.ranges(octave);
 }
 std::size_t slots_of(Buffer buffer, Domain domain, const Schedule& schedule) {
   if (buffer == Buffer::contact_reach) return schedule.contacts.reach_slots();
-  if (domain == Domain::tree) return schedule.trees.slots();
+  if (of_trees(domain)) return schedule.trees.slots();
   return (of_joints(domain) ? schedule.joints : schedule.contacts).slots();
 }
 std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule& schedule) {

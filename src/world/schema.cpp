@@ -19,7 +19,7 @@ constexpr BufferSchema buffer_schemas[] = {
     {"joint_ends", Table::joint, 0, "the two body rows of a slot"},
     {"joint_order", Table::joint, 0, "the joint of a slot"},
     {"joint_paths", Table::joint, 0, "of joints that close loops of trees the way from the roots to their bodies"},
-    {"tree_blocks", Table::joint, 0, "of a block of trees its first node and their number"},
+    {"tree_blocks", Table::joint, 0, "of a block of trees its first node, their number, and where its levels stand in this list"},
     {"tree_parents", Table::joint, 0, "of a node twice its parent's place, and 1 where the joint's body a is the child"},
     {"tree_ends", Table::joint, 0, "body row and joint row of a node"},
     {"tree_order", Table::node, 0, "row of a node in the table of nodes"},

@@ -66,7 +66,19 @@ enum class Kernel : std::uint8_t {
 
 /// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others. joint: all that stand in
 /// no tree; free_joint and tree_joint: the same of these. row: every row of bodies; edge: two bodies that act on each other.
-enum class Domain : std::uint8_t { body, contact, free_contact, tree_contact, joint, free_joint, tree_joint, tree, row, edge };
+enum class Domain : std::uint8_t {
+  body,
+  contact,
+  free_contact,
+  tree_contact,
+  joint,
+  free_joint,
+  tree_joint,
+  tree,
+  tree_nodes,
+  row,
+  edge
+};
 
 inline constexpr std::size_t table_count = std::size_t(Table::count);
 inline constexpr std::size_t table_buffer_count = std::size_t(Buffer::table_buffers);
@@ -75,6 +87,9 @@ inline constexpr std::size_t kernel_count = std::size_t(Kernel::count);
 inline constexpr std::size_t stage_count = 3;  // that are put on a place each; islands are on a device or not in the plan
 /// Whether its kernels are called element by element, not in slots of several lanes.
 constexpr bool one_by_one(Domain domain) { return domain == Domain::body || domain == Domain::row || domain == Domain::edge; }
+
+/// Whether they are of joint trees.
+constexpr bool of_trees(Domain domain) { return domain == Domain::tree || domain == Domain::tree_nodes; }
 
 /// Where a host's own property number k stands (World::add_property): behind all that kernels.inl and properties.inl name.
 constexpr Buffer own_buffer(std::size_t k) { return Buffer(buffer_count + k); }

@@ -1,7 +1,8 @@
-"""Rules of kernel text: call, division, precise, literal, reserved, unread."""
+"""Rules of kernel text: call, division, precise, literal, reserved, nodes, unread."""
 import re
 
 INTEGER_TYPES = {"uint", "int", "Index", "Row", "Slot", "bool", "uint32_t", "size_t"}
+LOOPS = {"PC_NODES", "PC_DOWN", "PC_UP", "PC_CHILDREN", "PC_ALL"}  # over nodes, see nodes.inl
 KEYWORDS = {"if", "for", "while", "switch", "return", "else", "do", "case"}
 BANNED = set("""abs sign floor ceil trunc round roundEven fract mod modf min max clamp mix step smoothstep isnan isinf fma ldexp
     frexp sqrt inversesqrt pow exp exp2 log log2 sin cos tan asin acos atan atan2 sinh cosh tanh radians degrees length distance
@@ -98,16 +99,24 @@ class Kernel:
                     return
 
     def statement(self, tokens):
-        while tokens and tokens[0].text in ("else", "do", "const", "break", "continue"):
+        while tokens and tokens[0].text in ("else", "do", "const", "break", "continue", "PC_ONE"):
             tokens = tokens[1:]
         if not tokens or tokens[0].text in ("struct", "case", "default"):
             return
         head = tokens[0].text
         if head in ("if", "while", "switch", "for") and tokens[1].text == "(":
             close = matching(tokens, 1)
+            if head == "for" and any(a.text == "t" and c.text == "count" for a, c in zip(tokens[:close], tokens[2:close])):
+                self.source.report(tokens[0].line, "nodes", "a loop over the nodes of a tree")
             for part in split(tokens[2:close], ";"):
                 self.statement(part)
             self.statement(tokens[close + 1:])
+        elif head in LOOPS and tokens[1].text == "(":
+            self.scope[tokens[2].text] = True
+            self.statement(tokens[matching(tokens, 1) + 1:])
+        elif head == "PC_THEN" and tokens[1].text == "(":
+            self.statement(tokens[2:matching(tokens, 1)])
+            self.statement(tokens[matching(tokens, 1) + 1:])
         elif head == "return":
             self.expression(tokens[1:], False)
         elif len(self.scope) == 0 and re.fullmatch(r"PC_[A-Z0-9_]+", head) and head != "PC_FN" and self.is_list(tokens):
