@@ -106,7 +106,7 @@ TEST_CASE("what comes too slowly to bounce is no flight") {
     run.step(1.0 / 60);
     bool looked_for = false;
     for (const PlanEntry& entry : run.stepper.plan().entries)
-      looked_for |= entry.kind == PlanEntry::Kind::kernel && kernel_name(entry) == "contact_impact";
+      looked_for |= entry.kind == PlanEntry::Kind::kernel && kernel_name(entry).starts_with("contact_impact");
     CHECK(looked_for == (speed > run.stepper.settings().restitution_threshold));
   }
 }
