@@ -244,9 +244,7 @@ Status GlBackend::finish() {
 }  // namespace
 
 /// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
-std::uint32_t gl_width_for(Domain domain, std::uint32_t count) {
-  return of_trees(domain) && count < fewest_alike ? 1 : gl_width;
-}
+std::uint32_t gl_width_for(Domain domain, std::uint32_t count) { return of_trees(domain) && count < fewest_alike ? 1 : gl_width; }
 
 GlTeam& gl_team() {
   static GlTeam team = [] {

@@ -22,7 +22,10 @@ std::string buffer_declarations(const KernelSchema& kernel, Precision precision,
   for (const Access& access : kernel.accesses) {
     const BufferSchema& buffer = schema(access.buffer);
     const std::string label(buffer.name);
-    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (!access.write ? "readonly " : shared ? "coherent " : "") +
+    text += "layout(std430, binding = " + number(binding++) + ") restrict " +
+            (!access.write ? "readonly "
+             : shared      ? "coherent "
+                           : "") +
             "buffer Block_" + label + " { " + element(access.buffer, precision) + " io_" + label + "[]; };\n";
     if (buffer.reals != 0) text += "#define quads_" + label + " " + number(quads(access.buffer)) + "u\n";
   }
@@ -31,7 +34,8 @@ std::string buffer_declarations(const KernelSchema& kernel, Precision precision,
 
 std::string main_text(Domain domain, bool shared) {
   if (shared)
-    return "layout(local_size_x = PC_TEAM) in;\nuniform uvec2 pc_range;\nvoid main() { pc_kernel(Slot(gl_WorkGroupID.x + pc_range.x, 0u)); }\n";
+    return "layout(local_size_x = PC_TEAM) in;\nuniform uvec2 pc_range;\nvoid main() { pc_kernel(Slot(gl_WorkGroupID.x + "
+           "pc_range.x, 0u)); }\n";
   std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
   text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n"

@@ -87,8 +87,9 @@ std::uint32_t gl_width_for(Domain domain, std::uint32_t count);
 /// The invocations that share a joint tree which stands alone in its block, of GL backends that are made from then on. Tests and benchmarks change
 /// it: the bits are the same.
 struct GlTeam {
-  std::uint32_t size;      // 1: none share; 0: 32, but in software none. At first what PCPHYS_GL_TEAM says, or 0
-  bool scattered = false;  // in another order: where a barrier is missing, a device that runs them one after the other has other bits
+  std::uint32_t size;  // 1: none share; 0: 32, but in software none. At first what PCPHYS_GL_TEAM says, or 0
+  bool scattered =
+      false;  // in another order: where a barrier is missing, a device that runs them one after the other has other bits
 };
 GlTeam& gl_team();
 
