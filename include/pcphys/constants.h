@@ -131,6 +131,9 @@ inline constexpr unsigned impact_sweeps = 8;
 /// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet of what
 /// holds it (docs/impulses.md).
 inline constexpr unsigned settling_visits = 8, settling_steps = 16;
+/// In short sub-steps, in which an overlap is pushed out faster, so often, and of the count of steps so much is taken by each.
+inline constexpr unsigned settling_visits_short = 16;
+inline constexpr double settling_step_short = 0.25;
 
 /// A body is slow below this speed of its centre of mass [m/s] and this spin [rad/s], and falls asleep with its island when all of it has been
 /// for so long [s] (docs/sleeping.md). Piles at rest keep a hundredth of that and less.

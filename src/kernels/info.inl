@@ -17,6 +17,7 @@ PC_INFO_FIELD(gap_weight, "of a gap beside the approach, where friction foresees
 PC_INFO_FIELD(settled_load, "rounds where a load grows by this factor")
 PC_INFO_FIELD(settled_friction, "or friction changes by this share of its limit")
 PC_INFO_FIELD(least_load, "rounds are for loads that make more than this change of the velocity [m/s]")
+PC_INFO_FIELD(settling_step, "what this step takes from the count of a body that was just placed")
 PC_INFO_FIELD(settling_pace, "of a row in a round, as a multiple of its part in the responses it feels")
 PC_INFO_FIELD(impulse_trend, "share by which a change of a normal impulse goes on in the next sub-step")
 PC_INFO_FIELD(tree_contact_rate, "the first two of contacts with joint trees")

@@ -28,7 +28,7 @@ PC_PROPERTY(body, velocity_parts, 7, real, some_left, scratch, 0, "1", "of the g
 PC_PROPERTY(body, velocity_parts, 8, vec3, velocity_low, state, 0, "m/s", "what rounding dropped from displacement_rate when forces and lasting contacts changed it")
 PC_PROPERTY(body, velocity_parts, 11, real, some_struck, scratch, 0, "1", "of the ground's row alone: 1 since an impact struck some body, until another sweep has looked (Backend::take_flag)")
 PC_PROPERTY(body, velocity_parts, 12, vec3, momentum_low, state, 0, "kg m^2/s", "the same of angular_momentum")
-PC_PROPERTY(body, velocity_parts, 15, real, settling, state, 0, "1", "steps left in which contacts of a body that was just placed are visited more often")
+PC_PROPERTY(body, velocity_parts, 15, real, settling, state, 0, "1", "steps left in which contacts of a body that was just placed are visited more often; short sub-steps take a quarter")
 PC_BUFFER(body, mass, 2, "mass properties in the principal frame")
 PC_PROPERTY(body, mass, 0, vec3, moments, input, 0, "kg m^2", "principal moments of inertia")
 PC_PROPERTY(body, mass, 3, real, mass, input, 0, "kg", "0 for fixed and kinematic bodies")

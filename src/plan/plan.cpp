@@ -205,12 +205,13 @@ struct Contacts {
 };
 Contacts contacts(const PlanSignature& s) {
   if (s.frictionless())
-    return {Kernel::contact_prepare_frictionless,     Kernel::contact_refresh_frictionless, Kernel::contact_impact_frictionless,
-            Kernel::contact_warm_frictionless,        Kernel::contact_solve_frictionless,   Kernel::contact_solve_placed_frictionless,
-            Kernel::contact_restitution_frictionless, Kernel::contact_touch_frictionless,   Kernel::contact_store_frictionless};
-  return {Kernel::contact_prepare, Kernel::contact_refresh,      Kernel::contact_impact,
-          Kernel::contact_warm,    Kernel::contact_solve,        Kernel::contact_solve_placed,
-          Kernel::contact_restitution, Kernel::contact_touch,    Kernel::contact_store};
+    return {
+        Kernel::contact_prepare_frictionless,     Kernel::contact_refresh_frictionless, Kernel::contact_impact_frictionless,
+        Kernel::contact_warm_frictionless,        Kernel::contact_solve_frictionless,   Kernel::contact_solve_placed_frictionless,
+        Kernel::contact_restitution_frictionless, Kernel::contact_touch_frictionless,   Kernel::contact_store_frictionless};
+  return {Kernel::contact_prepare,     Kernel::contact_refresh, Kernel::contact_impact,
+          Kernel::contact_warm,        Kernel::contact_solve,   Kernel::contact_solve_placed,
+          Kernel::contact_restitution, Kernel::contact_touch,   Kernel::contact_store};
 }
 
 // what acts on trees first: the floor under what lies on them comes later (see Colouring)
@@ -235,8 +236,7 @@ void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uin
 void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   solve_on_trees(b, s, phase, substep);
   if (s.free_contacts) b.kernel(contacts(s).solve, phase, substep);
-  for (unsigned visit = 1; s.free_contacts && s.placed && visit < constants::settling_visits; visit++)
-    b.kernel(contacts(s).placed, phase, substep);
+  for (unsigned visit = 1; s.free_contacts && visit < s.visits; visit++) b.kernel(contacts(s).placed, phase, substep);
 }
 
 /// A sub-step; `count`: of how many.

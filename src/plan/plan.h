@@ -37,7 +37,7 @@ struct PlanSignature {
   bool tree_contacts = false;               // and of bodies that do
   bool friction = false;                    // some contact resists sliding, rolling or turning
   bool restitution = false;                 // some contact bounces
-  bool placed = false;                      // some contact is of a body that was just placed
+  unsigned visits = 1;                      // in a pass; more while some body that was just placed settles
   bool impacts = false;                     // or is between shapes that meet in flight
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
   bool touches = false;                     // the host asks for events of contacts
