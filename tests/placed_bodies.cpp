@@ -55,7 +55,7 @@ TEST_CASE("placed bodies: short sub-steps visit twice as often, in four times as
   World world = with_floor();
   (void)add_pair(world, 0);
   Stepper stepper;
-  const double dt = 0.9 * constants::short_substep * stepper.settings().substeps;
+  const double dt = 0.9 * std::sqrt(constants::settling_fall / length(world.gravity())) * stepper.settings().substeps;
   const int each = 2 * int(constants::settling_visits_short - 1) * int(stepper.settings().substeps);
   const unsigned steps = unsigned((constants::settling_steps - 1) / constants::settling_step_short);
   for (unsigned i = 0; i < steps; i++) {

@@ -131,9 +131,11 @@ inline constexpr unsigned impact_sweeps = 8;
 /// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet of what
 /// holds it (docs/impulses.md).
 inline constexpr unsigned settling_visits = 8, settling_steps = 16;
-/// In short sub-steps, in which an overlap is pushed out faster, so often, and of the count of steps so much is taken by each.
+/// Where sub-steps of h are short, so that an overlap is pushed out much faster than loads are taken up, so often, and of the count of
+/// steps so much is taken by each. Short is where gravity g does not move a body by this: 0 < g h^2 < settling_fall [m], that of 1 ms
+/// on Earth.
 inline constexpr unsigned settling_visits_short = 16;
-inline constexpr double settling_step_short = 0.25;
+inline constexpr double settling_step_short = 0.25, settling_fall = 9.83e-6;
 
 /// A body is slow below this speed of its centre of mass [m/s] and this spin [rad/s], and falls asleep with its island when all of it has been
 /// for so long [s] (docs/sleeping.md). Piles at rest keep a hundredth of that and less.

@@ -45,7 +45,8 @@ std::uint32_t limit(GLenum name) {
   return std::uint32_t(value);
 }
 
-EGLContext create_context(EGLDisplay display, EGLConfig config, int major, int minor) {
+/// `notified`: a reset of the device is told (glGetGraphicsResetStatus); otherwise results would go on as if nothing was.
+EGLContext create_context(EGLDisplay display, EGLConfig config, int major, int minor, bool notified) {
   std::vector<EGLint> wanted;
   if (major != 0)
     wanted = {EGL_CONTEXT_MAJOR_VERSION,          major, EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
@@ -53,6 +54,7 @@ EGLContext create_context(EGLDisplay display, EGLConfig config, int major, int m
 #ifndef NDEBUG
   if (epoxy_egl_version(display) >= 15) wanted.insert(wanted.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
 #endif
+  if (notified) wanted.insert(wanted.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
   wanted.push_back(EGL_NONE);
   return eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
 }
@@ -149,9 +151,10 @@ Result<std::unique_ptr<GlContext>> GlContext::open_display(void* display, int de
   std::unique_ptr<GlContext> made(new GlContext);
   made->report_.device = device;
   made->display_ = display;
-  made->context_ = create_context(display, config, 4, 3);
+  if (epoxy_egl_version(display) >= 15) made->context_ = create_context(display, config, 4, 3, true);
+  if (made->context_ == EGL_NO_CONTEXT) made->context_ = create_context(display, config, 4, 3, false);
   const bool old = made->context_ == EGL_NO_CONTEXT;
-  if (old) made->context_ = create_context(display, config, 0, 0);  // only to say which version there is
+  if (old) made->context_ = create_context(display, config, 0, 0, false);  // only to say which version there is
   eglBindAPI(api);
   if (made->context_ == EGL_NO_CONTEXT) return unavailable("The EGL display has no OpenGL contexts." + cure);
   GlScope scope(*made);
@@ -260,9 +263,12 @@ void GlContext::leave() {
 }
 
 Status GlContext::check(const std::string& doing) {
-  if (epoxy_gl_version() >= 45 && glGetGraphicsResetStatus() != GL_NO_ERROR)
-    return Error{ErrorCode::device_error, "The GL context was lost while " + doing + "; create the world anew."};
+  const bool reset = epoxy_gl_version() >= 45 && glGetGraphicsResetStatus() != GL_NO_ERROR;
   const GLenum code = glGetError();
+  if (reset || code == GL_CONTEXT_LOST)
+    return Error{ErrorCode::device_error,
+                 "The GL device was reset while " + doing +
+                     ", and its context is lost; go on with a new stepper, and with less work at a time."};
   if (code == GL_NO_ERROR) return {};
   while (glGetError() != GL_NO_ERROR) {}
   const char* what = code == GL_OUT_OF_MEMORY   ? "out of memory"

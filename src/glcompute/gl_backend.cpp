@@ -9,6 +9,7 @@
 #include "glcompute/context.h"
 #include "glcompute/device_probe.h"
 #include "glcompute/gl_memory.h"
+#include "glcompute/gl_queue.h"
 #include "glcompute/own_programs.h"
 #include "glcompute/program.h"
 #include "step/backend.h"
@@ -61,6 +62,7 @@ class GlBackend final : public Backend {
   SourceOptions options_;
   GlMemory memory_;
   GlStaging staging_;
+  GlQueue queue_;
   OwnPrograms own_;
   std::array<std::array<KernelProgram, kernel_count>, 2> programs_{};  // of `gl_width` lanes, and of one
   bool writes_pending_ = false;                                        // of dispatches, not yet visible to transfers
@@ -90,6 +92,7 @@ GlBackend::~GlBackend() {
       for (const auto& programs : programs_)
         for (const KernelProgram& program : programs)
           if (program.id != 0) glDeleteProgram(program.id);
+      queue_.release();
       own_.release();
       memory_.release();
       staging_.release();
@@ -193,6 +196,7 @@ void GlBackend::dispatch_all(const KernelRun& run, std::int32_t range_location) 
       dispatch(range_location, range.begin, range.end, memory_.limits(), 1, 1);
     else
       dispatch(range_location, range.begin * lanes, range.end * lanes, memory_.limits());
+    queue_.dispatched();
     barrier_due_ = true;  // each range may read what the one before wrote
     writes_pending_ = true;
   }
@@ -220,6 +224,7 @@ Status GlBackend::run_at_once(const KernelRun& run) {
 
 Status GlBackend::run_in_two(const KernelRun& run) {
   if (Status status = own_.run_in_two(run, memory_); !status) return status;
+  queue_.dispatched();
   writes_pending_ = true;
   barrier_due_ = false;
   return {};

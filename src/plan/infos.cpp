@@ -21,9 +21,12 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 }  // namespace
 
-Settling::Settling(double h)
-    : visits(h < constants::short_substep ? constants::settling_visits_short : constants::settling_visits),
-      step(h < constants::short_substep ? constants::settling_step_short : 1) {}
+Settling::Settling(double h, Vec3 gravity) : visits(constants::settling_visits), step(1) {
+  const double fall = length(gravity) * h * h;
+  if (fall == 0 || fall >= constants::settling_fall) return;
+  visits = constants::settling_visits_short;
+  step = constants::settling_step_short;
+}
 
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
   const double h = from.h / double(1u << octave);
@@ -47,7 +50,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.gap_weight = Scalar(constants::gap_weight);
   biased.settled_load = Scalar(constants::settled_load);
   biased.settled_friction = Scalar(constants::settled_friction);
-  biased.settling_step = Scalar(Settling(from.h).step);
+  biased.settling_step = Scalar(Settling(from.h, from.gravity).step);
   biased.settling_pace = Scalar(constants::settling_pace);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);

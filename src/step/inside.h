@@ -288,7 +288,7 @@ struct Stepper::Inside {
       s.tables.resize(Table::node, rows);
     wanted.friction = found.friction || found.rolling;
     wanted.restitution = found.restitution;
-    wanted.visits = found.placed && wanted.free_contacts ? Settling(h).visits : 1;
+    wanted.visits = found.placed && wanted.free_contacts ? Settling(h, s.gravity).visits : 1;
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
     wanted.touches = EventRecorder::of_contacts(settings) && wanted.contacts();
@@ -318,7 +318,7 @@ struct Stepper::Inside {
     strayed = before && ++tries < most_tries && find_strays(s, *before);
     if (strayed) return {};
     s.last_substep = h;
-    s.settling = Settling(h).left(s.settling);
+    s.settling = Settling(h, s.gravity).left(s.settling);
     report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
     report.refined = octaves.refined();
     report.fourth_order = octaves.fourth_order();
