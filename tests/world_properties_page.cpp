@@ -32,6 +32,23 @@ std::string capital(std::string_view text) {
   return s;
 }
 
+const char* text_of(Domain domain) {
+  switch (domain) {  // compilers name one that is missing
+    case Domain::body: return "bodies";
+    case Domain::contact: return "contacts";
+    case Domain::free_contact: return "free contacts";
+    case Domain::tree_contact: return "tree contacts";
+    case Domain::joint: return "joints";
+    case Domain::free_joint: return "free joints";
+    case Domain::tree_joint: return "tree joints";
+    case Domain::tree: return "trees";
+    case Domain::tree_nodes: return "trees, and nodes of large ones";
+    case Domain::row: return "all bodies";
+    case Domain::edge: return "edges";
+  }
+  return "";
+}
+
 std::string page() {
   std::ostringstream out;
   out << "# Properties\n"
@@ -62,11 +79,8 @@ std::string page() {
     std::string lists[2];
     for (const Access& a : s.accesses)
       lists[a.write] += (lists[a.write].empty() ? "" : ", ") + std::string(schema(a.buffer).name);
-    constexpr const char* domains[] = {"bodies", "contacts",    "free contacts", "tree contacts",
-                                       "joints", "free joints", "tree joints",   "trees",
-                                       "all bodies", "edges"};
-    out << "| `" << s.name << "` | " << name(s.stage) << " | " << domains[std::size_t(s.domain)] << " | " << lists[0] << " | "
-        << lists[1] << " |\n";
+    out << "| `" << s.name << "` | " << name(s.stage) << " | " << text_of(s.domain) << " | " << lists[0] << " | " << lists[1]
+        << " |\n";
   }
   return out.str();
 }
