@@ -129,6 +129,20 @@ TEST_CASE("run to run: the same hashes, and every step changes them") {
 TEST_CASE("all eight mixes of cpu and gl have equal hashes in float") { check_mixes(Precision::f32, gl_steps, gl_mixed_steps); }
 TEST_CASE("all eight mixes of cpu and gl have equal hashes in double") { check_mixes(Precision::f64, 60, 15); }
 
+TEST_CASE("a step of thousands of dispatches: equal hashes") {
+  require_gl();
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World here = crowd_world(precision), there = crowd_world(precision);
+    StepSettings settings = lanes(1);
+    Stepper cpu(settings);
+    settings.set_all(Place::gl);
+    Stepper gl(settings);
+    run(here, cpu, 2);
+    run(there, gl, 2);
+    CHECK(here.hash() == there.hash());
+  }
+}
+
 TEST_CASE("another mix and another lane width at every step: the same hash") {
   require_gl();
   const std::vector<Mix> all = mixes();

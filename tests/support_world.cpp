@@ -160,6 +160,16 @@ World chains_world(Precision precision) {
   return world;
 }
 
+World crowd_world(Precision precision) {
+  World world({precision});
+  for (int i = 0; i < 90; i++) {
+    BodyDef body = ball({0, 0, 0}, 0.5);
+    if (i % 2 == 0) body.shapes = {ShapeDef::box({0.5, 0.5, 0.5})};
+    must(world.create_body(body));
+  }
+  return world;
+}
+
 Fingerprint fingerprint(const World& world) {
   Fingerprint f{world.hash(), world.bodies(), world.joints(), world.snapshot(), {}, world.gravity()};
   const Tables& tables = world.state().tables;

@@ -63,6 +63,8 @@ std::vector<BodyId> add_chain(World& world, Vec3 top, int count, bool free = fal
                               bool touching = false);
 /// Chains of several shapes and spins, hanging and free; one of them meets a floor.
 World chains_world(Precision precision);
+/// Balls and boxes in one place: more colours of contacts than a word has bits, and thousands of dispatches a step.
+World crowd_world(Precision precision);
 template <class T> T must(Result<T> result) {
   if (!result) FAIL("refused: " << result.error().message);
   return std::move(*result);

@@ -150,17 +150,6 @@ SceneWorld busy_world(Precision precision) {
   return s;
 }
 
-/// More colours of contacts than a word has bits.
-World crowd(Precision precision) {
-  World world({.precision = precision});
-  for (int i = 0; i < 90; i++) {
-    BodyDef body = ball({0, 0, 0}, 0.5);
-    if (i % 2 == 0) body.shapes = {ShapeDef::box({0.5, 0.5, 0.5})};
-    must(world.create_body(body));
-  }
-  return world;
-}
-
 using MakeWorld = std::function<World()>;
 
 std::uint64_t hash_after(const MakeWorld& make, StepSettings settings, std::uint32_t order, int steps) {
@@ -210,7 +199,7 @@ TEST_CASE("worst device: what was in memory does not matter, nor the order of wh
         lanes_there = lanes;
         for (const auto& [name, count] : all_scenes) check_same(name, maker(name, count, precision), 70);
         check_same(
-            "crowd", [=] { return crowd(precision); }, 3);
+            "crowd", [=] { return crowd_world(precision); }, 3);
         check_same(
             "busy", [=] { return busy_world(precision).world; }, 70);
         check_same(
