@@ -87,6 +87,8 @@ inline constexpr std::uint32_t most_island_rounds = 1000;
 /// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half the sub-step)^2 is
 /// to stay below this.
 inline constexpr double loop_stiffness = 0.02;
+/// In islands that are not large, as far as this, beyond StepSettings::refinement.
+inline constexpr std::uint32_t most_loop_substeps = 256;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;

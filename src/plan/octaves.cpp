@@ -17,6 +17,12 @@ std::uint8_t highest_octave(const StepSettings& settings) {
   return octave;
 }
 
+std::uint8_t highest_loop_octave(const StepSettings& settings) {
+  std::uint8_t octave = highest_octave(settings);
+  while (octave > 0 && octave + 1u < octave_count && settings.substeps << (octave + 1) <= constants::most_loop_substeps) octave++;
+  return octave;
+}
+
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
   uneven ? loads_.find(state, trees) : loads_.forget_contacts();
   columns_.forget();
@@ -29,6 +35,7 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   const std::uint8_t highest = settings.integrator == Integrator::seed ? 0 : highest_octave(settings);
   loads_.want(state, settings, dt, highest, wanted_);
   const double h = substep_length(dt, settings.substeps);
+  loops_.want(state, h, highest, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
   if (faces) columns_.want(state, trees, h, highest, islands_, wanted_);
   want_for_spins(state, forest, h, highest, wanted_);
   before_.swap(of_bodies_);

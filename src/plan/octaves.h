@@ -9,6 +9,7 @@
 #include "plan/columns.h"
 #include "plan/islands.h"
 #include "plan/loads.h"
+#include "plan/loops.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -21,12 +22,14 @@ inline constexpr std::uint32_t most_substeps = 1000;
 
 /// The highest octave within StepSettings::refinement and the most sub-steps of a step.
 std::uint8_t highest_octave(const StepSettings& settings);
+/// Of loops: further, up to constants::most_loop_substeps, unless `refinement` switches octaves off.
+std::uint8_t highest_loop_octave(const StepSettings& settings);
 
 class Octaves {
  public:
-  /// Follows a change of objects, as Loads::find_loops.
+  /// Follows a change of objects, as Loops::find.
   void update_structure(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing) {
-    loads_.find_loops(state, joints, closing);
+    loops_.find(state, joints, closing);
   }
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
@@ -34,6 +37,11 @@ class Octaves {
   /// those of the step before. `fourth`: the trees of fourth order. `together`: all bodies act on each other, and have one octave.
   bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
               std::span<const std::uint32_t> fourth, bool together, const StepSettings& settings, double dt);
+
+  /// Before the first try of a step.
+  void begin() { loops_.begin(); }
+  /// After a try: whether the step is to be made again, with more sub-steps.
+  bool find_tighter(const WorldState& state) { return loops_.find_tighter(state, islands_); }
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
@@ -46,6 +54,7 @@ class Octaves {
 
  private:
   Loads loads_;
+  Loops loops_;
   Columns columns_;
   Islands islands_;
   std::vector<Wanted> wanted_;

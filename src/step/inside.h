@@ -59,6 +59,7 @@ struct Stepper::Inside {
   StepInfos infos;
   EventRecorder recorder;
   std::vector<std::uint32_t> outside, leaving;  // rows
+  bool tighter = false;                         // loops came under more tension than sub-steps were chosen for
   bool strayed = false;                         // some body went further than it was looked for
   bool suspect = false;                         // a kernel of the host's own may have written what is no number
   bool watched = false;                         // of this step: such kernels one by one
@@ -140,12 +141,13 @@ struct Stepper::Inside {
     if (s.rests && !settings.sleep) s.forget_rest();
     detector.forget_strays();
     schedule.own.near.forget_strays();
+    octaves.begin();
     tries = 0;
     watched = false;
-    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed || suspect || !written) {
+    while (ok = attempt(s, dt), !ok || !outside.empty() || strayed || tighter || suspect || !written) {
       if (!ok && (ran || ok.error().code != ErrorCode::not_finite)) return put_rest_back(s, ok);
       if (ok) (void)undo(s, {});
-      if (strayed) continue;
+      if (strayed || tighter) continue;
       // the step anew, to see which kernel of the host's own it came from, if one it was
       watched |= suspect;
       if (suspect) continue;
@@ -261,7 +263,7 @@ struct Stepper::Inside {
   Status attempt(WorldState& s, double dt) {
     Detector::Found found;
     outside.clear();
-    strayed = suspect = ran = false;
+    strayed = tighter = suspect = ran = false;
     written = {};
     Status ok = detect(s, dt, found);
     if (!ok) return ok;
@@ -306,6 +308,9 @@ struct Stepper::Inside {
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
                            "(StepSettings::islands). The world is as it was."});
+    tighter = tries + 1 < most_tries && octaves.find_tighter(s);
+    tries += tighter;
+    if (tighter) return {};
     const bool left = plan->flight && runner.left();
     if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
     if (own.hosts()) written = own.check_written(s);
