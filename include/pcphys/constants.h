@@ -87,8 +87,10 @@ inline constexpr std::uint32_t most_island_rounds = 1000;
 /// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half the sub-step)^2 is
 /// to stay below this.
 inline constexpr double loop_stiffness = 0.02;
+/// Where a step brings this many times the tension that it was made for, and that asks for more, it is made again with all there are.
+inline constexpr double loop_snap = 2;
 /// In islands that are not large, as far as this, beyond StepSettings::refinement.
-inline constexpr std::uint32_t most_loop_substeps = 256;
+inline constexpr std::uint32_t most_loop_substeps = 512;
 /// The same for joint rows, which carry more and may be stiffer. At 2 pi 3 / 8 a chain under a heavy load gains energy.
 inline constexpr double joint_frequency_times_h = 1.5707963267948966;  // 2 pi / 4
 inline constexpr double joint_damping_ratio = 2;
@@ -107,8 +109,9 @@ inline constexpr double largest_smooth_turn = 1;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a
-/// tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least.
-inline constexpr double loop_give = 1e-7, loop_roundings = 800;
+/// tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least; shorter sub-steps
+/// have more, as much as leaves it the same spring, and `loop_give_most` at most.
+inline constexpr double loop_give = 1e-7, loop_roundings = 800, loop_give_most = 1e-4;
 /// Of what an impulse on one body of a joint tree moves another one, so much counts in the effective masses of a contact between the
 /// two: bodies that can hardly move against each other then have a mass that is finite.
 inline constexpr double cross_share = 0.9;

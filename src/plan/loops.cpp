@@ -36,7 +36,7 @@ void Loops::find(const WorldState& state, const SolvedJoints& joints, std::span<
 }
 
 void Loops::begin() {
-  for (Loop& l : loops_) l.found = 0;
+  for (Loop& l : loops_) l.tight = false;
 }
 
 double Loops::tension(const WorldState& state, const Loop& loop, double h) const {
@@ -51,8 +51,9 @@ void Loops::want(const WorldState& state, double h, std::uint8_t highest, std::u
                  std::vector<Wanted>& wanted) {
   h_ = h, highest_ = highest, highest_of_loops_ = highest_of_loops;
   for (Loop& l : loops_) {
-    l.assumed = std::max(tension(state, l, state.last_substep), l.found);
-    const std::uint8_t whole = octave(l, l.assumed, highest), most = octave(l, l.assumed, highest_of_loops);
+    l.assumed = tension(state, l, state.last_substep);
+    const std::uint8_t whole = l.tight ? highest : octave(l, l.assumed, highest);
+    const std::uint8_t most = l.tight ? highest_of_loops : octave(l, l.assumed, highest_of_loops);
     if (whole > 0) wanted.push_back({l.body, whole, true});
     if (most > whole) wanted.push_back({l.body, most, false});
   }
@@ -62,12 +63,12 @@ bool Loops::find_tighter(const WorldState& state, Islands& islands) {
   bool tighter = false;
   for (Loop& l : loops_) {
     const double now = tension(state, l, h_);
-    if (octave(l, now, highest_of_loops_) <= octave(l, l.assumed, highest_of_loops_)) continue;
+    if (l.tight || now < constants::loop_snap * l.assumed) continue;
+    if (octave(l, now, highest_of_loops_) == octave(l, l.assumed, highest_of_loops_)) continue;
     islands.build(state);
     const bool large = islands.size(islands.root(l.body)) > constants::large_island;
-    if (large && octave(l, now, highest_) <= octave(l, l.assumed, highest_)) continue;
-    l.found = now;
-    tighter = true;
+    if (large && octave(l, now, highest_) == octave(l, l.assumed, highest_)) continue;
+    tighter = l.tight = true;
   }
   return tighter;
 }

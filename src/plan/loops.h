@@ -19,8 +19,9 @@ class Loops {
   void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing);
   /// A step begins, whose tensions are not known yet.
   void begin();
-  /// Adds what sub-steps of `h` need for the tension of the last step, and of tries of this one: up to `highest` octaves, or up to
-  /// `highest_of_loops` in islands that are not large.
+  /// Adds what sub-steps of `h` need for the tension of the last step, up to `highest` octaves, or up to `highest_of_loops` in islands that
+  /// are not large; and all of these where a try of this step brought more. What it brings where sub-steps are too few says nothing of how
+  /// many it needs.
   void want(const WorldState& state, double h, std::uint8_t highest, std::uint8_t highest_of_loops, std::vector<Wanted>& wanted);
   /// After a try: whether some loop came under a tension that asks for more than it got.
   bool find_tighter(const WorldState& state, Islands& islands);
@@ -30,7 +31,7 @@ class Loops {
     std::uint32_t joint, body;
     double ratio;        // of the square of the frequency at which its lighter body swings, and the force [1/(kg m)]
     double assumed = 0;  // tension that the step is made for [N]
-    double found = 0;    // that a try of it brought [N]
+    bool tight = false;  // a try of it brought more
   };
   double tension(const WorldState& state, const Loop& loop, double h) const;
   std::uint8_t octave(const Loop& loop, double tension, std::uint8_t highest) const;
