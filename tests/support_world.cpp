@@ -160,6 +160,25 @@ World chains_world(Precision precision) {
   return world;
 }
 
+World roof_world(Precision precision) {
+  World world({precision});
+  must(world.set_gravity({0, -9.81, 0}));
+  BodyId above = world.ground();
+  Vec3 at, end;  // in the world, and in the body above
+  for (int i = 0; i < 6; i++) {
+    const Vec3 half{0.25, i < 3 ? 0.01 : -0.01, 0};
+    BodyDef def = ball(at + half, 0.1);
+    def.mass = i == 3 ? 100 : 1;
+    const BodyId link = must(world.create_body(def));
+    (void)must(world.create_joint(pin(above, end, link, -1.0 * half)));
+    above = link;
+    at = at + 2.0 * half;
+    end = half;
+  }
+  (void)must(world.create_joint(pin(above, end, world.ground(), at)));
+  return world;
+}
+
 World crowd_world(Precision precision) {
   World world({precision});
   for (int i = 0; i < 90; i++) {

@@ -63,6 +63,8 @@ std::vector<BodyId> add_chain(World& world, Vec3 top, int count, bool free = fal
                               bool touching = false);
 /// Chains of several shapes and spins, hanging and free; one of them meets a floor.
 World chains_world(Precision precision);
+/// A roof of six links with a heavy ridge, just above level: it falls through, and snaps straight within a step.
+World roof_world(Precision precision);
 /// Balls and boxes in one place: more colours of contacts than a word has bits, and thousands of dispatches a step.
 World crowd_world(Precision precision);
 template <class T> T must(Result<T> result) {
