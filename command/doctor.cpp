@@ -1,5 +1,6 @@
 // pcphys doctor: what this machine offers, and what is missing with the package that brings it.
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 #include "commands.h"
@@ -102,6 +103,9 @@ void print_device(const GlReport& r) {
   std::printf("    limits  %u storage blocks of %.0f MiB, %u KiB shared memory, work groups of %u\n", r.limits.storage_blocks,
               double(r.limits.storage_block_bytes) / (1 << 20), r.limits.shared_memory_bytes >> 10,
               r.limits.work_group_invocations);
+  // llvmpipe hands each dispatch to threads of its own and waits: longer than a small one takes (docs/gpu.md).
+  if (r.renderer.find("llvmpipe") != std::string::npos && std::getenv("LP_NUM_THREADS") == nullptr)
+    std::puts("    hint    small scenes run two to five times as fast with LP_NUM_THREADS=0 in the environment");
   print_arithmetic("float", r.f32);
   print_arithmetic("double", r.f64);
 }
