@@ -208,7 +208,7 @@ TEST_CASE("a callback that is not finite: a named error, and the world as it was
   Stepper stepper;
   run(world, stepper, 2);
   broken = true;
-  CHECK_REFUSED(world, step_status(stepper, world), ErrorCode::not_finite, "The force of a callback is (nan, 0, 0)");
+  CHECK_REFUSED(world, step_status(stepper, world), ErrorCode::not_finite, "The force of a callback of body 2 is (nan, 0, 0)");
   broken = false;
   run(world, stepper, 1);
 }

@@ -1,8 +1,22 @@
 #include "step/called_forces.h"
 
+#include <string>
+#include <utility>
+
 #include "world/validate.h"
 
 namespace pcphys {
+
+namespace {
+
+Status check(const Wrench& answer, std::uint32_t body) {
+  for (const auto& [value, what] : {std::pair(answer.force, "force"), std::pair(answer.torque, "torque")})
+    if (!check_finite(value, what))
+      return check_finite(value, (std::string(what) + " of a callback of body " + std::to_string(body)).c_str());
+  return {};
+}
+
+}  // namespace
 
 Status CalledForces::ask(const World& world) {
   const WorldState& s = world.state();
@@ -11,8 +25,7 @@ Status CalledForces::ask(const World& world) {
   for (const ForceRecord& f : s.forces) {
     if (!f.callback) continue;
     answers_.push_back(f.callback(world, s.body_ids.id<BodyId>(f.body)));
-    if (Status ok = check_finite(answers_.back().force, "force of a callback"); !ok) return ok;
-    if (Status ok = check_finite(answers_.back().torque, "torque of a callback"); !ok) return ok;
+    if (Status ok = check(answers_.back(), f.body); !ok) return ok;
   }
   return {};
 }
