@@ -204,3 +204,21 @@ TEST_CASE("octaves: large islands make no more than twice the sub-steps for thei
   CHECK(report.substeps == 8);
   CHECK(report.refined == 300);
 }
+
+TEST_CASE("octaves: a step that makes a free tree spin far faster than it was made for is made again") {
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    for (const auto& [torque, again] : {std::pair(1e3, false), std::pair(1e5, true)}) {
+      CAPTURE(torque);
+      World world({precision, {}});
+      const std::vector<BodyId> links = add_links(world, {}, 4, 0);
+      const ForceId twist = must(world.add_force(links[3], {{}, {torque, 0, 0}}));
+      Stepper stepper;
+      const StepReport& report = stepper.step(world, frame);
+      REQUIRE(report);
+      CHECK(report.repeats == (again ? 1 : 0));
+      CHECK(report.substeps == (again ? 64 : 4));
+      must(world.remove(twist));
+      CHECK(stepper.step(world, frame).repeats == 0);  // what was chosen before it is enough
+      CHECK(std::isfinite(world.kinetic_energy()));
+    }
+}

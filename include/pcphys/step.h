@@ -69,6 +69,9 @@ struct StepReport {
   std::uint64_t step = 0;          // how many steps this stepper has made
   std::uint32_t substeps = 0;      // the most that an island made: the setting, or more (StepSettings::refinement)
   std::uint32_t refined = 0;       // bodies whose islands made more than the setting
+  /// Times that this step was undone and made anew: for loops under sudden tension and spins that jumped (docs/substeps.md), for bodies that
+  /// went further than contacts were looked for, for one that had to be frozen.
+  std::uint32_t repeats = 0;
   std::uint32_t fourth_order = 0;  // bodies that moved in fourth order (StepSettings::order)
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   std::uint32_t asleep = 0, islands_asleep = 0;  // bodies that sleep after this step, and how many islands they make

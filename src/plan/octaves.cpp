@@ -38,6 +38,8 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   loops_.want(state, h, highest, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
   if (faces) columns_.want(state, trees, h, highest, islands_, wanted_);
   want_for_spins(state, forest, h, highest, wanted_);
+  for (const std::uint32_t row : sudden_) wanted_.push_back({row, highest, false});
+  h_ = h, highest_ = highest;
   before_.swap(of_bodies_);
   of_bodies_.clear();
   used_ = 1;
@@ -70,6 +72,22 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
       if (state.goes(row)) used_ |= 1u << of_bodies_[row];
   }
   return !std::ranges::equal(before_, of_bodies_);
+}
+
+bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
+  bool tighter = loops_.find_tighter(state, islands_);
+  if (highest_ < sudden_octaves) return tighter;
+  wanted_.clear();
+  want_for_sudden_spins(state, forest, h_, highest_, wanted_);
+  for (const Wanted& w : wanted_) {
+    const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
+    if (w.octave < made + sudden_octaves) continue;
+    islands_.build(state);
+    if (islands_.size(islands_.root(w.body)) > constants::large_island) continue;
+    sudden_.push_back(w.body);
+    tighter = true;
+  }
+  return tighter;
 }
 
 }  // namespace pcphys

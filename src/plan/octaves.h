@@ -39,9 +39,12 @@ class Octaves {
               std::span<const std::uint32_t> fourth, bool together, const StepSettings& settings, double dt);
 
   /// Before the first try of a step.
-  void begin() { loops_.begin(); }
+  void begin() {
+    loops_.begin();
+    sudden_.clear();
+  }
   /// After a try: whether the step is to be made again, with more sub-steps.
-  bool find_tighter(const WorldState& state) { return loops_.find_tighter(state, islands_); }
+  bool find_tighter(const WorldState& state, const Forest& forest);
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
@@ -58,6 +61,9 @@ class Octaves {
   Columns columns_;
   Islands islands_;
   std::vector<Wanted> wanted_;
+  std::vector<std::uint32_t> sudden_;  // rows of bodies that a try of this step made spin far faster than it was made for
+  double h_ = 0;                       // of octave 0 in the last `choose`, as is
+  std::uint8_t highest_ = 0;
   std::vector<std::uint8_t> of_bodies_, before_;
   std::uint32_t used_ = 1, refined_ = 0, fourth_order_ = 0;
 };

@@ -147,6 +147,7 @@ struct Stepper::Inside {
     while (ok = attempt(s, dt), !ok || !outside.empty() || strayed || tighter || suspect || !written) {
       if (!ok && (ran || ok.error().code != ErrorCode::not_finite)) return put_rest_back(s, ok);
       if (ok) (void)undo(s, {});
+      report.repeats++;
       if (strayed || tighter) continue;
       // the step anew, to see which kernel of the host's own it came from, if one it was
       watched |= suspect;
@@ -308,7 +309,7 @@ struct Stepper::Inside {
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
                            "(StepSettings::islands). The world is as it was."});
-    tighter = tries + 1 < most_tries && octaves.find_tighter(s);
+    tighter = tries + 1 < most_tries && octaves.find_tighter(s, schedule.trees.forest());
     tries += tighter;
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
