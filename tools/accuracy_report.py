@@ -207,10 +207,18 @@ def draw_all(rows, titles, folder, kind):
             if draw_case(plt, case, titles.get(case, ""), of_case, published, folder / f"{case}.{kind}")]
 
 
+def key(row):
+    return tuple(row[k] for k in ("case", "variant", "precision", "dt", "substeps", "metric", "peer"))
+
+
+def in_order(rows):
+    """By case, A2 before A10; of the same trial and metric in several files the last one."""
+    last = {key(row): row for row in rows}
+    return sorted(last.values(), key=lambda row: (row["case"][0], int(row["case"][1:])))
+
+
 def add_hashes(rows, others):
     """What another run tells of the same trials on gl."""
-    def key(row):
-        return tuple(row[k] for k in ("case", "variant", "precision", "dt", "substeps", "metric", "peer"))
     known = {key(row): row["gl_hash"] for row in others}
     return [dict(row, gl_hash=row["gl_hash"] or known.get(key(row))) for row in rows]
 
@@ -238,12 +246,12 @@ def write_page(path, part):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("rows", nargs="+", type=Path, help="JSON of `pcphys accuracy` or `pcphys stability`")
+    parser.add_argument("rows", nargs="+", type=Path, help="JSON of `pcphys accuracy` or `pcphys stability`; later files replace")
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of accuracy.md, stability.md and img/accuracy")
     parser.add_argument("--hashes", type=Path, help="JSON of `pcphys accuracy --backend gl`: its hashes go into the table")
     parser.add_argument("--png", action="store_true", help="pictures as PNG only, to look at")
     arguments = parser.parse_args()
-    rows = [row for path in arguments.rows for row in json.loads(path.read_text())]
+    rows = in_order(row for path in arguments.rows for row in json.loads(path.read_text()))
     if arguments.hashes:
         rows = add_hashes(rows, json.loads(arguments.hashes.read_text()))
     titles = {row["case"]: row["title"] for row in rows}
