@@ -203,6 +203,7 @@ TEST_CASE("octaves: large islands make no more than twice the sub-steps for thei
   REQUIRE(report);
   CHECK(report.substeps == 8);
   CHECK(report.refined == 300);
+  CHECK(report.limited == 300);  // four times as many, had there been fewer links
 }
 
 TEST_CASE("octaves: a step that makes a free tree spin far faster than it was made for is made again") {

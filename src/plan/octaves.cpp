@@ -33,33 +33,24 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
                      std::span<const std::uint32_t> fourth, bool together, const StepSettings& settings, double dt) {
   wanted_.clear();
   const std::uint8_t highest = settings.integrator == Integrator::seed ? 0 : highest_octave(settings);
-  loads_.want(state, settings, dt, highest, wanted_);
+  const std::uint8_t beyond = highest > 0 ? std::uint8_t(highest + 1) : highest;
   const double h = substep_length(dt, settings.substeps);
+  loads_.want(state, settings, dt, beyond, wanted_);
+  if (faces) columns_.want(state, trees, h, beyond, islands_, wanted_);
+  want_for_spins(state, forest, h, beyond, wanted_);
+  for (Wanted& w : wanted_) {
+    w.more = w.octave > highest;
+    w.octave = std::min(w.octave, highest);
+  }
   loops_.want(state, h, highest, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
-  if (faces) columns_.want(state, trees, h, highest, islands_, wanted_);
-  want_for_spins(state, forest, h, highest, wanted_);
   for (const std::uint32_t row : sudden_) wanted_.push_back({row, highest, false});
   h_ = h, highest_ = highest;
   before_.swap(of_bodies_);
   of_bodies_.clear();
   used_ = 1;
-  refined_ = fourth_order_ = 0;
+  refined_ = limited_ = fourth_order_ = 0;
   if (!wanted_.empty() || !fourth.empty()) of_bodies_.assign(state.bodies.size(), 0);
-  if (!wanted_.empty()) {
-    islands_.build(state);
-    std::uint8_t highest_of_all = 0;
-    for (const Wanted& w : wanted_) {
-      const std::uint32_t root = islands_.root(w.body);
-      const bool whole = w.any_size || islands_.size(root) <= constants::large_island;
-      of_bodies_[root] = std::max(of_bodies_[root], whole ? w.octave : std::uint8_t{1});
-      highest_of_all = std::max(highest_of_all, of_bodies_[root]);
-    }
-    for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
-      if (!state.goes(row)) continue;
-      of_bodies_[row] = together ? highest_of_all : of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
-      refined_ += of_bodies_[row] > 0;
-    }
-  }
+  if (!wanted_.empty()) assign(state, together);
   for (const std::uint32_t tree : fourth)  // each is an island
     for (const TreeNode& node : forest.tree(tree)) {
       if (!state.responds(node.body)) continue;
@@ -72,6 +63,34 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
       if (state.goes(row)) used_ |= 1u << of_bodies_[row];
   }
   return !std::ranges::equal(before_, of_bodies_);
+}
+
+/// Each island gets the highest octave that one of its bodies asks for.
+void Octaves::assign(const WorldState& state, bool together) {
+  islands_.build(state);
+  std::uint8_t highest_of_all = 0;
+  limits_.clear();
+  for (const Wanted& w : wanted_) {
+    const std::uint32_t root = islands_.root(w.body);
+    const bool whole = w.any_size || islands_.size(root) <= constants::large_island;
+    const std::uint8_t octave = whole ? w.octave : std::uint8_t{1};
+    of_bodies_[root] = std::max(of_bodies_[root], octave);
+    highest_of_all = std::max(highest_of_all, of_bodies_[root]);
+    if (w.more || octave < w.octave) limits_.push_back(root);
+  }
+  count_limited();
+  for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
+    if (!state.goes(row)) continue;
+    of_bodies_[row] = together ? highest_of_all : of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
+    refined_ += of_bodies_[row] > 0;
+  }
+}
+
+void Octaves::count_limited() {
+  std::ranges::sort(limits_);
+  const auto repeated = std::ranges::unique(limits_);
+  limits_.erase(repeated.begin(), repeated.end());
+  for (const std::uint32_t root : limits_) limited_ += islands_.size(root);
 }
 
 bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {

@@ -52,10 +52,15 @@ class Octaves {
   std::uint32_t used() const { return used_; }
   /// How many bodies are of a higher octave than 0.
   std::uint32_t refined() const { return refined_; }
+  /// How many are in islands that would have got more, had there been more to get.
+  std::uint32_t limited() const { return limited_; }
   /// How many are of fourth order.
   std::uint32_t fourth_order() const { return fourth_order_; }
 
  private:
+  void assign(const WorldState& state, bool together);
+  void count_limited();
+
   Loads loads_;
   Loops loops_;
   Columns columns_;
@@ -65,7 +70,8 @@ class Octaves {
   double h_ = 0;                       // of octave 0 in the last `choose`, as is
   std::uint8_t highest_ = 0;
   std::vector<std::uint8_t> of_bodies_, before_;
-  std::uint32_t used_ = 1, refined_ = 0, fourth_order_ = 0;
+  std::vector<std::uint32_t> limits_;  // roots of islands that would have got more
+  std::uint32_t used_ = 1, refined_ = 0, limited_ = 0, fourth_order_ = 0;
 };
 
 }  // namespace pcphys

@@ -8,6 +8,7 @@ struct Wanted {
   std::uint32_t body;  // row
   std::uint8_t octave;
   bool any_size;
+  bool more = false;  // would ask for more than there are
 };
 
 /// The octave that brings what falls with the square of the sub-step to `aim`, or `highest`.

@@ -327,6 +327,7 @@ struct Stepper::Inside {
     s.settling = Settling(h, s.gravity).left(s.settling);
     report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
     report.refined = octaves.refined();
+    report.limited = octaves.limited();
     report.fourth_order = octaves.fourth_order();
     report.pairs = found.pairs;
     report.contacts = found.contacts;
