@@ -96,6 +96,10 @@ Status check_numbers(const RunOptions& options) {
   if (auto status = check_range("device", options.device, -1, 1000); !status) return status;
   if (!(options.ratio > 0 && std::isfinite(options.ratio)))
     return bad("--ratio is " + std::to_string(options.ratio) + "; give a finite mass ratio above 0.");
+  for (const auto& [name, value] :
+       {std::pair("friction", options.friction), std::pair("restitution", options.restitution), std::pair("drag", options.drag)})
+    if (value && !(*value >= 0 && std::isfinite(*value)))
+      return bad("--" + std::string(name) + " is " + std::to_string(*value) + "; give a finite number, 0 or more.");
   return {};
 }
 
@@ -140,6 +144,9 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--count", options.count, "how many of the scene's objects");
   app.add_option("--seed", options.seed, "of the scene's random draws (default: the scene's own)");
   app.add_option("--ratio", options.ratio, "mass ratio of chain, chainswing and heavy")->capture_default_str();
+  app.add_option("--friction", options.friction, "of all bodies, static and kinetic (default: the scene's own)");
+  app.add_option("--restitution", options.restitution, "of all bodies (default: the scene's own)");
+  app.add_option("--drag", options.drag, "of all bodies that move, linear and angular [1/s] (default: the scene's own)");
 }
 
 void add_run_options(CLI::App& app, RunOptions& options) {
@@ -191,6 +198,9 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   if (options.count) setup.scene_options.count = int(*options.count);
   if (options.seed) setup.scene_options.seed = std::uint64_t(*options.seed);
   setup.scene_options.ratio = options.ratio;
+  setup.scene_options.friction = options.friction;
+  setup.scene_options.restitution = options.restitution;
+  setup.scene_options.drag = options.drag;
   setup.settings.narrow = options.narrow == "fcl" ? NarrowPhase::fcl : NarrowPhase::native;
   setup.settings.integrator = options.integrator == "seed" ? Integrator::seed : Integrator::verlet;
   setup.settings.substeps = std::uint32_t(options.substeps);

@@ -50,6 +50,19 @@ Result<int> checked_count(const SceneInfo& info, const SceneOptions& options) {
                                             "; give a number from 0 to " + std::to_string(info.max_count) + "."};
 }
 
+/// What the options say of all bodies.
+Status adapt(World& world, const Scene& scene, const SceneOptions& options) {
+  for (const SceneBody& body : scene.bodies) {
+    Material material = *world.material(body.id);
+    if (options.friction) material.static_friction = material.kinetic_friction = *options.friction;
+    if (options.restitution) material.restitution = *options.restitution;
+    Status ok = options.friction || options.restitution ? world.set_material(body.id, material) : Status();
+    if (ok && options.drag && body.kind == BodyKind::dynamic) ok = world.set_drag(body.id, *options.drag, *options.drag);
+    if (!ok) return ok;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::span<const SceneInfo> list() { return infos; }
@@ -70,6 +83,7 @@ Result<Scene> make(std::string_view name, const SceneOptions& options, World& wo
     Builder builder(world, scene, options);
     entry.build(builder);
     if (builder.error().code != ErrorCode::none) return builder.error();
+    if (auto status = adapt(world, scene, options); !status) return status.error();
     return scene;
   }
   return Error{ErrorCode::unknown_name, "There is no scene '" + std::string(name) + "'; choose one of " + names() + "."};

@@ -19,6 +19,10 @@ struct SceneOptions {
   std::optional<int> count;           // what it counts is in the scene's description
   double ratio = 100;                 // mass ratio of chain, chainswing and heavy
   std::optional<std::uint64_t> seed;  // of the random draws; the scene's own when absent
+  // of all bodies; the scene's own when absent
+  std::optional<double> friction;  // static and kinetic
+  std::optional<double> restitution;
+  std::optional<double> drag;  // linear and angular, of bodies that move [1/s]
 };
 
 /// What metrics need to know of a body.

@@ -183,6 +183,24 @@ TEST_CASE("plan: what is left out, and where kernels run") {
   CHECK(text.find("transfers: up to ") != std::string::npos);
 }
 
+TEST_CASE("plan: friction, restitution and drag of all bodies, as asked, and what is left out without them") {
+  const auto left_out = [](const std::string& options) {
+    const Json plan = command("plan balls --count 3 --steps 60 --json - " + options).json();
+    std::string all;
+    for (const Json& item : plan["left_out"]) all += item["what"].get<std::string>() + ", ";
+    return all;
+  };
+  const std::string own = left_out(""), bare = left_out("--friction 0 --restitution 0"), dragged = left_out("--drag 0.25");
+  CHECK(own.find("friction,") == std::string::npos);
+  CHECK(bare.find("friction,") != std::string::npos);
+  CHECK(bare.find("restitution,") != std::string::npos);
+  CHECK(own.find("drag,") != std::string::npos);
+  CHECK(dragged.find("drag,") == std::string::npos);
+  // a ragdoll whose joints have no friction of their own comes to rest by drag
+  const Json still = command("run ragdolls --count 1 --steps 900 --drag 0.5 --json -").json();
+  CHECK(still["energy_end"] < still["energy_start"]);
+}
+
 TEST_CASE("scenes, doctor, help and version answer") {
   CHECK(command("scenes").out.find("ragdolls") != std::string::npos);
   const Json doctor = command("doctor --json -").json();
