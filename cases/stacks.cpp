@@ -94,7 +94,8 @@ void plain_tower(Trial& trial, int count) {
 
 // ---- B9 ------------------------------------------------------------------------------------------------
 
-/// Box2D's and Box3D's: five storeys of cards that lean by 25 degrees, with level ones across.
+/// In the manner of Box2D's and Box3D's samples, with usual numbers, not theirs: five storeys of cards that lean by 25 degrees, with level
+/// ones across.
 void card_house(Trial& trial, double margin) {
   const double thin = 0.001, half = 0.2, deep = 0.1, lean = 25 * pi / 180;
   Simulated& run = trial.start(

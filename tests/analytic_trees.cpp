@@ -55,6 +55,20 @@ TEST_CASE("trees: a chain let go from level, loads of 1e2 to 1e4 links") {
     for (const double ratio : {1e2, 1e3, 1e4}) check_chain(mode, "chainswing", ratio);
 }
 
+// A light chain that whips keeps its joints too; of its energy: analytic_whips.
+TEST_CASE("trees: chains of 20 with loads of 1 and 1e6 links, hung and swung, hold after every step of ten seconds") {
+  for (const Mode& mode : precisions())
+    for (const char* scene : {"chain", "chainswing"})
+      for (const double ratio : {1.0, 1e6}) {
+        Chain chain(mode, scene, ratio);
+        const Worst w = watch(chain.run, 600);
+        CAPTURE(mode.name());
+        tell(std::string(scene) + " with a load of " + std::to_string(long(ratio)) + ", 10 s", mode, w, chain.range);
+        CHECK(w.finite);
+        CHECK(w.separation <= 1 * millimetre);
+      }
+}
+
 TEST_CASE("trees: a chain with a load of 1e4 links in every lane width and on GL") {
   std::uint64_t hashes[2] = {};  // by precision
   for (const Mode& mode : everywhere()) {

@@ -104,8 +104,26 @@ template <class... Arguments> consteval std::size_t count_arguments(void (*)(Arg
               &::pcphys::detail::RowLoop<&f64::run>::run};       \
     }                                                            \
   };
+
+/// Whether C++ rounds each product and sum on its own, as the shader does. Where the processor has fused multiply-adds compilers use them
+/// unless told not to, which no macro of theirs tells: pcphys_add_kernel gives -ffp-contract=off, and says so by PCPHYS_EXACT.
+#if defined(__FAST_MATH__)
+#define PCPHYS_KEEPS_BITS false
+#elif !defined(PCPHYS_EXACT) && \
+    (defined(__FMA__) || defined(__FMA4__) || defined(__FP_FAST_FMA) || defined(__FP_FAST_FMAF) || defined(__ARM_FEATURE_FMA))
+#define PCPHYS_KEEPS_BITS false
+#else
+#define PCPHYS_KEEPS_BITS true
+#endif
+#define PCPHYS_CHECK_BITS                                                                                                       \
+  static_assert(PCPHYS_KEEPS_BITS,                                                                                              \
+                "compiled like this, a kernel has other bits on the CPU than on the GPU: add its file by "                      \
+                "pcphys_add_kernel(target file.cpp) in CMake, or compile it with -ffp-contract=off -DPCPHYS_EXACT and without " \
+                "-ffast-math");
+
 /// Written once for both sides, in the common subset.
-#define PCPHYS_KERNEL(Name, signature, ...) PCPHYS_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
+#define PCPHYS_KERNEL(Name, signature, ...) \
+  PCPHYS_CHECK_BITS PCPHYS_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
 /// C++ alone: anything that C++ can say.
 #define PCPHYS_CPU_KERNEL(Name, signature, ...) PCPHYS_KERNEL_TEXT(Name, signature, #signature, nullptr, __VA_ARGS__)
 
@@ -127,7 +145,8 @@ template <class... Arguments> consteval std::size_t count_arguments(void (*)(Arg
     }                                                                                                                  \
   };
 /// The same of a body and each other one.
-#define PCPHYS_PAIR_KERNEL(Name, signature, ...) PCPHYS_PAIR_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
+#define PCPHYS_PAIR_KERNEL(Name, signature, ...) \
+  PCPHYS_CHECK_BITS PCPHYS_PAIR_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
 #define PCPHYS_CPU_PAIR_KERNEL(Name, signature, ...) PCPHYS_PAIR_KERNEL_TEXT(Name, signature, #signature, nullptr, __VA_ARGS__)
 
 }  // namespace pcphys
