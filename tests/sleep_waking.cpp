@@ -141,6 +141,34 @@ TEST_CASE("sleep: whatever the host changes of a body wakes its island, whole, a
   }
 }
 
+TEST_CASE("sleep: what hangs on a fixed body by a joint or a spring wakes when that one is moved") {
+  for (const bool spring : {false, true}) {
+    World world;
+    const BodyId hook = must(world.create_body(fixed_box({0, 5, 0}, {0.1, 0.1, 0.1})));
+    const BodyId weight = must(world.create_body(cube({0, 3, 0}))), far = must(world.create_body(cube({10, 3, 0})));
+    (void)must(world.create_joint(pin(world.ground(), {10, 5, 0}, far, {0, 2, 0})));
+    if (spring) {
+      SpringDef def;
+      def.a = hook;
+      def.b = weight;
+      def.rest_length = 2;
+      def.stiffness = 1e5;
+      def.damping = 1e4;
+      (void)must(world.create_spring(def));
+    } else {
+      (void)must(world.create_joint(pin(hook, {}, weight, {0, 2, 0})));
+    }
+    Stepper stepper(sleepy());
+    run(world, stepper, 300);
+    REQUIRE(must(world.is_asleep(weight)));
+    must(world.set_pose(hook, {{0.5, 5, 0}, {}}));
+    run(world, stepper, 30);
+    CHECK(!must(world.is_asleep(weight)));
+    CHECK(must(world.pose(weight)).position.x > 0.1);
+    CHECK(must(world.is_asleep(far)));
+  }
+}
+
 TEST_CASE("sleep: a body that the host has woken says so before the step") {
   Towers t;
   t.fall_asleep();

@@ -45,6 +45,10 @@ class FailingBackend final : public Backend {
   Status download(Buffer buffer) override {
     return perhaps([&] { return gl_->download(buffer); });
   }
+  Status keep(Buffer buffer) override {
+    return perhaps([&] { return gl_->keep(buffer); });
+  }
+  Status put_back(Buffer buffer) override { return gl_->put_back(buffer); }
   Status set_infos(const void* infos, std::size_t count) override {
     return perhaps([&] { return gl_->set_infos(infos, count); });
   }

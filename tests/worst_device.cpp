@@ -52,6 +52,19 @@ class WorstDevice final : public Backend {
     if (memory.device.size() > 0) std::memcpy(memory.host, memory.device.data(), memory.device.size());
     return {};
   }
+  Status keep(Buffer buffer) override {
+    if (Status ok = flush(); !ok) return ok;
+    Memory& memory = memory_.at(buffer);
+    memory.kept.resize(memory.device.size());
+    if (memory.kept.size() > 0) std::memcpy(memory.kept.data(), memory.device.data(), memory.kept.size());
+    return {};
+  }
+  Status put_back(Buffer buffer) override {
+    if (Status ok = flush(); !ok) return ok;
+    Memory& memory = memory_.at(buffer);
+    if (memory.kept.size() > 0) std::memcpy(memory.device.data(), memory.kept.data(), memory.kept.size());
+    return {};
+  }
   /// Once a step, before it runs.
   Status set_infos(const void* infos, std::size_t count) override {
     for (auto& [buffer, memory] : memory_)
@@ -85,7 +98,7 @@ class WorstDevice final : public Backend {
  private:
   struct Memory {
     void* host = nullptr;  // of rows of the solver there is none
-    AlignedBytes device;
+    AlignedBytes device, kept;
   };
   struct Queued {
     KernelRun run;

@@ -37,6 +37,8 @@ class GlBackend final : public Backend {
   std::size_t held_bytes(Buffer buffer) const override { return memory_.held_bytes(buffer); }
   Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
   Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
+  Status keep(Buffer buffer) override;
+  Status put_back(Buffer buffer) override;
   Status set_infos(const void* infos, std::size_t count) override;
   Status prepare(const OwnKernel& kernel) override;
   Status run(std::span<const KernelRun> runs) override;
@@ -131,6 +133,21 @@ Status GlBackend::transfer(Buffer buffer, void (GlBuffer::*copy)(GlStaging&) con
   if (Status status = memory_.check_transferable(buffer); !status) return status;
   settle();
   (memory_.at(buffer).*copy)(staging_);
+  return {};
+}
+
+Status GlBackend::keep(Buffer buffer) {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  settle();
+  return memory_.keep(buffer);
+}
+
+Status GlBackend::put_back(Buffer buffer) {
+  GlScope scope(*context_);
+  if (!scope.status()) return scope.status();
+  settle();
+  memory_.at(buffer).put_back();
   return {};
 }
 

@@ -6,6 +6,24 @@
 #include <string>
 
 namespace pcphys {
+namespace {
+
+Status allocate(std::string_view label, std::size_t bytes, std::uint32_t& id) {
+  if (id == 0) glGenBuffers(1, &id);
+  glBindBuffer(GL_SHADER_STORAGE_BUFFER, id);
+  glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(bytes), nullptr, GL_DYNAMIC_COPY);
+  if (glGetError() != GL_OUT_OF_MEMORY) return {};
+  return Error{ErrorCode::buffer_full,
+               "The GL device has no memory for the buffer `" + std::string(label) + "` of " + std::to_string(bytes) + " bytes."};
+}
+
+void copy(std::uint32_t from, std::uint32_t to, std::size_t bytes) {
+  glBindBuffer(GL_COPY_READ_BUFFER, from);
+  glBindBuffer(GL_COPY_WRITE_BUFFER, to);
+  glCopyBufferSubData(GL_COPY_READ_BUFFER, GL_COPY_WRITE_BUFFER, 0, 0, GLsizeiptr(bytes));
+}
+
+}  // namespace
 
 // A new store each time: the one before may still be read from.
 void GlStaging::write(std::uint32_t storage, std::size_t offset, std::size_t bytes, const void* from) {
@@ -40,16 +58,24 @@ Status GlBuffer::resize(std::string_view label, std::size_t bytes, std::uint64_t
   constexpr std::size_t smallest = 256;  // an empty buffer cannot be bound
   const std::size_t half_more = capacity_ + capacity_ / 2;
   const std::size_t wanted = std::max({bytes, smallest, std::min<std::size_t>(half_more, limit)});
-  if (id_ == 0) glGenBuffers(1, &id_);
-  glBindBuffer(GL_SHADER_STORAGE_BUFFER, id_);
-  glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(wanted), nullptr, GL_DYNAMIC_COPY);
-  if (glGetError() == GL_OUT_OF_MEMORY) {
-    release();
-    return Error{ErrorCode::buffer_full, "The GL device has no memory for the buffer `" + std::string(label) + "` of " +
-                                             std::to_string(wanted) + " bytes."};
-  }
+  if (Status ok = allocate(label, wanted, id_); !ok) return release(), ok;
   capacity_ = wanted;
   return {};
+}
+
+Status GlBuffer::keep(std::string_view label) {
+  if (bytes_ == 0) return {};
+  if (kept_capacity_ < bytes_) {
+    kept_capacity_ = 0;
+    if (Status ok = allocate(label, capacity_, kept_id_); !ok) return ok;
+    kept_capacity_ = capacity_;
+  }
+  copy(id_, kept_id_, bytes_);
+  return {};
+}
+
+void GlBuffer::put_back() const {
+  if (bytes_ > 0 && kept_capacity_ >= bytes_) copy(kept_id_, id_, bytes_);
 }
 
 void GlBuffer::upload(GlStaging& staging) const {
@@ -69,7 +95,8 @@ bool GlBuffer::take(GlStaging& staging, std::size_t offset, std::size_t bytes) c
 }
 
 void GlBuffer::release() {
-  if (id_ != 0) glDeleteBuffers(1, &id_);
+  for (const std::uint32_t id : {id_, kept_id_})
+    if (id != 0) glDeleteBuffers(1, &id);
   *this = GlBuffer();
 }
 

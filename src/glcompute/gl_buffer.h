@@ -32,11 +32,14 @@ class GlBuffer {
   }
   void upload(GlStaging& staging) const;
   void download(GlStaging& staging) const;
+  /// A second copy beside it on the device, and that one back; buffer_full as of `resize`.
+  Status keep(std::string_view label);
+  void put_back() const;
   /// Whether any of these bytes (up to 8) is not zero; they are zero then.
   bool take(GlStaging& staging, std::size_t offset, std::size_t bytes) const;
   void release();
 
-  std::size_t capacity() const { return capacity_; }
+  std::size_t capacity() const { return capacity_ + kept_capacity_; }
   std::uint32_t id() const { return id_; }
   bool attached() const { return id_ != 0; }
   bool transferable() const { return host_ != nullptr || bytes_ == 0; }
@@ -44,6 +47,8 @@ class GlBuffer {
  private:
   std::uint32_t id_ = 0;
   std::size_t capacity_ = 0;
+  std::uint32_t kept_id_ = 0;
+  std::size_t kept_capacity_ = 0;
   void* host_ = nullptr;
   std::size_t bytes_ = 0;
 };

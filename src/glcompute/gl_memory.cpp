@@ -32,6 +32,8 @@ Status GlMemory::resize(Buffer buffer, std::size_t bytes) {
   return at(buffer).resize(label_of(buffer), bytes, limits_.storage_block_bytes);
 }
 
+Status GlMemory::keep(Buffer buffer) { return at(buffer).keep(label_of(buffer)); }
+
 Status GlMemory::check_transferable(Buffer buffer) {
   if (at(buffer).attached() && at(buffer).transferable()) return {};
   return Error{ErrorCode::bad_argument,

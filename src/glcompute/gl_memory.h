@@ -23,6 +23,7 @@ class GlMemory {
     return buffers_[std::size_t(buffer)];
   }
   Status resize(Buffer buffer, std::size_t bytes);
+  Status keep(Buffer buffer);
   /// bad_argument where the host keeps nothing for it.
   Status check_transferable(Buffer buffer);
   std::size_t held_bytes(Buffer buffer) const {

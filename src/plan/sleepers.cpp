@@ -55,7 +55,7 @@ template <class Scalar> class Slowness {
 /// Counts the time of each body that moved; whether some came to be quiet for `settings.sleep_time`.
 template <class Scalar>
 bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
-                const StepSettings& settings) {
+                std::span<const char> restless, const StepSettings& settings) {
   const Slowness<Scalar> slowness(state, before, dt, settings);
   const Scalar enough = Scalar(settings.sleep_time);
   Scalar* rest = state.tables.data<Scalar>(Buffer::rest);
@@ -64,7 +64,7 @@ bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const A
     if (row == 0) continue;  // pads
     Scalar& time = rest[row * rest_fields + rest_quiet_time];
     const bool was = time >= enough;
-    const bool slow = rest[row * rest_fields + rest_can_sleep] > 0 && slowness.slow(row);
+    const bool slow = rest[row * rest_fields + rest_can_sleep] > 0 && (restless.empty() || !restless[row]) && slowness.slow(row);
     time = slow ? std::min(Scalar(double(time) + dt), enough) : Scalar(0);
     some |= !was && time >= enough;
   }
@@ -92,9 +92,20 @@ std::uint32_t Sleepers::wake_stirred(WorldState& state) {
   const auto stirred = [&](std::uint32_t row) { return state.tables.get(Buffer::rest, row, rest_stirred) > 0; };
   for (std::uint32_t row = 1; row < state.bodies.size(); row++)
     if (state.goes(row) || (state.asleep(row) && stirred(row))) awake_[root(row)] = true;
-  if (state.stirred > 0)
-    for (const auto& [a, b] : state.contacts.ends)
-      if (stirred(a) || stirred(b)) awake_[root(state.stands(a) ? b : a)] = true;
+  const auto wake_other = [&](std::uint32_t a, std::uint32_t b) {
+    if (stirred(a) || stirred(b)) awake_[root(state.stands(a) ? b : a)] = true;
+  };
+  if (state.stirred > 0) {
+    for (const auto& [a, b] : state.contacts.ends) wake_other(a, b);
+    for (std::uint32_t row = 1; row < state.joints.size(); row++)
+      wake_other(state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b));
+  }
+  return wake_marked(state);
+}
+
+std::uint32_t Sleepers::wake_all(WorldState& state) {
+  build(state);
+  std::ranges::fill(awake_, true);
   return wake_marked(state);
 }
 
@@ -121,8 +132,8 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
   labels_ = labels;
   const bool single = state.tables.precision() == Precision::f32;
   const double sleep_time = single ? double(float(settings.sleep_time)) : settings.sleep_time;  // as the table holds it
-  const bool some =
-      single ? count_time<float>(state, moved, before, dt, settings) : count_time<double>(state, moved, before, dt, settings);
+  const bool some = single ? count_time<float>(state, moved, before, dt, restless_, settings)
+                           : count_time<double>(state, moved, before, dt, restless_, settings);
   if (!moved.empty()) {
     state.tables.touch(Buffer::rest);
     state.rests = true;
@@ -132,6 +143,7 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
   report.asleep = state.sleepers;
   report.islands_asleep = count_islands(state);
   labels_ = {};
+  disturb({}, false);
 }
 
 std::uint32_t Sleepers::choose(WorldState& state, std::span<const std::uint32_t> moved, double sleep_time) {
@@ -139,6 +151,7 @@ std::uint32_t Sleepers::choose(WorldState& state, std::span<const std::uint32_t>
   for (const std::uint32_t row : moved)
     if (state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time) awake_[root(row)] = true;
   mark_kept_awake(state);
+  if (together_ && std::ranges::find(awake_, true) != awake_.end()) return 0;
   return lay_down(state, moved);
 }
 

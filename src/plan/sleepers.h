@@ -47,9 +47,11 @@ class Idle {
 
 class Sleepers {
  public:
-  /// Before the contacts of a step: wakes the islands of bodies that the host has changed, and those that touch one that stands. Returns
+  /// Before the contacts of a step: wakes the islands of bodies that the host has changed, and those that touch or are joined to one that stands. Returns
   /// how many bodies woke.
   std::uint32_t wake_stirred(WorldState& state);
+  /// The same of all that sleep.
+  std::uint32_t wake_all(WorldState& state);
   /// With the contacts of a step: wakes the islands of these bodies.
   std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
   /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep. `before`: the poses that
@@ -58,6 +60,12 @@ class Sleepers {
   /// sleeps.
   void follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
               const StepSettings& settings, bool changed, std::span<const std::uint32_t> labels, StepReport& report);
+  /// What the next `follow` is to know: by body row who is not at rest, however slow (empty: nobody), and whether all bodies act on each
+  /// other, so that they sleep together or not at all.
+  void disturb(std::span<const char> restless, bool together) {
+    restless_ = restless;
+    together_ = together;
+  }
 
  private:
   void build(const WorldState& state);
@@ -70,8 +78,10 @@ class Sleepers {
 
   std::uint32_t count_islands(const WorldState& state);
 
-  Islands islands_;                         // where there are no labels
-  std::span<const std::uint32_t> labels_;   // during `follow`
+  Islands islands_;                        // where there are no labels
+  std::span<const std::uint32_t> labels_;  // during `follow`
+  std::span<const char> restless_;         // for `follow`, and so is the next
+  bool together_ = false;
   std::vector<char> awake_;                 // by the root of an island
   std::uint64_t serial_ = 0, counted_ = 0;  // the world and its rest_version that count_ is of
   std::uint32_t count_ = 0;

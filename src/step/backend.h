@@ -58,6 +58,9 @@ class Backend {
   /// Host to device and back, the whole buffer; nothing to do on the CPU.
   virtual Status upload(Buffer buffer) = 0;
   virtual Status download(Buffer buffer) = 0;
+  /// A second copy of what the device has of a buffer, which stays there; and that one in place of the first.
+  virtual Status keep(Buffer buffer) { return (void)buffer, Status{}; }
+  virtual Status put_back(Buffer buffer) { return (void)buffer, Status{}; }
 
   /// All info blocks of a step, `count` times InfoOf<Scalar>, in the precision of the world.
   virtual Status set_infos(const void* infos, std::size_t count) = 0;

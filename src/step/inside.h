@@ -26,6 +26,7 @@
 #include "step/processor_state.h"
 #include "step/runner.h"
 #include "step/schedule.h"
+#include "step/unrest.h"
 #include "world/range.h"
 #include "world/state.h"
 #include "world/validate.h"
@@ -55,6 +56,7 @@ struct Stepper::Inside {
   bool other = false;                                 // than those of the last step
   bool regrouped = false;                             // islands may be others than after it
   Sleepers sleepers;
+  Unrest unrest;
   Idle idle;  // the world, if all of it sleeps
   StepInfos infos;
   EventRecorder recorder;
@@ -159,9 +161,9 @@ struct Stepper::Inside {
       if (leaving.empty()) return put_rest_back(s, ok);
       freeze_leaving(s);
     }
-    ForceJumps::forget(own.ordered());
     record_events(s, dt);
     if (settings.sleep) let_sleep(s, dt);
+    ForceJumps::forget(own.ordered());
     recorder.follow_sleep(settings, s);
     runner.drop();
     return ok;
@@ -177,7 +179,10 @@ struct Stepper::Inside {
   void let_sleep(WorldState& s, double dt) {
     const AlignedBytes* before = plan->flight ? nullptr : runner.before(Buffer::pose);  // in flight some places keep none
     const std::span<const std::uint32_t> labels = finds_islands() ? schedule.islands.labels() : std::span<const std::uint32_t>();
+    unrest.find(s, own.ordered(), runner);
+    sleepers.disturb(unrest.rows(), unrest.together(own.ordered()));
     sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, regrouped, labels, report);
+    unrest.stir_sleepers(s);
     if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
     update_structure(s);
     PlanSignature nothing = signature(settings, s, schedule);
@@ -238,13 +243,22 @@ struct Stepper::Inside {
     freeze(s);
   }
 
+  static bool some_awake(const WorldState& s) {
+    if (s.stirred > 0) return true;
+    for (std::uint32_t row = 1; row < s.bodies.size(); row++)
+      if (s.goes(row)) return true;
+    return false;
+  }
+
   /// Pairs and contacts. What sleeps and is stirred or touched wakes, and then has its contacts found, too.
   Status detect(WorldState& s, double dt, Detector::Found& found) {
     Status ok;
     report.woke = 0;
-    if (s.sleepers > 0 && (scheduled_serial != s.serial || scheduled_rest != s.rest_version)) {
+    const bool all =
+        s.sleepers > 0 && (Unrest::of_parameters(own.ordered()) || (unrest.together(own.ordered()) && some_awake(s)));
+    if (all || (s.sleepers > 0 && (scheduled_serial != s.serial || scheduled_rest != s.rest_version))) {
       runner.keep(s, Buffer::rest);
-      report.woke = sleepers.wake_stirred(s);
+      report.woke = all ? sleepers.wake_all(s) : sleepers.wake_stirred(s);
     }
     while (true) {
       update_structure(s);

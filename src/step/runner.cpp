@@ -128,6 +128,8 @@ void Runner::keep(const WorldState& state, Buffer buffer) {
 
 void Runner::undo(WorldState& state) {
   if (gl_) (void)at(Place::gl).backend->finish();  // lets go of the context and of errors that are of this step
+  for (const Buffer buffer : kept_there_) (void)at(Place::gl).backend->put_back(buffer);
+  kept_there_.clear();
   rollback_.put_back(state.tables);
   forget();  // kernels have written what the devices hold
 }
@@ -277,6 +279,7 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
   unsigned octave = 0;
   for (const PlanEntry& entry : plan.entries) octave = std::max(octave, octave_of(entry.octave));
   infos_ = phase_count * (1 + octave);
+  may_be_undone_ = std::ranges::any_of(plan.own, [](const auto& k) { return !k->name.starts_with(own_prefix); });
   kept_.clear();
   if (plan.flight && !gl_ && plan.own.empty()) {        // nothing of it can fail
     if (settings.sleep) kept_.push_back(Buffer::pose);  // how far bodies went
@@ -336,6 +339,22 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
   return upload(entry.buffer, state, schedule, report);
 }
 
+/// A step with kernels of the host's own may have to be made again. What it leaves on the device is not among what it overwrites on
+/// the host; where the device alone has it as it was, a copy of that stays there.
+Status Runner::keep_left(WorldState& state) {
+  kept_there_.clear();
+  if (!may_be_undone_) return {};
+  for (const Buffer buffer : bound_.plan->left_there) {
+    if (state.tables.keeper(buffer) != this) {
+      rollback_.keep(state.tables, buffer);
+      continue;
+    }
+    if (Status ok = at(Place::gl).backend->keep(buffer); !ok) return ok;
+    kept_there_.push_back(buffer);
+  }
+  return {};
+}
+
 Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
   left_ = false;
   if (!fetched_) return std::exchange(fetched_, Status{});
@@ -346,6 +365,7 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
     if (d.takes_part)
       if (Status ok = d.backend->set_infos(infos, infos_); !ok) return ok;
   for (const Buffer buffer : kept_) rollback_.keep(state.tables, buffer);
+  if (Status ok = keep_left(state); !ok) return ok;
   if (!gl_)  // else kernel by kernel, as devices follow them
     for (const Buffer buffer : bound_.plan->overwritten) state.tables.touch(buffer);
   Clock::time_point began;

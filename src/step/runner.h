@@ -39,7 +39,10 @@ class Runner final : Keeper {
   /// A buffer of state as it was before this step wrote it; null if none did.
   const AlignedBytes* before(Buffer buffer) const { return rollback_.before(buffer); }
   /// The step was made.
-  void drop() { rollback_.drop(); }
+  void drop() {
+    rollback_.drop();
+    kept_there_.clear();
+  }
   /// The step failed: the tables as they were before it, and a device that is asked for nothing more of it.
   void undo(WorldState& state);
   /// What a kernel of the host's own would say there. After `prepare`.
@@ -107,6 +110,7 @@ class Runner final : Keeper {
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
   Status kernels(const Call& call, WorldState& state);
+  Status keep_left(WorldState& state);
   Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
   bool keeps(Buffer buffer) const;
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
@@ -118,6 +122,8 @@ class Runner final : Keeper {
   std::vector<Range> ranges_;         // of runs_
   std::uint32_t infos_ = 0;           // how many blocks of them
   std::vector<Buffer> kept_;          // what the plan overwrites and undo must find
+  std::vector<Buffer> kept_there_;    // and what the device has a second copy of, since it alone had it
+  bool may_be_undone_ = false;        // though the plan is a flight
   std::unique_ptr<Workers> workers_;  // outlives the backends
   std::uint32_t threads_ = 0;         // that were asked for
   std::array<Device, 2> devices_;     // by Place

@@ -92,10 +92,15 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
   ok = in.follow_own(s);
   if (ok) ok = in.check_kernel(s, **added);
   if (!ok) (void)in.own.remove(s, def.text.name);
+  if (ok) s.stir_all();
   return ok;
 }
 
-Status Stepper::remove_kernel(World& world, std::string_view name) { return inside_->own.remove(world.state(), name); }
+Status Stepper::remove_kernel(World& world, std::string_view name) {
+  const Status ok = inside_->own.remove(world.state(), name);
+  if (ok) world.state().stir_all();
+  return ok;
+}
 
 Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& parameter) {
   OwnKernel* k = inside_->own.find(kernel);

@@ -237,9 +237,15 @@ Status World::write(std::uint32_t property, std::uint32_t generation, RowOf obje
   if (!row) return row.error();
   const std::size_t real = s.tables.real_bytes();
   std::byte* p = s.tables.bytes(f.buffer).data() + *row * s.tables.row_bytes(f.buffer);
-  for (std::uint32_t c = 0; c < components(f.info.type); c++)
-    write_number(p + c * number_bytes(f.info.type, real), f.info.type, real, numbers[c]);
+  bool changed = false;
+  for (std::uint32_t c = 0; c < components(f.info.type); c++) {
+    std::byte* const number = p + c * number_bytes(f.info.type, real);
+    const double before = read_number(number, f.info.type, real);
+    write_number(number, f.info.type, real, numbers[c]);
+    changed |= read_number(number, f.info.type, real) != before;
+  }
   s.tables.touch(f.buffer);
+  if (changed) s.stir_reader(f.table, *row);
   return {};
 }
 

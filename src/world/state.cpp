@@ -98,6 +98,21 @@ void WorldState::stir(std::uint32_t row) {
   rest_version++;
 }
 
+void WorldState::stir_all() {
+  for (std::uint32_t row = 1; rests && row < bodies.size(); row++) stir_moving(row);
+}
+
+void WorldState::stir_reader(Table table, std::uint32_t row) {
+  if (table == Table::body) {
+    stir(row);
+  } else if (table == Table::joint) {
+    stir_moving(body_ids.row(joints[row].body_a));
+    stir_moving(body_ids.row(joints[row].body_b));
+  } else if (tables.rows(table) == 2) {
+    stir_all();
+  }
+}
+
 void WorldState::stir_neighbours(std::uint32_t row) {
   if (sleepers == 0) return;
   const auto stir_other = [&](std::uint32_t a, std::uint32_t b) {

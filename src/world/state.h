@@ -137,12 +137,16 @@ struct WorldState {
   }
   /// Whether steps move it.
   bool goes(std::uint32_t row) const { return !stands(row) && !asleep(row); }
-  /// The host has changed it: if it sleeps, it is to wake; if it stands, whatever it touches.
+  /// The host has changed it: if it sleeps, it is to wake; if it stands, whatever it touches or is joined to.
   void stir(std::uint32_t row);
   /// The same of one that does not stand: what touches one that does may sleep on.
   void stir_moving(std::uint32_t row) {
     if (!stands(row)) stir(row);
   }
+  /// All bodies: something has changed that any of them may depend on.
+  void stir_all();
+  /// A kernel of the host's own may read it of this body or joint, or of all bodies that of a table of one row.
+  void stir_reader(Table table, std::uint32_t row);
   /// What it touches and is joined to is to wake, since it goes.
   void stir_neighbours(std::uint32_t row);
   /// Nobody sleeps, and nobody has rested.

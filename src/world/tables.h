@@ -60,6 +60,8 @@ class Tables {
   void leave(Buffer buffer, Keeper* keeper);
   /// Brings home all that it holds; it is none of theirs any more.
   void take_back(Keeper* keeper);
+  /// Who has newer rows of it than stand here, or null.
+  const Keeper* keeper(Buffer buffer) const { return columns_[index(buffer)].keeper; }
   /// Whether some keeper holds rows, or did.
   bool kept() const { return !keepers_.empty(); }
   /// Where rows stand, or will once they are asked for.
