@@ -191,8 +191,8 @@ TEST_CASE("plan: friction, restitution and drag of all bodies, as asked, and wha
     return all;
   };
   const std::string own = left_out(""), bare = left_out("--friction 0 --restitution 0"), dragged = left_out("--drag 0.25");
-  CHECK(own.find("friction,") == std::string::npos);
-  CHECK(bare.find("friction,") != std::string::npos);
+  CHECK(own.find(", friction,") == std::string::npos);
+  CHECK(bare.find(", friction,") != std::string::npos);
   CHECK(bare.find("restitution,") != std::string::npos);
   CHECK(own.find("drag,") != std::string::npos);
   CHECK(dragged.find("drag,") == std::string::npos);

@@ -144,6 +144,40 @@ TEST_CASE("order: two that write the same anew, names, and circles") {
   CHECK_REFUSED(w, s.remove_kernel(w, "reset"), ErrorCode::unknown_name, "There is no kernel \"reset\"");
 }
 
+TEST_CASE("order: a circle names those in it, and what does not exist is no order") {
+  Populated p;
+  World& w = p.world;
+  Stepper& s = p.stepper;
+  (void)must(w.add_property<Real>("heat", 0.0, "K"));
+  must(s.add_kernel(w, {.text = drain::text(), .parameters = {{"flow", 0.5}}}));
+  const auto cpp = [](const char* name, const char* signature) {
+    KernelText t = drain::text();
+    t.name = name, t.signature = signature;
+    return t;
+  };
+  must(s.add_kernel(w, {.text = cpp("gauge", "(PC_IN(Real) heat, PC_INOUT(Vec3) force)")}));  // not to blame
+  must(s.add_kernel(w, {.text = cpp("burn", "(PC_IN(Real) fuel, PC_INOUT(Real) heat)")}));
+  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("vent", "(PC_INOUT(Real) fuel, PC_IN(Real) heat)")}), ErrorCode::bad_argument,
+                "\"burn\" and \"vent\" each have to run before the other");
+  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("late", "(PC_INOUT(Real) heat)"), .follows = {"brun"}}), ErrorCode::unknown_name,
+                "is to follow \"brun\"");
+  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("late", "(PC_INOUT(Real) heat)"), .stage = Stage(9)}), ErrorCode::bad_argument,
+                "at stage 9");
+}
+
+TEST_CASE("a kernel that is refused for another world leaves those that there are") {
+  Populated p;
+  must(p.stepper.add_kernel(p.world, {.text = drain::text(), .parameters = {{"flow", 0.5}}}));
+  run(p.world, p.stepper, 1);
+  World other;
+  CHECK_REFUSED(other, p.stepper.add_kernel(other, {.text = drain::text(), .parameters = {{"flow", 0.5}}}),
+                ErrorCode::unknown_name, "uses the property \"fuel\"");
+  const auto fuel = [&] { return must(p.world.get(must(p.world.property<Real>("fuel")), p.world.bodies()[0])); };
+  const double before = fuel();
+  run(p.world, p.stepper, 1);
+  CHECK(fuel() < before);
+}
+
 TEST_CASE("a property that was removed under a kernel: the step says so, the world is as it was") {
   Populated p;
   must(p.stepper.add_kernel(p.world, {.text = drain::text(), .parameters = {{"flow", 0.1}}}));

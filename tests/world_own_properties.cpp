@@ -215,3 +215,14 @@ TEST_CASE("what is refused changes nothing") {
   CHECK_REFUSED(world, world.remove_property("heat"), ErrorCode::unknown_name, "There is no property \"heat\"");
   CHECK_REFUSED(world, world.remove_property("position"), ErrorCode::bad_argument, "only a host's own can be removed");
 }
+
+TEST_CASE("own tables: more rows than there can be, or than there is memory for") {
+  World world;
+  const TableId table = must(world.add_table("cells", 3));
+  const auto heat = must(world.add_property<double>("heat", 7.0, "K", table));
+  CHECK_REFUSED(world, world.add_table("more", 4294967295u), ErrorCode::bad_argument, "cannot have 4294967295 rows");
+  CHECK_REFUSED(world, world.resize(table, (1u << 28) + 1), ErrorCode::bad_argument, "no more than 268435456");
+  CHECK(must(world.rows(table)) == 3);
+  must(world.resize(table, 4));
+  CHECK(must(world.get(heat, RowOf(4))) == 7.0);
+}

@@ -367,6 +367,8 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   k->after = def.after;
   k->once_a_step = def.once_a_step;
   k->follows = def.follows;
+  if (def.stage > Stage::impulses)
+    return bad(*k, "is to run at stage " + std::to_string(unsigned(def.stage)) + "; there are integrate, joints and impulses.");
   const Status ok = fill(s, def, *k);
   if (ok) return k;
   const std::string place = place_in_signature(*k, k->reached);

@@ -100,6 +100,7 @@ class OwnKernels {
   Status remove(std::string_view name);
   OwnKernel* find(std::string_view name) const;
   void clear();
+  void put_back(const OwnKernels& before);
 
   /// A plan keeps those that it runs.
   using Ordered = std::span<const std::shared_ptr<OwnKernel>>;

@@ -24,6 +24,30 @@ bool same_moment(const OwnKernel& a, const OwnKernel& b) {
   return a.stage == b.stage && a.after == b.after && a.once_a_step == b.once_a_step;
 }
 
+using Kernels = std::vector<std::shared_ptr<OwnKernel>>;
+
+/// One that has to run before b; null: none.
+const OwnKernel* before(const Kernels& left, const OwnKernel& b) {
+  for (const auto& a : left)
+    if (a.get() != &b && same_moment(*a, b) && precedes(*a, b)) return a.get();
+  return nullptr;
+}
+
+/// Of kernels that each have one before them: some go in a circle.
+Error circle(const Kernels& left) {
+  std::vector<const OwnKernel*> way;
+  const OwnKernel* k = left.front().get();
+  while (std::ranges::find(way, k) == way.end()) {
+    way.push_back(k);
+    k = before(left, *k);
+  }
+  way.erase(way.begin(), std::ranges::find(way, k));
+  std::string others;
+  for (std::size_t i = 1; i < way.size(); i++) others += "and " + quoted(way[i]->name) + " ";
+  return bad(*way.front(), others + "each have to run before the " + (way.size() == 2 ? "other" : "next, in a circle") +
+                               "; run one of them at another stage, or say which follows which (KernelDef::follows).");
+}
+
 }  // namespace
 
 bool OwnKernels::pairs_of_bodies() const {
@@ -42,16 +66,11 @@ OwnKernel* OwnKernels::find(std::string_view name) const {
 }
 
 Status OwnKernels::order(std::vector<std::shared_ptr<OwnKernel>>& out) const {
-  std::vector<std::shared_ptr<OwnKernel>> left = kernels_;
+  Kernels left = kernels_;
   out.clear();
   while (!left.empty()) {
-    const auto free = std::ranges::find_if(left, [&](const auto& b) {
-      return std::ranges::none_of(left, [&](const auto& a) { return a != b && same_moment(*a, *b) && precedes(*a, *b); });
-    });
-    if (free == left.end())
-      return bad(*left[0], "and " + quoted(left[1]->name) +
-                               " each have to run before the other; run one of them at another stage, or say which follows which "
-                               "(KernelDef::follows).");
+    const auto free = std::ranges::find_if(left, [&](const auto& b) { return !before(left, *b); });
+    if (free == left.end()) return circle(left);
     out.push_back(*free);
     left.erase(free);
   }
@@ -62,6 +81,10 @@ Status OwnKernels::add(std::shared_ptr<OwnKernel> kernel) {
   if (find(kernel->name))
     return Error{ErrorCode::name_taken,
                  "There is a kernel " + quoted(kernel->name) + " already; remove it, or choose another name."};
+  for (const std::string& name : kernel->follows)
+    if (!find(name))
+      return Error{ErrorCode::unknown_name, "The kernel " + quoted(kernel->name) + " is to follow " + quoted(name) +
+                                                ", and there is no such kernel; add that one first."};
   for (const auto& other : kernels_) {
     if (!same_moment(*other, *kernel)) continue;
     for (const OwnArgument& a : other->arguments)
@@ -98,6 +121,12 @@ void OwnKernels::clear() {
   kernels_.clear();
   ordered_.clear();
   version_++;
+}
+
+void OwnKernels::put_back(const OwnKernels& before) {
+  const std::uint64_t changes = version_;  // goes on: plans may be of what was there in between
+  *this = before;
+  version_ = changes + 1;
 }
 
 }  // namespace pcphys

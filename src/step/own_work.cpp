@@ -179,6 +179,12 @@ Result<const OwnKernel*> OwnWork::add(WorldState& s, const KernelDef& def) {
   return added;
 }
 
+void OwnWork::put_back(const OwnWork& before) {
+  kernels_.put_back(before.kernels_);
+  serial_ = before.serial_;
+  removals_ = before.removals_;
+}
+
 Status OwnWork::remove(WorldState& s, std::string_view name) {
   if (serial_ != s.serial)
     return Error{ErrorCode::bad_argument,

@@ -26,6 +26,8 @@ class OwnWork {
   Status remove(WorldState& state, std::string_view name);
   OwnKernel* find(std::string_view name) const { return kernels_.find(name); }
   void clear() { kernels_.clear(); }
+  /// What was copied before a `clear`.
+  void put_back(const OwnWork& before);
 
   const OwnKernels& kernels() const { return kernels_; }
   OwnKernels::Ordered ordered() const { return kernels_.ordered(); }

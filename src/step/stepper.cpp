@@ -1,5 +1,6 @@
 // What a host calls of a stepper.
 #include <chrono>
+#include <optional>
 #include <string>
 
 #include "step/inside.h"
@@ -84,14 +85,22 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
 Status Stepper::add_kernel(World& world, const KernelDef& def) {
   Inside& in = *inside_;
   WorldState& s = world.state();
-  if (in.own.of_another(s)) in.own.clear();
-  Status ok = in.follow_own(s);
-  if (!ok) return ok;
-  const Result<const OwnKernel*> added = in.own.add(s, def);
-  if (!added) return added.error();
-  ok = in.follow_own(s);
-  if (ok) ok = in.check_kernel(s, **added);
-  if (!ok) (void)in.own.remove(s, def.text.name);
+  std::optional<OwnWork> others;  // of another world: they give way, unless this one is refused
+  if (in.own.of_another(s)) {
+    others = in.own;
+    in.own.clear();
+  }
+  const auto add = [&]() -> Status {
+    if (Status ok = in.follow_own(s); !ok) return ok;
+    const Result<const OwnKernel*> added = in.own.add(s, def);
+    if (!added) return added.error();
+    Status ok = in.follow_own(s);
+    if (ok) ok = in.check_kernel(s, **added);
+    if (!ok) (void)in.own.remove(s, def.text.name);
+    return ok;
+  };
+  const Status ok = add();
+  if (!ok && others) in.own.put_back(*others);
   if (ok) s.stir_all();
   return ok;
 }

@@ -255,9 +255,34 @@ std::vector<PropertyInfo> World::properties() const {
   return all;
 }
 
+namespace {
+constexpr std::uint32_t most_rows = 1u << 28;
+
+Status check_rows(std::string_view table, std::uint32_t rows) {
+  if (rows <= most_rows) return {};
+  return Error{ErrorCode::bad_argument, "The table \"" + std::string(table) + "\" cannot have " + std::to_string(rows) +
+                                            " rows; give no more than " + std::to_string(most_rows) + "."};
+}
+
+/// With the rows as before where there is no memory for more.
+Status resize_own(WorldState& s, const OwnTable& table, std::uint32_t rows) {
+  if (Status ok = check_rows(table.name, rows); !ok) return ok;
+  const std::uint32_t before = s.tables.rows(table.table);
+  try {
+    s.tables.resize(table.table, rows + 1);
+  } catch (const std::bad_alloc&) {
+    s.tables.resize(table.table, before);
+    return Error{ErrorCode::buffer_full, "There is no memory for " + std::to_string(rows) + " rows of the table \"" + table.name +
+                                             "\"; it has " + std::to_string(before - 1) + " as before."};
+  }
+  return {};
+}
+}  // namespace
+
 Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) {
   WorldState& s = *state_;
   if (Status ok = check_name(name, "table"); !ok) return ok.error();
+  if (Status ok = check_rows(name, rows); !ok) return ok.error();
   bool there = false;
   for (std::size_t t = 0; t < table_count; t++) there |= pcphys::name(Table(t)) == name;
   for (const OwnTable& t : s.own.tables) there |= t.used && t.name == name;
@@ -284,8 +309,7 @@ Result<OwnTable*> own_table(WorldState& s, TableId id, const char* what) {
 Status World::resize(TableId table, std::uint32_t rows) {
   const Result<OwnTable*> found = own_table(*state_, table, "resized");
   if (!found) return found.error();
-  state_->tables.resize((*found)->table, rows + 1);
-  return {};
+  return resize_own(*state_, **found, rows);
 }
 
 Result<std::uint32_t> World::rows(TableId table) const {

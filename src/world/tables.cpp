@@ -50,7 +50,8 @@ void Tables::resize(Table table, std::uint32_t rows) {
       continue;
     }
     if (column.keeper) std::exchange(column.keeper, nullptr)->fetch(buffer_at(k));
-    fill(column, std::exchange(column.made, true) ? before : 0, rows);
+    fill(column, column.made ? before : 0, rows);
+    column.made = true;
   }
 }
 
