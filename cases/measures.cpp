@@ -40,6 +40,14 @@ Csv read_csv(std::string_view file) {
   return csv;
 }
 
+double error_of_components(Vec3 found, Vec3 expected, double scale) {
+  const double none = 1e-14 * scale;
+  Worst worst;
+  for (const auto& [now, wanted] : {std::pair{found.x, expected.x}, {found.y, expected.y}, {found.z, expected.z}})
+    worst.add(std::fabs(now - wanted) / (std::fabs(wanted) > none ? std::fabs(wanted) : scale));
+  return worst;
+}
+
 Quat exponential(Vec3 rotation) {
   const double angle = length(rotation);
   return angle > 0 ? axis_angle((1 / angle) * rotation, angle) : Quat{};
