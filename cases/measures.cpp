@@ -112,10 +112,15 @@ Vec3 angular_momentum(const Simulated& run) {
 
 double joint_gap(const Simulated& run) {
   const scenes::Scene& scene = run.problem().scene;
+  static thread_local std::vector<int> places;  // of bodies in the scene, by the index of their id
+  for (int i = 0; i < run.bodies(); ++i) {
+    const std::size_t index = scene.bodies[std::size_t(i)].id.index;
+    if (places.size() <= index) places.resize(index + 1);
+    places[index] = i;
+  }
   const auto pin = [&](BodyId id, Vec3 local) {
-    for (int i = 0; i < run.bodies(); ++i)
-      if (scene.bodies[std::size_t(i)].id == id) return transform(run.pose(i), local);
-    return local;  // the ground
+    if (id == run.problem().world.ground()) return local;
+    return transform(run.pose(places[id.index]), local);
   };
   Worst worst;
   for (int k = 0; k < int(scene.joints.size()); ++k) {
