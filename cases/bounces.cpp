@@ -148,7 +148,7 @@ void spin_bounces(Trial& trial, double e) {
 /// The same impacts, straight through the solver; the floor is a ball too heavy to notice.
 void resolve_bounces(Trial& trial) {
   static const Csv reference = read_csv("A17_spin_bounce.csv");
-  Worst velocity, about_contact;
+  Worst velocity, component, about_contact;
   for (std::size_t row = 0; row < reference.rows.size(); ++row) {
     const double vx = reference.at(row, "vx"), wy = reference.at(row, "wy"), vz = reference.at(row, "vz");
     SphereContact contact;
@@ -164,10 +164,13 @@ void resolve_bounces(Trial& trial) {
                  inertia = 0.4 * radius * radius;
     velocity.add(length(contact.v1 - Vec3{reference.at(row, "vx1"), 0, reference.at(row, "vz1")}) / scale);
     velocity.add(std::fabs(contact.w1.y - reference.at(row, "wy1")) / spin_scale);
+    component.add(error_of_components(contact.v1, {reference.at(row, "vx1"), 0, reference.at(row, "vz1")}, scale));
+    component.add(error_of_components(contact.w1, {0, reference.at(row, "wy1"), 0}, spin_scale));
     about_contact.add(std::fabs(inertia * (contact.w1.y - wy) + radius * (contact.v1.x - vx)) /
                       (inertia * spin_scale + radius * scale));
   }
   trial.report("velocity and spin, relative", velocity, trial.either(1e-12, 2e-6));
+  trial.report("each component, relative", component, trial.either(1e-12, 2e-6));
   trial.report("angular momentum about the contact, relative", about_contact, trial.either(1e-12, 2e-6));
 }
 

@@ -10,6 +10,8 @@
 namespace pcphys::cases {
 namespace {
 
+bool is_box(const SphereContact& c) { return dot(c.half2, c.half2) > 0; }
+
 void write_contact_row(WorldState& s, const SphereContact& c, double gap) {
   s.tables.resize(Table::contact, 2);
   s.contacts.keys = {{}, {0, 1}};
@@ -26,18 +28,22 @@ void write_contact_row(WorldState& s, const SphereContact& c, double gap) {
 
 Result<World> make_world(const SphereContact& c, Precision precision) {
   World world({precision, {}});
-  const Vec3 centre1 = -(c.radius1 + c.radius2) * c.normal;
-  for (const BodyDef& def : {ball(c.mass1, c.radius1, centre1, c.v1, c.w1), ball(c.mass2, c.radius2, {}, c.v2, c.w2)})
+  const bool box = is_box(c);
+  const Vec3 centre1 = (box ? c.at2 : -c.radius2 * c.normal) - c.radius1 * c.normal;
+  BodyDef second = ball(c.mass2, c.radius2, {}, c.v2, c.w2);
+  if (box) second.shapes = {ShapeDef::box(c.half2)};
+  for (const BodyDef& def : {ball(c.mass1, c.radius1, centre1, c.v1, c.w1), second})
     if (auto made = world.create_body(def); !made) return made.error();
   return world;
 }
 
-StepPlan plan_of_contact(Place place, bool restitution) {
+StepPlan plan_of_contact(Place place, const SphereContact& c) {
   PlanSignature signature;
   signature.substeps = 1;
   signature.places.fill(place);
   signature.bodies = signature.shapes = signature.free_contacts = signature.friction = true;
-  signature.restitution = signature.impacts = restitution;
+  signature.gyroscopic = is_box(c);
+  signature.restitution = signature.impacts = c.restitution > 0;
   return make_plan(signature);
 }
 
@@ -77,8 +83,7 @@ Status resolve(SphereContact& c, Precision precision, Place place, std::uint32_t
   settings.substeps = 1;
   settings.timings = false;
   settings.restitution_threshold = 0;
-  if (auto status = run_plan(settings, plan_of_contact(place, c.restitution > 0), direct_step(precision), *world); !status)
-    return status;
+  if (auto status = run_plan(settings, plan_of_contact(place, c), direct_step(precision), *world); !status) return status;
   const std::vector<BodyId> ids = world->bodies();
   c.v1 = *world->velocity(ids[0]);
   c.v2 = *world->velocity(ids[1]);

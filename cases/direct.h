@@ -6,12 +6,14 @@
 
 namespace pcphys::cases {
 
-/// Two spheres that touch, and what the impulse stage makes of their velocities.
+/// Two spheres that touch, or a sphere and a box, and what the impulse stage makes of their velocities.
 struct SphereContact {
   double mass1 = 1, mass2 = 1, radius1 = 0.1, radius2 = 0.2;
   Vec3 normal{1, 0, 0};  // unit, from 1 to 2
   Vec3 v1, v2, w1, w2;   // before and after
   double friction = 0, restitution = 0;
+  Vec3 half2;  // of a box with axes x, y, z in place of the second sphere; zero: that sphere
+  Vec3 at2;    // where the box is met, from its centre
 };
 
 /// The step of `resolve`: so short that nothing moves [s].

@@ -24,8 +24,8 @@ void long_rest(Trial& trial, bool ball, long steps) {
   for (int i = 0; i < run.bodies(); ++i) settled.push_back(run.pose(i).position);
   const double start = energy(run);
   Worst drift, jitter, creep;
-  for (long k = 1000; k < steps; k += 1000) {
-    run.step(trial.dt(), 1000);
+  for (long k = 1000; k < steps; ++k) {
+    run.step(trial.dt());
     for (int i = 0; i < run.bodies(); ++i) {
       drift.add(length(run.pose(i).position - settled[std::size_t(i)]));
       jitter.add(length(run.velocity(i)));
@@ -147,8 +147,9 @@ void pile_order(Trial& trial) {
     off.add(std::fabs(e / left - 1));
   }
   trial.report("overlap in the usual order [m]", depth);
-  trial.report("overlap in any order [m]", deepest, 0.01);
-  trial.report("energy at 3 s, relative to that of the usual order", off, 0.1);
+  // A14 asks for 2 mm at a step of 1 ms, which is a sub-step here; of the height of a ball that lies that is 2 %
+  trial.report("overlap in any order [m]", deepest, 2e-3);
+  trial.report("energy at 3 s, relative to that of the usual order", off, 0.02);
 }
 
 // ---- C19 -----------------------------------------------------------------------------------------------

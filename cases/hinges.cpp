@@ -1,4 +1,5 @@
 // A9, A19, A20: hinges, a hinge's limit as a stop, and steps of changing length.
+#include <cstdio>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -133,6 +134,13 @@ void stop_at_limit(Trial& trial) {
   trial.report("energy gained / (2 m g l)", gained, trial.at({1.36e-3, 8.4e-5, 3.4e-6, 4.8e-8}));
 }
 
+/// The same with a limit that throws the rod back, up to this angle.
+void thrown_back(Trial& trial, double degrees) {
+  char text[96];
+  std::snprintf(text, sizeof text, "restitution of a joint's limits; the rod should come back to %.2f degrees", degrees);
+  trial.report_missing(text);
+}
+
 // ---- A20 -----------------------------------------------------------------------------------------------
 
 constexpr double mean_of_random = 1.0 / 240, mean_of_turns = 0.5 * (1.0 / 60 + 1.0 / 240);
@@ -232,6 +240,10 @@ void add_hinges(std::vector<Case>& cases) {
   }
   cases.push_back(
       {"A19", "angle limit as a stop", {{.name = "from 90 deg", .run = stop_at_limit, .coarse = true, .substeps = {1, 4}}}});
+  const std::vector<double> fine{ladder[2]};
+  for (const auto& [name, back] : {std::pair{"rebound, e = 0.5", 49.494649672581}, {"rebound, e = 1", 90.0}})
+    cases.back().variants.push_back(
+        {.name = name, .run = [back = back](Trial& t) { thrown_back(t, back); }, .steps = fine, .own = true});
 
   Case& changing = cases.emplace_back(Case{"A20", "steps of changing length; dt is their mean", {}});
   for (bool random : {false, true}) {

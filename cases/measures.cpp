@@ -40,6 +40,14 @@ Csv read_csv(std::string_view file) {
   return csv;
 }
 
+double error_of_components(Vec3 found, Vec3 expected, double scale) {
+  const double none = 1e-14 * scale;
+  Worst worst;
+  for (const auto& [now, wanted] : {std::pair{found.x, expected.x}, {found.y, expected.y}, {found.z, expected.z}})
+    worst.add(std::fabs(now - wanted) / (std::fabs(wanted) > none ? std::fabs(wanted) : scale));
+  return worst;
+}
+
 Quat exponential(Vec3 rotation) {
   const double angle = length(rotation);
   return angle > 0 ? axis_angle((1 / angle) * rotation, angle) : Quat{};
@@ -104,10 +112,15 @@ Vec3 angular_momentum(const Simulated& run) {
 
 double joint_gap(const Simulated& run) {
   const scenes::Scene& scene = run.problem().scene;
+  static thread_local std::vector<int> places;  // of bodies in the scene, by the index of their id
+  for (int i = 0; i < run.bodies(); ++i) {
+    const std::size_t index = scene.bodies[std::size_t(i)].id.index;
+    if (places.size() <= index) places.resize(index + 1);
+    places[index] = i;
+  }
   const auto pin = [&](BodyId id, Vec3 local) {
-    for (int i = 0; i < run.bodies(); ++i)
-      if (scene.bodies[std::size_t(i)].id == id) return transform(run.pose(i), local);
-    return local;  // the ground
+    if (id == run.problem().world.ground()) return local;
+    return transform(run.pose(places[id.index]), local);
   };
   Worst worst;
   for (int k = 0; k < int(scene.joints.size()); ++k) {

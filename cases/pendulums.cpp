@@ -213,7 +213,14 @@ void add_pendulums(std::vector<Case>& cases) {
                      .substeps = {1, 4},
                      .order = 4,
                      .second_order = "position until 2 s [m]",
-                     .lost_at = 0.5}}});
+                     .lost_at = 0.5},
+                    // (there are no iterations to count: what the direct solve leaves is the gap)
+                    {.name = "many sub-steps",
+                     .run = double_pendulum,
+                     .steps = {ladder[0], ladder[1]},
+                     .substeps = {},
+                     .more_substeps = {16, 64},
+                     .own = true}}});
 }
 
 }  // namespace pcphys::cases

@@ -140,7 +140,7 @@ std::vector<Row> run_trial(const Selection& selection, const Case& c, const Vari
   const auto trial = make_trial(engine, variant, setting, limit, selection.repeats > 1 ? selection.repeats : 0);
   const double seconds = time_of(*trial, selection.repeats);
   std::string equal, refused;
-  if (gl && engine.peer().empty()) {
+  if (gl && engine.peer().empty() && trial->meter().error.code != ErrorCode::unavailable) {
     const auto there = make_trial(*gl, variant, setting, hashed_steps);
     refused = there->meter().error.message;  // too large for the device, say
     equal = !refused.empty() ? "refused" : there->meter().hash == trial->meter().hash ? "equal" : "differs";

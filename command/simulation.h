@@ -56,7 +56,8 @@ struct Outcome {
   std::uint64_t hash = 0;
 };
 
-/// Samples the extremes, and measures the end: the energy at every step of a small scene, quality every 20 steps.
+/// Samples the extremes, and measures the end: joint gaps at every step, the energy too of a small scene, overlaps and limits every
+/// 20 steps (60 of a large one).
 class Watch {
  public:
   Watch(const Simulation& simulation, Outcome& outcome);

@@ -189,9 +189,10 @@ class World {
   /// All of them, the library's first, then the host's own in the order of their handles. Names stand as long as the properties.
   std::vector<PropertyInfo> properties() const;
 
-  /// A table of the host's own with rows 1 to `rows`; row 0 pads, as in every table.
+  /// A table of the host's own with rows 1 to `rows`, at most 2^28; row 0 pads, as in every table.
   Result<TableId> add_table(std::string_view name, std::uint32_t rows = 0);
-  /// New rows hold each property's initial value; rows beyond are gone.
+  /// New rows hold each property's initial value; rows beyond are gone. Errors: bad_argument above 2^28, buffer_full where there is no
+  /// memory for them; then the table is as it was.
   Status resize(TableId table, std::uint32_t rows);
   Result<std::uint32_t> rows(TableId table) const;
   /// Takes its properties with it.

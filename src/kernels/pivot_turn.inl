@@ -21,6 +21,8 @@ PC_FN Swing pc_swing_of(Pivot p, Quaternion q, Vec3 r, Vec3 momentum) {
   Swing s; s.u = pc_cross(w, r); s.l = pc_sym_mul(pc_world_inertia(q, p.moments), w); return s;
 }
 PC_FN Vec3 pc_about_pin(Pivot p, Vec3 r, Vec3 u, Vec3 l) { Vec3 orbit = pc_cross(r, u); return pc_madd(l, orbit, p.mass); }
+// The same with what the sum rounds away: it is formed anew in every sub-step, and what it lost would be lost a million times.
+PC_FN TwoSum pc_sum_about_pin(Pivot p, Vec3 r, Vec3 u, Vec3 l) { return pc_two_sum(pc_scale(pc_cross(r, u), p.mass), l); }
 PC_FN Vec3 pc_from_pin(Pivot p, Quaternion q) { return pc_negate(pc_rotate(q, p.arm)); }
 PC_FN Vec3 pc_torque(Pivot p, Vec3 r) { return pc_add(p.torque, pc_cross(r, p.weight)); }
 // A hinge turns about one axis alone, x of the pivot's.
@@ -129,7 +131,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 all = pc_torque(p, r); Vec3 torque = pc_select3(swings, all, pc_along(axis, all));
   // the momentum of before to the bit, and beside it what was given since: their sum as one real would round anew each time
   Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v));
-  Motion start; start.l = pc_about_pin(p, r, u_before.v, l_before.v); start.low = pc_add(given, pc_about_pin(p, r, u_low.v, l_low.v));
+  TwoSum before = pc_sum_about_pin(p, r, u_before.v, l_before.v);
+  Motion start; start.l = before.sum; start.low = pc_add(pc_add(given, pc_about_pin(p, r, u_low.v, l_low.v)), before.low);
   Turn straight = pc_turn(pc_straightening(PC_PASS n)); start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
   precise Real back = -half_h; start = pc_kick(start, torque, back);  // in phase with the pose: it has had a whole kick and was half a one behind
   Motion next = start;
@@ -147,7 +150,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real two = pc_select(rotation.w < PC_REAL(0.0), PC_REAL(-2.0), PC_REAL(2.0)); precise Real square = pc_dot(rotation.v, rotation.v) * PC_REAL(4.0);
 
   Swing now = pc_swing_of(p, q_next, r_next, next.l);
-  Vec3 kept = pc_about_pin(p, r_next, now.u, now.l); precise Vec3 lost = (next.l - kept) + next.low; Vec3 low = pc_select3(swings, lost, pc_along(axis, lost));
+  TwoSum kept = pc_sum_about_pin(p, r_next, now.u, now.l); precise Vec3 lost = ((next.l - kept.sum) - kept.low) + next.low; Vec3 low = pc_select3(swings, lost, pc_along(axis, lost));
   pc_add_impulse(PC_PASS n, pc_scale(pc_sub(now.u, linear.v), p.mass), pc_sub(now.l, angular.v), pc_scale(pc_add(r, r_next), PC_REAL(0.5)));
   // the velocities that are read are half a kick ahead: of what acts from a distance that of now, of the rest half of the last
   Vec3 change = pc_sub(torque_next, torque); Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
