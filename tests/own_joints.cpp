@@ -106,6 +106,8 @@ void add_all(Stepper& stepper, World& world) {
       world, {.text = conduction::text(), .over = joint_table, .stage = Stage::impulses, .parameters = {{"rate", 0.01}}}));
 }
 
+PCPHYS_KERNEL(take_part, (PC_A(Real) part_of_a, PC_ADD_B(Real) taken_b), { taken_b = part_of_a; })
+
 }  // namespace
 
 TEST_CASE("a spring-damper between two free bodies is the damped oscillator, of second order, and keeps momentum") {
@@ -217,6 +219,22 @@ TEST_CASE("each joint of a body that moves gives once, everything is read before
         CHECK(now == doctest::Approx(before[i] + (moves ? wanted[i] : 0)).epsilon(1e-6));
       }
     }
+}
+
+TEST_CASE("part_of_a is of the property part_of where there is one, else of part") {
+  World world(WorldDef{Precision::f64, {}});
+  const BodyId a = must(world.create_body(ball({0, 5, 0}))), b = must(world.create_body(ball({3, 5, 0})));
+  (void)must(world.create_joint(pin(a, {1.5, 0, 0}, b, {-1.5, 0, 0})));
+  const auto part = must(world.add_property<Real>("part", 1)), taken = must(world.add_property<Real>("taken", 0));
+  for (const bool both : {false, true}) {
+    if (both) must(world.add_property<Real>("part_of", 5));
+    Stepper stepper;
+    must(stepper.add_kernel(world, {.text = take_part::text(), .over = joint_table, .once_a_step = true}));
+    must(world.set(taken, b, Real(0)));
+    run(world, stepper, 1);
+    CHECK(double(must(world.get(taken, b))) == (both ? 5 : 1));
+  }
+  CHECK(double(must(world.get(part, a))) == 1);
 }
 
 TEST_CASE("the order is that of ids, wherever rows stand") {

@@ -44,6 +44,8 @@ PCPHYS_KERNEL(all_types,
 
 PCPHYS_KERNEL(count_steps, (PC_INOUT(uint) steps), { steps = steps + 1u; })
 
+PCPHYS_KERNEL(clock_time, (PC_INOUT(Real) time, PC_PARAM(Real) h), { time = time + h; })
+
 SceneWorld with_own(Precision precision) {
   SceneWorld s = scene_world("balls", 40, precision);
   must(s.world.add_property<Real>("fuel", 2.0, "kg"));
@@ -215,6 +217,23 @@ TEST_CASE("when: once a step, or in each sub-step") {
         run(s.world, stepper, 5);
         CHECK(must(s.world.get(steps, body)) - before == (once ? 5 : 5 * stepper.settings().substeps));
       }
+}
+
+TEST_CASE("h is the sub-step, and of a kernel that runs once a step the step") {
+  require_gl();
+  for (const Place place : {Place::cpu, Place::gl})
+    for (const bool once : {true, false}) {
+      SceneWorld s = scene_world("balls", 5);
+      const auto time = must(s.world.add_property<Real>("time", 0, "s"));
+      StepSettings settings;
+      settings.set_all(place);
+      Stepper stepper(settings);
+      must(stepper.add_kernel(s.world, {.text = clock_time::text(), .once_a_step = once}));
+      run(s.world, stepper, 8);
+      for (const BodyId body : s.world.bodies())
+        if (must(s.world.kind(body)) == BodyKind::dynamic)
+          CHECK(double(must(s.world.get(time, body))) == doctest::Approx(8 * frame).epsilon(1e-6));
+    }
 }
 
 TEST_CASE("removed, the world moves as without it") {

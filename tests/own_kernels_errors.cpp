@@ -1,5 +1,7 @@
 // Pins what is refused of a host's own kernels, with which words; that nothing is added then; and that a kernel whose property was
 // removed stops the step, not the world.
+#include <optional>
+
 #include "glcompute/compile_log.h"
 #include "pcphys/write_kernel.h"
 #include "plan/kernel_lines.h"
@@ -28,6 +30,7 @@ struct Populated {
 
 PCPHYS_KERNEL(drain, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), { fuel = fuel - flow; })
 PCPHYS_KERNEL(refill, (PC_OUT(Real) fuel, PC_PARAM(Real) full), { fuel = full; })
+PCPHYS_KERNEL(sum_up, (PC_IN(Real) fuel, PC_SUM(Real) total), { total = fuel; })
 PCPHYS_KERNEL(reset, (PC_OUT(Real) fuel), { fuel = PC_REAL(0.0); })
 
 const int no_glsl_line = __LINE__ + 1;
@@ -193,6 +196,42 @@ TEST_CASE("a stepper has kernels of one world") {
   Populated p, other;
   must(p.stepper.add_kernel(p.world, {.text = drain::text(), .parameters = {{"flow", 0.1}}}));
   CHECK_REFUSED(other.world, step_status(p.stepper, other.world), ErrorCode::bad_argument, "kernels of another world");
+  p.stepper.remove_kernels();
+  run(other.world, p.stepper, 1);
+  std::optional<World> gone{WorldDef{Precision::f32, {}}};
+  must(gone->add_property<Real>("fuel", 1));
+  must(p.stepper.add_kernel(*gone, {.text = drain::text(), .parameters = {{"flow", 0.1}}}));
+  gone.reset();
+  CHECK_REFUSED(other.world, step_status(p.stepper, other.world), ErrorCode::bad_argument, "Stepper::remove_kernels");
+  p.stepper.remove_kernels();
+  run(other.world, p.stepper, 1);
+}
+
+TEST_CASE("a table of one row that has another number of them: the step says so, until it has one again") {
+  for (const std::uint32_t rows : {0u, 2u}) {
+    World world(WorldDef{Precision::f32, {}});
+    const TableId one = must(world.add_table("one", 1));
+    must(world.add_property<Real>("total", 0, "1", one));
+    const BodyId body = must(world.create_body(ball({0, 5, 0})));
+    must(world.add_property<Real>("fuel", 3));
+    Stepper stepper;
+    must(stepper.add_kernel(world, {.text = sum_up::text()}));
+    run(world, stepper, 1);
+    must(world.resize(one, rows));
+    CHECK_REFUSED(world, step_status(stepper, world), ErrorCode::bad_argument,
+                  "The kernel \"sum_up\" uses \"total\" of a table of one row, which has " + std::to_string(rows) + " now");
+    must(world.resize(one, 1));
+    must(world.set(must(world.property<Real>("fuel")), body, Real(4)));
+    run(world, stepper, 1);
+    CHECK(double(must(world.get(must(world.property<Real>("total")), RowOf(1)))) == 4);
+  }
+}
+
+TEST_CASE("a text that names the library's buffers is refused") {
+  Populated p;
+  CHECK_REFUSED(p.world,
+                p.stepper.add_kernel(p.world, glsl("sly", "(PC_INOUT(Real) fuel)", "{ fuel = 1.0; io_pose[0].x = 2.0; }")),
+                ErrorCode::bad_argument, "The kernel \"sly\" uses \"io_pose\" in its text");
 }
 
 TEST_CASE("GLSL that does not compile comes back with the host's own lines") {

@@ -22,6 +22,11 @@ PCPHYS_PAIR_KERNEL(bare_gravity,
                      force = pc_scale(d, pc_div(PC_REAL(1e-3), r2));
                    })
 PCPHYS_KERNEL(mean_inverse, (PC_IN(Real) x, PC_SUM(Real) inverse), { inverse = pc_div(PC_REAL(1.0), x); })
+PCPHYS_KERNEL(farthest, (PC_IN(Real) x, PC_MIN(Real) nearest, PC_MAX(Vec3) beyond), {
+  Real root = pc_sqrt(x);
+  nearest = root;
+  beyond = Vec3(x, root, x);
+})
 PCPHYS_KERNEL(shove, (PC_IN(Real) shoved, PC_INOUT(Vec3) force, PC_PARAM(Real) size), {
   precise Real more = size * PC_REAL(1e8);
   force.x = force.x + shoved * more;
@@ -117,6 +122,27 @@ TEST_CASE("and pairs in one place, and totals") {
     CHECK(double(must(world.get(inverse, RowOf(1)))) == 1.5);
     must(world.set(x, world.bodies()[1], Real(0)));
     check_named(stepper, world, "The kernel \"mean_inverse\" gave the total of all rows a \"inverse\"");
+  });
+}
+
+TEST_CASE("and least and most, whichever row it is") {
+  each_place([](const StepSettings& settings, Precision precision) {
+    World world = three(precision);
+    const TableId table = must(world.add_table("totals", 1));
+    const auto nearest = must(world.add_property<Real>("nearest", 0, "1", table));
+    const auto beyond = must(world.add_property<Vec3>("beyond", {}, "1", table));
+    const auto x = must(world.add_property<Real>("x", 2, "1"));
+    Stepper stepper(settings);
+    must(stepper.add_kernel(world, {.text = farthest::text()}));
+    for (const BodyId body : world.bodies()) {
+      must(world.set(x, body, Real(-1)));
+      check_named(stepper, world, "The kernel \"farthest\" gave the total of all rows a \"nearest\"");
+      must(world.set(x, body, Real(4)));
+    }
+    must(world.set(x, world.bodies()[1], Real(9)));
+    run(world, stepper, 1);
+    CHECK(double(must(world.get(nearest, RowOf(1)))) == 2);
+    CHECK(must(world.get(beyond, RowOf(1))).y == 3);
   });
 }
 

@@ -120,6 +120,8 @@ class Stepper {
   /// a stage is on gl and its compiler refuses the text. Nothing is added then.
   Status add_kernel(World& world, const KernelDef& def);
   Status remove_kernel(World& world, std::string_view name);
+  /// All of them, whether their world is still there or not: then this stepper can step another.
+  void remove_kernels();
   /// From the next step on; of the type that it was given as.
   Status set_parameter(std::string_view kernel, const KernelParameter& parameter);
 

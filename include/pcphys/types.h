@@ -105,6 +105,9 @@ struct AngleFreedom {
   Kind kind = Kind::free;
   double cone = 0, twist = 0;
   Vec3 lower, upper;  // (roll, pitch, yaw)
+  /// Of the limits, 0 to 1: the share of its speed at which the joint leaves one that it meets faster than
+  /// StepSettings::restitution_threshold, in rad/s here. Not of joints that close a loop (docs/joints.md).
+  double restitution = 0;
 
   static AngleFreedom cone_and_twist(double cone, double twist) { return {Kind::cone_twist, cone, twist, {}, {}}; }
   static AngleFreedom between(Vec3 lower, Vec3 upper) { return {Kind::pitch_yaw_roll, 0, 0, lower, upper}; }

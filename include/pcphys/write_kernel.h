@@ -9,9 +9,9 @@
 //
 // The signature declares what is read (PC_IN), changed (PC_INOUT), written anew (PC_OUT) and given with the kernel (PC_PARAM). Names
 // are those of properties, the library's (docs/properties.md) or the host's own; types Real, Vec3, Quaternion, Quad (four numbers),
-// Sym3, Mat3, float, double, int, uint. The parameters `h` (the sub-step, Real) and `gravity` (Vec3) need not be given. From one
-// text come a C++ function and a GLSL program; in both what is PC_IN or PC_PARAM is const. Of the library's properties a kernel may
-// write force, torque, displacement_rate and angular_momentum.
+// Sym3, Mat3, float, double, int, uint. The parameters `h` (Real: the sub-step, or the step of a kernel that runs once a step) and
+// `gravity` (Vec3) need not be given. From one text come a C++ function and a GLSL program; in both what is PC_IN or PC_PARAM is
+// const. Of the library's properties a kernel may write force, torque, displacement_rate and angular_momentum.
 //
 // Of a body and each other one, all or those within KernelDef::cutoff: PC_SELF and PC_OTHER read (the other's names end in _other),
 // PC_ADD and PC_SUM name the properties that take the sum of what the text gives for each pair, added or in place of what was there.
@@ -124,7 +124,7 @@ template <class... Arguments> consteval std::size_t count_arguments(void (*)(Arg
 /// Written once for both sides, in the common subset.
 #define PCPHYS_KERNEL(Name, signature, ...) \
   PCPHYS_CHECK_BITS PCPHYS_KERNEL_TEXT(Name, signature, #signature, #__VA_ARGS__, __VA_ARGS__)
-/// C++ alone: anything that C++ can say.
+/// C++ alone: anything that C++ can say. Rows may run on several threads at once (StepSettings::threads).
 #define PCPHYS_CPU_KERNEL(Name, signature, ...) PCPHYS_KERNEL_TEXT(Name, signature, #signature, nullptr, __VA_ARGS__)
 
 #define PCPHYS_PAIR_KERNEL_TEXT(Name, signature, declared, body, ...)                                                  \

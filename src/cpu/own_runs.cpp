@@ -20,9 +20,11 @@ template <class Part> void share(const Range& range, const Workers* workers, con
 }
 
 // ---- reductions ---------------------------------------------------------------------------------------
+/// What cannot be ordered is added: a NaN stays one, to be told of.
 template <class T> T combined(OwnArgument::Kind kind, T a, T b) {
-  if (kind == OwnArgument::Kind::least) return b < a ? b : a;
-  if (kind == OwnArgument::Kind::most) return a < b ? b : a;
+  if (kind == OwnArgument::Kind::least && b < a) return b;
+  if (kind == OwnArgument::Kind::most && a < b) return b;
+  if (kind >= OwnArgument::Kind::least && (a <= b || b <= a)) return a;
   return a + b;
 }
 /// `count` values of `numbers` numbers each to one, in place of the first: two by two, then two by two of these.
@@ -93,7 +95,8 @@ OwnRuns::Columns OwnRuns::columns(const OwnKernel& k, std::span<void* const> buf
   for (std::size_t i = 0; i < k.arguments.size(); i++) {
     const OwnArgument& a = k.arguments[i];
     if (a.given) {
-      const std::size_t field = a.name == "h" ? info_field::h : info_field::gravity_x;
+      std::size_t field = info_field::gravity_x;
+      if (a.name == "h") field = k.once_a_step ? info_field::step : info_field::h;
       columns.at[i] = const_cast<std::byte*>(info) + field * k.real_bytes;
     } else if (!a.of_property()) {
       columns.at[i] = const_cast<std::byte*>(k.parameters.data()) + a.place;

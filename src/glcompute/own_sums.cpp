@@ -39,10 +39,12 @@ std::string clear(const OwnKernel& k, const std::string& prefix) {
   });
 }
 
+/// What cannot be ordered is added: a NaN stays one, to be told of.
 std::string combined(const OwnArgument& a, const std::string& x, const std::string& y) {
-  if (a.kind == OwnArgument::Kind::least) return y + " < " + x + " ? " + y + " : " + x;
-  if (a.kind == OwnArgument::Kind::most) return x + " < " + y + " ? " + y + " : " + x;
-  return x + " + " + y;
+  const std::string sum = x + " + " + y, first = x + " <= " + y + " || " + y + " <= " + x + " ? " + x + " : " + sum;
+  if (a.kind == OwnArgument::Kind::least) return y + " < " + x + " ? " + y + " : " + first;
+  if (a.kind == OwnArgument::Kind::most) return x + " < " + y + " ? " + y + " : " + first;
+  return sum;
 }
 
 std::string combine(const OwnKernel& k, const std::string& into, const std::string& with) {

@@ -96,7 +96,8 @@ std::string OwnText::place(const OwnArgument& a, std::uint32_t c, const std::str
   if (!a.of_property()) {
     if (!a.given) return "pc_" + a.name + "_" + number(c);
     constexpr const char* gravity[] = {"gravity_x", "gravity_y", "gravity_z"};
-    return std::string("pc_info.") + (a.name == "h" ? "h" : gravity[c]);
+    const char* const h = k_.once_a_step ? "step" : "h";
+    return std::string("pc_info.") + (a.name == "h" ? h : gravity[c]);
   }
   const std::string array = "io_" + label(a.buffer), at_row = a.single ? "1u" : row;
   if (is_own(a.buffer) && single(a.type)) return array + "[" + at_row + "]";

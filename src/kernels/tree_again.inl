@@ -1,5 +1,5 @@
 // After the contacts: the pins at the new prediction, with the same factor (Newton's second step, and what the contacts
-// have undone), again where a gap is left; then the push that closes the gaps left over, which the relax phase takes back once the
+// have undone), again where a gap is left, and of limits that throw back; then the push that closes the gaps left over, which the relax phase takes back once the
 // bodies have moved by it.
 #include "body_state.inl"
 #include "tree_rows.inl"
@@ -10,14 +10,20 @@
 #include "tree_predict.inl"
 #include "tree_joint_kept.inl"
 
-// Limits keep what they carry; locked rows are corrected like pins.
+// Of a limit that is met and throws back, how far its rate lacks of that at which it is to be left; else 0.
+PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
+  Real away = PC_LD(tree_rows, n, TREE_REBOUND + i); Mask rebounds = pc_and(pc_throws_back(PC_PASS n), pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), away > PC_REAL(0.0)));
+  precise Real lack = rate - away; return pc_select(rebounds, pc_min(lack, PC_REAL(0.0)), PC_REAL(0.0));
+}
+// Limits keep what they carry, unless they throw back; locked rows are corrected like pins.
 PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real bias = pc_soft_bias(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i));
-    precise Real rate = (pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + bias) * wanted;
-    PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, PC_REAL(0.0)));
+    Real bias = pc_soft_bias(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i)); Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    precise Real rate = (now + bias) * wanted; Real limit = PC_REAL(0.0);
+    if (PC_ANY(pc_throws_back(PC_PASS n))) { precise Real back = pc_lacks_rebound(PC_PASS n, i, now) * wanted; limit = back; }  // lint: allow (zero otherwise)
+    PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, limit));
   }
 }
 // Speed at which a gap closes: within the sub-step, but not faster than joint_push_speed.
@@ -30,11 +36,21 @@ PC_FN Real pc_gap_over(PC_IO Slot n, Vec3 gap, Real share_squared) {
   Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); precise Real most = pc_dot(rc, rc) * share_squared;
   return pc_select(pc_dot(gap, gap) > most, PC_REAL(1.0), PC_REAL(0.0));
 }
-// 1 where some gap of the tree at the prediction is.
-PC_FN Real pc_gap_left(PC_IO Slot m, Tree t, Real share_squared) {
+// 1 where a limit that throws back is left too slowly, by more than 1e-5 of its rate.
+PC_FN Real pc_rebound_lacks(PC_IO Slot n, Slot up) {
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real lacks = PC_REAL(0.0);
+  for (uint i = 0u; i < 3u; i++) {
+    precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * PC_REAL(-1e-5);
+    lacks = pc_select(pc_lacks_rebound(PC_PASS n, i, pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn)) < much, PC_REAL(1.0), lacks);
+  }
+  return lacks;
+}
+// 1 where some gap of the tree at the prediction is, or a limit has not thrown back yet. Run after pc_tree_residual.
+PC_FN Real pc_left(PC_IO Slot m, Tree t, Real share_squared) {
   Real left = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); left = pc_max(left, pc_gap_over(PC_PASS n, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h)), share_squared));
+    if (PC_ANY(pc_throws_back(PC_PASS n))) left = pc_max(left, pc_rebound_lacks(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k))));  // lint: allow (zero otherwise)
   }
   PC_MOST(left); return left;
 }
@@ -89,11 +105,11 @@ PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
   PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
-  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_gap_left(PC_PASS m, t, noise));
+  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
   for (uint turn = 0u; turn < 4u; turn++) {
     if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
     if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted);
-    Real left = pc_gap_left(PC_PASS m, t, PC_REAL(2e-9));
+    Real left = pc_left(PC_PASS m, t, PC_REAL(2e-9));
     pc_newton_step(PC_PASS m, t, wanted);
     wanted = pc_min(wanted, left);
   }

@@ -37,7 +37,8 @@ PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angl
 // The three angle rows of a joint; a joint without angles has three that never act.
 PC_FN void pc_tree_angles(PC_IO Slot n, uint b, Quaternion qc, Quaternion qp, Quad axes_c, Quad axes_p, Quad head, Quad lower, Quad upper, Vec3 remembered) {
   Mask any = head.s > PC_REAL(0.5); Mask is_cone = pc_and(any, head.s < PC_REAL(1.5)); Mask is_angles = head.s > PC_REAL(1.5);
-  PC_ST(tree_rows, n, TREE_HAS_ROWS, pc_select(any, PC_REAL(1.0), PC_REAL(0.0)));
+  Mask throws = pc_and(any, upper.s > PC_REAL(0.0));
+  PC_ST(tree_rows, n, TREE_HAS_ROWS, pc_select(throws, PC_REAL(2.0), pc_select(any, PC_REAL(1.0), PC_REAL(0.0))));
   if (!PC_ANY(any)) {  // lint: allow (rows of kind 0 are the same whatever their axes)
     for (uint f = TREE_AXIS; f < TREE_C; f++) PC_ST(tree_rows, n, f, PC_REAL(0.0));
     return;
@@ -50,6 +51,9 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, Quaternion qc, Quaternion qp, Qu
   pc_tree_angle(PC_PASS n, 0u, a.roll_axis, flip, a.value.x, lower.v.x, upper.v.x, any, remembered.x);
   pc_tree_angle(PC_PASS n, 1u, a.second_axis, flip, a.value.y, lower.v.y, upper.v.y, any, remembered.y);
   pc_tree_angle(PC_PASS n, 2u, a.third_axis, flip, a.value.z, lower.v.z, upper.v.z, is_angles, remembered.z);
+  if (!PC_ANY(throws)) return;  // lint: allow (not read otherwise)
+  // what leans on a limit already does not meet it
+  for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_REAL(0.0), upper.s));
 }
 
 PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {

@@ -33,11 +33,12 @@ const uint TREE_MOMENTS = 142u; // inverse principal moments, and which is the m
 const uint TREE_BODY = 146u;    // inertia, world axes
 const uint TREE_FAST = 137u;    // share of the body's turning that the sub-step is too long to resolve, 0 to 1
 const uint TREE_TOTAL = 152u;   // mass of the whole tree, the unit of all masses, inertias and impulses here
-const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows
+const uint TREE_HAS_ROWS = 153u; // 1 where the joint has angle rows, 2 where its limits throw back
 const uint TREE_TOUCH = 154u;   // largest load of a contact on the body in this sub-step
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
-const uint TREE_PIVOT = 165u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
+const uint TREE_PIVOT = 155u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
+const uint TREE_REBOUND = 165u; // where limits throw back, of the three rows: restitution, then the rate at which the row is to be left; 0 none
 // of a free root, whose joint has no rows: the tree as one rigid body (tree_whole.inl)
 const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
@@ -61,3 +62,5 @@ PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
 }
 // Whether any lane's joint has angle rows. Skipping them changes no bit: where there are none they are zeros.
 PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(0.5); }
+// Whether any lane's joint has limits with a restitution: TREE_REBOUND holds something there alone.
+PC_FN Mask pc_throws_back(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(1.5); }

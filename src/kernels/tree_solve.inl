@@ -27,6 +27,16 @@ PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(pc_and(kind > PC_REAL(0.5), rate < PC_REAL(0.0)), PC_REAL(1.0), on));
   }
 }
+// The rate at which a row is left that the joint comes to, where its limits throw back: Newton's law in the row's rate.
+PC_FN void pc_tree_rebounds(PC_IO Slot n, Slot up) {
+  if (!PC_ANY(pc_throws_back(PC_PASS n))) return;  // lint: allow (not read otherwise)
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  for (uint i = 0u; i < 3u; i++) {
+    precise Real approach = -pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn); precise Real away = approach * PC_LD(tree_rows, n, TREE_REBOUND + i);
+    Mask meets = pc_and(approach > PC_INFO(restitution_threshold), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(1.5));
+    PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(meets, away, PC_REAL(0.0)));
+  }
+}
 // After a sweep: rows that pull leave, and in the first round those enter that it violates. 1 where any did.
 PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return PC_REAL(0.0);  // lint: allow (zeros otherwise)
@@ -86,7 +96,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   PC_NODES(k, 1u, t) load = pc_max(load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
   PC_MOST(load);
-  PC_NODES(k, 1u, t) pc_tree_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    pc_tree_rates(PC_PASS n, up); pc_tree_rebounds(PC_PASS n, up);
+  }
 #ifdef PC_DRIVES
   PC_NODES(k, 1u, t) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #endif

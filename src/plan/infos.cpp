@@ -78,6 +78,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
 
   biased.fine = sizeof(Scalar) == 4 && h < constants::short_substep;
   biased.substeps = Scalar(from.substeps << octave);
+  biased.step = Scalar(from.h * from.substeps);
   biased.largest_state = Scalar(constants::largest_state);
 
   const auto change = [&](Phase phase, double before, double after) {

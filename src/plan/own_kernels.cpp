@@ -8,6 +8,7 @@
 
 #include "pcphys/constants.h"
 #include "plan/kernel_lines.h"
+#include "plan/own_signature.h"
 #include "plan/own_words.h"
 #include "world/validate.h"
 
@@ -16,92 +17,6 @@ namespace {
 
 constexpr std::size_t most_buffers = 8;  // storage blocks that GL 4.3 guarantees
 constexpr std::string_view writable[] = {"force", "torque", "displacement_rate", "angular_momentum"};
-
-struct TypeWord {
-  std::string_view word;
-  PropertyType type;
-};
-constexpr TypeWord type_words[] = {{"Real", PropertyType::real},       {"Vec3", PropertyType::vec3},
-                                   {"Quaternion", PropertyType::quat}, {"Sym3", PropertyType::sym3},
-                                   {"Quad", PropertyType::vec4},       {"Mat3", PropertyType::mat3},
-                                   {"float", PropertyType::float32},   {"double", PropertyType::float64},
-                                   {"int", PropertyType::int32},       {"uint", PropertyType::uint32}};
-constexpr std::string_view kind_words[] = {"PC_IN", "PC_INOUT", "PC_OUT", "PC_PARAM", "PC_SELF",  "PC_OTHER", "PC_A",
-                                           "PC_B",  "PC_SUM",   "PC_ADD", "PC_ADD_A", "PC_ADD_B", "PC_MIN",   "PC_MAX"};
-
-std::string without(std::string_view name, std::string_view suffix) {
-  return std::string(name.ends_with(suffix) ? name.substr(0, name.size() - suffix.size()) : name);
-}
-
-/// Of what stands in a signature as `name`: the property.
-std::string property_of(const OwnArgument& a) {
-  using Kind = OwnArgument::Kind;
-  switch (a.kind) {
-    case Kind::self: return without(a.name, "_self");
-    case Kind::other: return without(a.name, "_other");
-    case Kind::a: return without(without(a.name, "_a"), "_of");
-    case Kind::b: return without(without(a.name, "_b"), "_of");
-    case Kind::add_a: return without(a.name, "_a");
-    case Kind::add_b: return without(a.name, "_b");
-    default: return a.name;
-  }
-}
-
-/// Words and signs of a signature.
-class Tokens {
- public:
-  /// `reached`: where in the text the last one stands.
-  Tokens(std::string_view text, std::size_t& reached) : rest_(text), size_(text.size()), reached_(reached) {}
-  std::string_view next() {
-    while (!rest_.empty() && (rest_[0] == ' ' || rest_[0] == '\n' || rest_[0] == '\t')) rest_.remove_prefix(1);
-    reached_ = size_ - rest_.size();
-    if (rest_.empty()) return {};
-    const auto part_of_word = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
-    };
-    std::size_t n = 0;
-    while (n < rest_.size() && part_of_word(rest_[n])) n++;
-    const std::string_view token = rest_.substr(0, n == 0 ? 1 : n);
-    rest_.remove_prefix(token.size());
-    return token;
-  }
-  bool take(std::string_view wanted) { return next() == wanted; }
-
- private:
-  std::string_view rest_;
-  std::size_t size_, &reached_;
-};
-
-Status parse(OwnKernel& k) {
-  const Error wrong =
-      bad(k, "has the signature `" + k.signature +
-                 "`; write it as (PC_IN(Vec3) position, PC_INOUT(Real) fuel, PC_PARAM(Real) flow), with PC_OUT for what "
-                 "is written anew, and types Real, Vec3, Quaternion, Quad, Sym3, Mat3, float, double, int or uint.");
-  Tokens tokens(k.signature, k.reached);
-  if (!tokens.take("(")) return wrong;
-  std::string_view sign = ",";
-  while (sign == ",") {
-    OwnArgument argument;
-    const auto* kind = std::ranges::find(kind_words, tokens.next());
-    argument.at = k.reached;
-    if (kind == std::end(kind_words) || !tokens.take("(")) return wrong;
-    const auto* type = std::ranges::find(type_words, tokens.next(), &TypeWord::word);
-    if (type == std::end(type_words) || !tokens.take(")")) return wrong;
-    argument.kind = OwnArgument::Kind(kind - kind_words);
-    argument.type = type->type;
-    argument.name = tokens.next();
-    argument.property = property_of(argument);
-    if (contains(k.arguments, argument.name, &OwnArgument::name))
-      return bad(k, "names " + quoted(argument.name) + " twice in its signature; PC_INOUT reads and writes.");
-    k.arguments.push_back(std::move(argument));
-    sign = tokens.next();
-  }
-  if (sign != ")" || !tokens.next().empty()) return wrong;
-  k.reached = 0;
-  if (k.arguments.size() > OwnKernel::most_arguments)
-    return bad(k, "has " + std::to_string(k.arguments.size()) + " arguments; at most 32 are possible.");
-  return {};
-}
 
 /// A property as kernels find it, the library's or the host's own.
 struct Found {
@@ -147,6 +62,9 @@ Error wrong_table(const OwnKernel& k, const OwnArgument& a, Table table) {
 
 Status bind_property(const WorldState& s, OwnKernel& k, OwnArgument& a) {
   Found f;
+  // `part_of_a` is of the property part_of where there is one, else of part
+  if (const std::string whole = whole_property_of(a); whole != a.property && find_property(s, whole, f) && f.table == Table::body)
+    a.property = whole;
   if (!find_property(s, a.property, f))
     return Error{ErrorCode::unknown_name, "The kernel " + quoted(k.name) + " uses the property " + quoted(a.property) +
                                               ", which the world does not have; add it first (World::add_property), or make it a "
@@ -197,7 +115,7 @@ Status check_ending(const OwnKernel& k, const OwnArgument& a) {
   using Kind = OwnArgument::Kind;
   const char* ending = a.kind == Kind::other ? "_other" : a.of_three() == 1 ? "_a" : a.of_three() == 2 ? "_b" : nullptr;
   if (!ending || a.name != a.property) return {};
-  const std::string word(kind_words[std::size_t(a.kind)]);
+  const std::string word(word_of(a.kind));
   return bad(k, "says " + word + " of " + quoted(a.name) + "; the name of such an argument ends in " + ending + ": " + a.name +
                     ending + ".");
 }
@@ -210,10 +128,10 @@ Status check_joined(OwnKernel& k) {
   for (const OwnArgument& a : k.arguments) {
     k.reached = a.at;
     if (a.kind == Kind::self || a.kind == Kind::other || (a.summed() && a.of_three() == 0))
-      return bad(
-          k, "is of a joint and its bodies, and says " + std::string(kind_words[std::size_t(a.kind)]) + " of " + quoted(a.name) +
-                 "; what bodies are given is PC_ADD_A or PC_ADD_B, and a total of all joints is made by another kernel of a "
-                 "property that this one writes (PC_OUT).");
+      return bad(k,
+                 "is of a joint and its bodies, and says " + std::string(word_of(a.kind)) + " of " + quoted(a.name) +
+                     "; what bodies are given is PC_ADD_A or PC_ADD_B, and a total of all joints is made by another kernel of a "
+                     "property that this one writes (PC_OUT).");
   }
   k.reached = 0;
   return {};
@@ -306,12 +224,13 @@ Status check_blocks(const OwnKernel& k) {
 Status fill(const WorldState& s, const KernelDef& def, OwnKernel& k) {
   if (k.name.empty()) return bad(k, "has no name.");
   if (k.body.empty() && !k.in_cpp()) return bad(k, "has neither a C++ nor a GLSL side; write it with PCPHYS_KERNEL.");
+  if (Status ok = check_body(k); !ok) return ok;
   if (k.stage == Stage::islands)
     return bad(k, "is of the stage islands, which has kernels of the library alone; use integrate, joints or impulses.");
   const Result<Table> table = s.table_of(def.over);
   if (!table) return table.error();
   k.table = *table;
-  Status ok = parse(k);
+  Status ok = parse_signature(k);
   if (ok) ok = find_form(k);
   if (ok) use_lists(k);
   for (OwnArgument& a : k.arguments) {
@@ -384,6 +303,12 @@ Status check_properties(const WorldState& s, const OwnKernel& k) {
                    "The kernel " + quoted(k.name) + " uses the property " + quoted(a.property) +
                        ", which was removed; remove the kernel too (Stepper::remove_kernel), and add it again where "
                        "there is a new one of that name. The world is as it was."};
+    if (a.single && s.tables.rows(a.table) != 2)
+      return Error{ErrorCode::bad_argument,
+                   "The kernel " + quoted(k.name) + " uses " + quoted(a.property) + " of a table of one row, which has " +
+                       std::to_string(s.tables.rows(a.table) - 1) +
+                       " now; give it one again (World::resize), or remove the kernel (Stepper::remove_kernel). The world is as "
+                       "it was."};
   }
   return {};
 }

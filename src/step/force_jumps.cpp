@@ -12,10 +12,12 @@ bool of_moment(const OwnKernel& k) {
 }
 bool changed(const OwnKernel& k) { return !k.parameters_before.empty() && k.parameters_before != k.parameters; }
 
-template <class Scalar> void fill(std::byte* given, double h, Vec3 gravity) {
-  const Scalar values[4] = {Scalar(h), Scalar(gravity.x), Scalar(gravity.y), Scalar(gravity.z)};
+/// What the library gives to kernels, in this order: gravity, then h of those of each sub-step and of those of each step.
+template <class Scalar> void fill(std::byte* given, Vec3 gravity, double h, double step) {
+  const Scalar values[5] = {Scalar(gravity.x), Scalar(gravity.y), Scalar(gravity.z), Scalar(h), Scalar(step)};
   std::memcpy(given, values, sizeof values);
 }
+std::size_t place_in_given(const OwnKernel& k, const OwnArgument& a) { return a.name != "h" ? 0 : k.once_a_step ? 4 : 3; }
 template <class Scalar> Vec3 difference(std::span<const std::byte> now, std::span<const std::byte> before, std::size_t place) {
   Scalar a[3], b[3];
   std::memcpy(a, now.data() + place, sizeof a);
@@ -31,13 +33,13 @@ void ForceJumps::forget(OwnKernels::Ordered kernels) {
   for (const auto& k : kernels) k->parameters_before.clear();
 }
 
-void ForceJumps::act(WorldState& s, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, double h,
+void ForceJumps::act(WorldState& s, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, double h, double step,
                      Runner& runner) {
   const bool jump = std::ranges::any_of(kernels, [](const auto& k) { return of_moment(*k) && changed(*k); });
   const bool forces = std::ranges::any_of(kernels, [](const auto& k) { return k->writes(Buffer::force); });
   if (!jump || !forces || s.last_substep == 0) return;
   const bool single = s.tables.precision() == Precision::f32;
-  single ? fill<float>(given_, h, s.gravity) : fill<double>(given_, h, s.gravity);
+  single ? fill<float>(given_, s.gravity, h, step) : fill<double>(given_, s.gravity, h, step);
   keep(s, kernels);
   evaluate(s, kernels, bodies, true, old_);
   evaluate(s, kernels, bodies, false, new_);
@@ -89,7 +91,7 @@ void ForceJumps::run(WorldState& s, const OwnKernel& k, std::span<const std::uin
       columns[i] = s.tables.bytes(a.buffer).data() + a.offset + (a.single ? a.row_bytes : 0);
       strides[i] = a.single ? 0 : a.row_bytes;
     } else {  // loops read it alone
-      columns[i] = const_cast<std::byte*>(a.given ? given_ + (a.name == "h" ? 0 : k.real_bytes) : parameters + a.place);
+      columns[i] = const_cast<std::byte*>(a.given ? given_ + place_in_given(k, a) * k.real_bytes : parameters + a.place);
     }
   }
   const bool of_bodies = k.table == Table::body;

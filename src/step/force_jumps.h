@@ -17,9 +17,10 @@ namespace pcphys {
 
 class ForceJumps {
  public:
-  /// Before the kernels of a step: the old force until now, the new one from now on, of the bodies of these rows. `h`: the sub-step.
+  /// Before the kernels of a step: the old force until now, the new one from now on, of the bodies of these rows. `h`: the sub-step, of `step`.
   /// What pairs, joints with their bodies and kernels without a C++ side make is not looked at: it jumps half a sub-step early.
-  void act(WorldState& state, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, double h, Runner& runner);
+  void act(WorldState& state, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, double h, double step,
+           Runner& runner);
   /// The step was made.
   static void forget(OwnKernels::Ordered kernels);
 
@@ -37,7 +38,7 @@ class ForceJumps {
   };
   std::vector<Kept> kept_;  // what kernels write, from jump to jump
   std::vector<std::byte> old_, new_;
-  std::byte given_[4 * sizeof(double)] = {};  // h and gravity, in the world's precision
+  std::byte given_[5 * sizeof(double)] = {};  // in the world's precision
 };
 
 }  // namespace pcphys

@@ -297,7 +297,7 @@ struct Stepper::Inside {
     wanted.free_contacts = schedule.contacts.any_without_trees();
     wanted.tree_contacts = schedule.contacts.any_with_trees();
     if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
-    jumps.act(s, own.ordered(), schedule.moving_bodies(), h, runner);
+    jumps.act(s, own.ordered(), schedule.moving_bodies(), h, dt, runner);
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
     if (const std::uint32_t rows = schedule.trees.nodes().rows();

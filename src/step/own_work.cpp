@@ -121,7 +121,8 @@ OwnWork::Makers OwnWork::makers() const {
 Status OwnWork::check(const WorldState& s) const {
   if (of_another(s))
     return Error{ErrorCode::bad_argument,
-                 "This stepper has kernels of another world (Stepper::add_kernel); step that one, or use another stepper."};
+                 "This stepper has kernels of another world (Stepper::add_kernel); step that one, use another stepper, or "
+                 "take them away (Stepper::remove_kernels)."};
   if (removals_ == s.removals) return {};
   for (const auto& k : ordered())
     if (!of_library(*k))

@@ -111,6 +111,8 @@ Status Stepper::remove_kernel(World& world, std::string_view name) {
   return ok;
 }
 
+void Stepper::remove_kernels() { inside_->own.clear(); }
+
 Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& parameter) {
   OwnKernel* k = inside_->own.find(kernel);
   if (!k)

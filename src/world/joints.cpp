@@ -29,6 +29,7 @@ void write_frames(Tables& t, Buffer buffer, std::uint32_t row, const JointDef& d
   }
   t.set3(buffer, row, 16, {bounded(lower.x), bounded(lower.y), bounded(lower.z)});
   t.set3(buffer, row, 20, {bounded(upper.x), bounded(upper.y), bounded(upper.z)});
+  t.set(buffer, row, 23, f.restitution);
 }
 
 namespace {

@@ -1,6 +1,8 @@
 // Properties by name and by handle: the library's, and those that a host adds.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <string>
 
 #include "world/state.h"
@@ -69,17 +71,70 @@ Error unknown(std::string_view name) {
           "There is no property " + quoted(name) + "; docs/properties.md lists those of the library, World::properties all."};
 }
 
-/// Words of GLSL that a property could be called.
-constexpr std::string_view words_of_glsl[] = {
-    "active",    "and",    "attribute", "bool",      "break",     "buffer",    "case",       "cast",     "class",   "coherent",
-    "common",    "const",  "continue",  "default",   "discard",   "do",        "double",     "else",     "enum",    "extern",
-    "false",     "filter", "fixed",     "flat",      "float",     "for",       "goto",       "half",     "highp",   "if",
-    "in",        "inline", "inout",     "input",     "int",       "invariant", "layout",     "long",     "lowp",    "main",
-    "mat2",      "mat3",   "mat4",      "mediump",   "namespace", "noinline",  "not",        "or",       "out",     "output",
-    "partition", "patch",  "precise",   "precision", "public",    "readonly",  "resource",   "restrict", "return",  "sample",
-    "shared",    "short",  "sizeof",    "smooth",    "static",    "struct",    "subroutine", "superp",   "switch",  "template",
-    "this",      "true",   "typedef",   "uint",      "uniform",   "union",     "unsigned",   "using",    "varying", "vec2",
-    "vec3",      "vec4",   "void",      "volatile",  "while",     "writeonly", "xor"};
+/// Words of C++ and GLSL, and types of kernels, that a property could be called; of GLSL's samplers and images see check_name.
+constexpr std::string_view reserved_words[] = {"Mask",        "Mat3",         "Quad",
+                                               "Quaternion",  "Real",         "Sym3",
+                                               "Vec3",        "active",       "alignas",
+                                               "alignof",     "and",          "and_eq",
+                                               "asm",         "atomic_uint",  "attribute",
+                                               "auto",        "bitand",       "bitor",
+                                               "bool",        "break",        "buffer",
+                                               "bvec2",       "bvec3",        "bvec4",
+                                               "case",        "cast",         "catch",
+                                               "centroid",    "char",         "char16_t",
+                                               "char32_t",    "char8_t",      "class",
+                                               "co_await",    "co_return",    "co_yield",
+                                               "coherent",    "common",       "compl",
+                                               "concept",     "const",        "const_cast",
+                                               "consteval",   "constexpr",    "constinit",
+                                               "continue",    "decltype",     "default",
+                                               "delete",      "discard",      "dmat2",
+                                               "dmat2x2",     "dmat2x3",      "dmat2x4",
+                                               "dmat3",       "dmat3x2",      "dmat3x3",
+                                               "dmat3x4",     "dmat4",        "dmat4x2",
+                                               "dmat4x3",     "dmat4x4",      "do",
+                                               "double",      "dvec2",        "dvec3",
+                                               "dvec4",       "dynamic_cast", "else",
+                                               "enum",        "explicit",     "export",
+                                               "extern",      "external",     "false",
+                                               "filter",      "fixed",        "flat",
+                                               "float",       "for",          "friend",
+                                               "fvec2",       "fvec3",        "fvec4",
+                                               "goto",        "half",         "highp",
+                                               "hvec2",       "hvec3",        "hvec4",
+                                               "if",          "in",           "inline",
+                                               "inout",       "input",        "int",
+                                               "invariant",   "ivec2",        "ivec3",
+                                               "ivec4",       "layout",       "long",
+                                               "lowp",        "main",         "mat2",
+                                               "mat2x2",      "mat2x3",       "mat2x4",
+                                               "mat3",        "mat3x2",       "mat3x3",
+                                               "mat3x4",      "mat4",         "mat4x2",
+                                               "mat4x3",      "mat4x4",       "mediump",
+                                               "mutable",     "namespace",    "new",
+                                               "noexcept",    "noinline",     "noperspective",
+                                               "not",         "not_eq",       "nullptr",
+                                               "operator",    "or",           "or_eq",
+                                               "out",         "output",       "partition",
+                                               "patch",       "precise",      "precision",
+                                               "private",     "protected",    "public",
+                                               "readonly",    "register",     "reinterpret_cast",
+                                               "requires",    "resource",     "restrict",
+                                               "return",      "sample",       "shared",
+                                               "short",       "signed",       "sizeof",
+                                               "smooth",      "static",       "static_assert",
+                                               "static_cast", "struct",       "subroutine",
+                                               "superp",      "switch",       "template",
+                                               "this",        "thread_local", "throw",
+                                               "true",        "try",          "typedef",
+                                               "typeid",      "typename",     "uint",
+                                               "uniform",     "union",        "unsigned",
+                                               "using",       "uvec2",        "uvec3",
+                                               "uvec4",       "varying",      "vec2",
+                                               "vec3",        "vec4",         "virtual",
+                                               "void",        "volatile",     "wchar_t",
+                                               "while",       "writeonly",    "xor",
+                                               "xor_eq"};
 
 /// Names stand in the text of kernels, in C++ and GLSL.
 Status check_name(std::string_view name, const char* what) {
@@ -93,7 +148,11 @@ Status check_name(std::string_view name, const char* what) {
                  "The name of a " + std::string(what) + " is " + quoted(name) +
                      "; it must begin with a letter, hold up to 64 letters, digits and single underscores, "
                      "and not begin with gl_, pc_ or io_."};
-  if (std::ranges::find(words_of_glsl, name) != std::end(words_of_glsl))
+  bool reserved = std::ranges::find(reserved_words, name) != std::end(reserved_words);
+  for (const std::string_view kind : {"sampler", "isampler", "usampler", "image", "iimage", "uimage"})
+    for (const std::string_view of : {"1D", "2D", "3D", "Cube", "Buffer"})
+      reserved |= name.starts_with(kind) && name.substr(kind.size()).starts_with(of);
+  if (reserved)
     return Error{ErrorCode::bad_argument, "A " + std::string(what) + " cannot be called " + quoted(name) +
                                               ": that is a word of C++ or GLSL, in which kernels are written."};
   return {};
@@ -104,10 +163,15 @@ Error taken(std::string_view name, const char* what, std::string_view by) {
           "There is a " + std::string(what) + " " + quoted(name) + " already" + std::string(by) + "; choose another name."};
 }
 
-Status check_numbers(PropertyType type, const double* numbers, std::string_view name) {
+/// Of a property of the host's own: whatever its type can hold.
+Status check_numbers(PropertyType type, const double* numbers, std::string_view name, std::size_t real_bytes) {
   if (type == PropertyType::int32 || type == PropertyType::uint32) return {};
+  const bool single = number_bytes(type, real_bytes) == 4;
+  const double most = single ? std::numeric_limits<float>::max() : std::numeric_limits<double>::max();
   for (std::uint32_t c = 0; c < components(type); c++)
-    if (Status ok = check_finite(numbers[c], ("value of the property " + quoted(name)).c_str()); !ok) return ok;
+    if (!(std::fabs(numbers[c]) <= most))
+      return Error{ErrorCode::not_finite, "The value of the property " + quoted(name) + " is " + number(numbers[c]) +
+                                              "; it must be finite, and no larger than " + number(most) + "."};
   return {};
 }
 
@@ -173,7 +237,7 @@ Result<World::AnyProperty> World::add_property(std::string_view name, PropertyTy
                                                std::string_view unit, TableId table, Role role) {
   WorldState& s = *state_;
   Status ok = check_name(name, "property");
-  if (ok) ok = check_numbers(type, initial, name);
+  if (ok) ok = check_numbers(type, initial, name, s.tables.real_bytes());
   if (!ok) return ok.error();
   Found there;
   if (by_name(s, name, there)) return taken(name, "property", there.info.own ? "" : " among those of the library");
@@ -232,7 +296,7 @@ Status World::write(std::uint32_t property, std::uint32_t generation, RowOf obje
     return Error{ErrorCode::bad_argument,
                  "The property " + quoted(f.info.name) +
                      " is the library's, and others follow from it; use the function of World that sets it."};
-  if (Status ok = check_numbers(f.info.type, numbers, f.info.name); !ok) return ok;
+  if (Status ok = check_numbers(f.info.type, numbers, f.info.name, s.tables.real_bytes()); !ok) return ok;
   const Result<std::uint32_t> row = find_row(s, f, object);
   if (!row) return row.error();
   const std::size_t real = s.tables.real_bytes();
@@ -275,6 +339,7 @@ Status resize_own(WorldState& s, const OwnTable& table, std::uint32_t rows) {
     return Error{ErrorCode::buffer_full, "There is no memory for " + std::to_string(rows) + " rows of the table \"" + table.name +
                                              "\"; it has " + std::to_string(before - 1) + " as before."};
   }
+  if (before == 2 && rows != 1) s.removals++;  // kernels may read or total its one row
   return {};
 }
 }  // namespace

@@ -147,6 +147,9 @@ Status check(AngleFreedom& f) {
         return Error{ErrorCode::bad_joint,
                      "An angle limit of a joint has its lower bound above its upper one, or is not a number."};
   }
+  if (!(f.restitution >= 0 && f.restitution <= 1))
+    return Error{ErrorCode::bad_joint, "The restitution of a joint's limits is " + number(f.restitution) +
+                                           "; it must lie between 0 (it stops there) and 1 (it leaves as fast as it came)."};
   return {};
 }
 
