@@ -116,7 +116,7 @@ inline constexpr double loop_give = 1e-7, loop_roundings = 800, loop_give_most =
 /// two: bodies that can hardly move against each other then have a mass that is finite.
 inline constexpr double cross_share = 0.9;
 /// Effective masses of contacts with joint trees are at most so many times what the bare bodies have.
-inline constexpr double row_mass_most = 1000;
+inline constexpr double row_mass_most = 100;
 /// A contact with a joint tree that holds nothing is left alone in a sub-step while its points would have to be brought together by this and the
 /// speeds of its bodies besides [m/s].
 inline constexpr double idle_speed = 0.5;

@@ -108,7 +108,8 @@ void want_sudden(const WorldState& state, const Forest& forest, double h, std::u
       const Vec3 spin = state.angular_velocity(node.body);
       octave = std::max(octave, octave_for(dot(spin, spin), spin_most * spin_most, highest_octave));
     }
-    if (octave >= sudden_octaves && !was_touched<Scalar>(state.tables, tree) && !meets_others(state, tree))
+    const bool held = !state.responds(tree.front().body);
+    if (octave >= sudden_octaves && (held || !(was_touched<Scalar>(state.tables, tree) || meets_others(state, tree))))
       wanted.push_back({tree.back().body, octave, false});
   }
 }

@@ -22,7 +22,7 @@ inline constexpr unsigned sudden_octaves = 2;
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted);
 
-/// After a step: adds what trees that nothing touches need for the spins that it ended with, where that is `sudden_octaves` or more.
+/// After a step: adds what trees that nothing touches, or that hang on what does not answer, need for the spins that it ended with, where that is `sudden_octaves` or more.
 void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                            std::vector<Wanted>& wanted);
 
