@@ -10,9 +10,31 @@ namespace {
 
 constexpr double weight = 70;  // [kg]
 
-/// The human of the library, scaled to 70 kg; it stands along y.
+/// A hand or a foot, beyond a limb's end: a capsule along `along`.
+BoneDef end_bone(int limb, Vec3 joint, Vec3 centre, Vec3 along) {
+  BoneDef bone;
+  bone.parent = limb;
+  bone.shape = ShapeDef::capsule(0.035, 0.05);
+  const Vec3 y{0, 1, 0}, axis = cross(y, along);
+  bone.pose = {centre, length(axis) > 0 ? axis_angle(axis, 0.5 * std::numbers::pi) : Quat{}};
+  bone.joint = joint;
+  const Vec3 x{1, 0, 0}, turn = cross(x, along);
+  bone.joint_axes = length(turn) > 0    ? axis_angle(turn, 0.5 * std::numbers::pi)
+                    : dot(x, along) < 0 ? axis_angle(y, std::numbers::pi)
+                                        : Quat{};
+  bone.freedom = AngleFreedom::cone_and_twist(0.8, 0.3);
+  return bone;
+}
+
+/// The human of the library with hands and feet, 16 bones, scaled to 70 kg; it stands along y.
 RagdollDef human() {
   RagdollDef def = RagdollDef::human();
+  constexpr int forearm = 6, shin = 10;  // the left ones; the right ones follow
+  for (int side : {0, 1}) {
+    const double sign = side == 0 ? 1 : -1;
+    def.bones.push_back(end_bone(forearm + side, {sign * 0.84, 1.48, 0}, {sign * 0.925, 1.48, 0}, {sign, 0, 0}));
+    def.bones.push_back(end_bone(shin + side, {sign * 0.11, 0, 0.02}, {sign * 0.11, -0.035, 0.085}, {0, 0, 1}));
+  }
   double mass = 0;
   for (const BoneDef& bone : def.bones) mass += mass_properties(bone.shape, def.density)->mass;
   def.density *= weight / mass;
