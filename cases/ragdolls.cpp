@@ -163,7 +163,7 @@ void add_ragdolls(std::vector<Case>& cases) {
   const std::vector<double> steps{1.0 / 60, 1.0 / 240};
   const std::vector<std::uint32_t> fewer{1, 2};  // sub-steps
   cases.push_back({"B10",
-                   "a ragdoll of 12 bones and 70 kg is pulled by a hand, dragged and spun",
+                   "a ragdoll of 16 bones and 70 kg is pulled by a hand, dragged and spun",
                    {{.name = "1e3 N",
                      .run = [](Trial& t) { pull(t, 1e3, 0.02, 5); },
                      .steps = steps,
