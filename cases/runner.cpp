@@ -20,6 +20,15 @@ std::vector<const Case*> selected(const Selection& selection) {
   return result;
 }
 
+std::vector<const Variant*> variants_of(const Selection& selection, const Case& c) {
+  std::vector<const Variant*> result;
+  for (const Variant& variant : c.variants) {
+    if (variant.name == selection.variant) return {&variant};
+    if (variant.name.starts_with(selection.variant)) result.push_back(&variant);
+  }
+  return result;
+}
+
 bool same(double a, double b) { return std::fabs(a / b - 1) < 1e-9; }
 
 /// A value of a variant, and whether what it is run with has bounds.
@@ -45,7 +54,7 @@ std::vector<Rung<double>> step_lengths(const Selection& selection, const Variant
 /// The trials of one variant with one engine.
 std::vector<Setting> settings(const Selection& selection, const Variant& variant, const Engine& engine) {
   std::vector<Setting> result;
-  if (!variant.name.starts_with(selection.variant) || ((variant.direct || variant.own) && !engine.peer().empty())) return result;
+  if ((variant.direct || variant.own) && !engine.peer().empty()) return result;
   const std::vector<std::uint32_t> more = selection.coarse ? variant.more_substeps : std::vector<std::uint32_t>();
   const auto substeps = rungs<std::uint32_t>(variant.substeps, more);
   for (Precision precision : {Precision::f64, Precision::f32}) {
@@ -198,16 +207,16 @@ Status check(const Selection& selection) {
       return Error{ErrorCode::unknown_name, "There is no case '" + name + "' here; choose of " + known + "."};
   }
   for (const Case* c : selected(selection))
-    for (const Variant& variant : c->variants)
-      if (variant.name.starts_with(selection.variant)) return {};
-  return Error{ErrorCode::unknown_name, "No variant of these cases starts with '" + selection.variant + "'; --list names them."};
+    if (!variants_of(selection, *c).empty()) return {};
+  return Error{ErrorCode::unknown_name,
+               "No variant of these cases is named '" + selection.variant + "' or starts so; --list names them."};
 }
 
 std::size_t count_trials(const Selection& selection, std::span<Engine* const> engines) {
   std::size_t count = 0;
   for (const Case* c : selected(selection))
-    for (const Variant& variant : c->variants)
-      for (const Engine* engine : engines) count += settings(selection, variant, *engine).size();
+    for (const Variant* variant : variants_of(selection, *c))
+      for (const Engine* engine : engines) count += settings(selection, *variant, *engine).size();
   return count;
 }
 
@@ -217,15 +226,15 @@ std::vector<Row> run(const Selection& selection, std::span<Engine* const> engine
   std::vector<Row> all;
   std::size_t done = 0;
   for (const Case* c : selected(selection))
-    for (const Variant& variant : c->variants) {
+    for (const Variant* variant : variants_of(selection, *c)) {
       std::vector<Row> rows;
       for (Engine* engine : engines)
-        for (const Setting& setting : settings(selection, variant, *engine)) {
-          const std::vector<Row> found = run_trial(selection, *c, variant, setting, *engine, gl.get());
+        for (const Setting& setting : settings(selection, *variant, *engine)) {
+          const std::vector<Row> found = run_trial(selection, *c, *variant, setting, *engine, gl.get());
           rows.insert(rows.end(), found.begin(), found.end());
           if (progress) progress(++done);
         }
-      add_orders(variant, rows);
+      add_orders(*variant, rows);
       if (tell) tell(rows);
       all.insert(all.end(), rows.begin(), rows.end());
     }

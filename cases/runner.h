@@ -33,7 +33,7 @@ struct Row {
 struct Selection {
   std::vector<std::string> names;  // empty: all of the group
   std::string groups = "A";
-  std::string variant;  // only those whose names start with this
+  std::string variant;  // only the one of this name; where none has it, those whose names start with it
   bool single = true, twice = true;
   std::optional<double> dt;
   bool slow = false;    // what takes long too
@@ -44,7 +44,7 @@ struct Selection {
   int repeats = 1;      // above 1, times are medians of so many runs in which nothing is read
 };
 
-/// Errors: unknown_name for a case that is not in the groups, and where no variant starts as asked.
+/// Errors: unknown_name for a case that is not in the groups, and where no variant is named, or starts, as asked.
 Status check(const Selection& selection);
 
 /// How many trials it takes, `engines` engines each.

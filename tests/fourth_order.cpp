@@ -98,11 +98,7 @@ TEST_CASE("order 4: equal hashes in lanes, threads, on GL and in all mixes") {
       settings.order = 4;
       World world = chains_world(precision);
       Stepper stepper(settings);
-      std::vector<std::uint64_t> all;
-      for (int i = 0; i < steps; i++) {
-        run(world, stepper, 1);
-        all.push_back(world.hash());
-      }
+      const std::vector<std::uint64_t> all = hash_each_step(world, stepper, steps);
       CHECK(stepper.step(world, frame).fourth_order > 20);
       return all;
     };

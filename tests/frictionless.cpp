@@ -69,12 +69,7 @@ TEST_CASE("frictionless rows: equal bits on every backend, and a buffer a quarte
         [&](const StepSettings& settings, int steps) {
           World world = heap(precision, false, 0.6);
           Stepper stepper(settings);
-          std::vector<std::uint64_t> hashes;
-          for (int i = 0; i < steps; i++) {
-            run(world, stepper, 1);
-            hashes.push_back(world.hash());
-          }
-          return hashes;
+          return hash_each_step(world, stepper, steps);
         },
         90, 60);
 }
@@ -159,12 +154,7 @@ TEST_CASE("bodies that do not rotate: equal bits on every backend") {
           [&](const StepSettings& settings, int steps) {
             World world = still_bodies(precision, on_floor, false, false);
             Stepper stepper(settings);
-            std::vector<std::uint64_t> hashes;
-            for (int i = 0; i < steps; i++) {
-              run(world, stepper, 1);
-              hashes.push_back(world.hash());
-            }
-            return hashes;
+            return hash_each_step(world, stepper, steps);
           },
           60, 30);
 }

@@ -65,8 +65,9 @@ constexpr Call drag_calls[] = {{Kernel::begin_drag, 0},    {Kernel::integrate_dr
 constexpr Call seed_calls[] = {
     {Kernel::begin_seed, 0}, {Kernel::integrate_seed, 0}, {Kernel::advance_seed, 0}, {Kernel::synchronise_seed, 1}};
 
-constexpr Call flight_calls[] = {{Kernel::fly, 0}, {Kernel::fly_round, 0}, {Kernel::fly_drag, 0}, {Kernel::fly_round_drag, 0},
-                                 {Kernel::fly_still, 0}, {Kernel::fly_still_drag, 0}, {Kernel::advance_still, 0}};
+constexpr Call flight_calls[] = {
+    {Kernel::fly, 0},       {Kernel::fly_round, 0},      {Kernel::fly_drag, 0},     {Kernel::fly_round_drag, 0},
+    {Kernel::fly_still, 0}, {Kernel::fly_still_drag, 0}, {Kernel::advance_still, 0}};
 
 constexpr Call frictionless_calls[] = {{Kernel::inertia, 0},
                                        {Kernel::contact_prepare_frictionless, 0},
@@ -106,7 +107,8 @@ std::vector<Call> calls(int sub_steps) {
 
 /// What runs one after the other: of second order, and from the start of fourth where trees turn by no more than it is for.
 std::vector<std::vector<Call>> sequences(const Mood& mood) {
-  std::vector<std::vector<Call>> all{calls(3), {std::begin(flight_calls), std::end(flight_calls)},
+  std::vector<std::vector<Call>> all{calls(3),
+                                     {std::begin(flight_calls), std::end(flight_calls)},
                                      {std::begin(frictionless_calls), std::end(frictionless_calls)}};
   if (mood.tree_spin < 50) all.emplace_back(std::begin(smooth_calls), std::end(smooth_calls));
   return all;

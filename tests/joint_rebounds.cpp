@@ -98,12 +98,7 @@ TEST_CASE("ragdolls whose joints throw back: the same bits in lanes, threads, on
           StepSettings with = settings;
           with.restitution_threshold = 0.5;
           Stepper stepper(with);
-          std::vector<std::uint64_t> hashes;
-          for (int i = 0; i < steps; i++) {
-            run(world, stepper, 1);
-            hashes.push_back(world.hash());
-          }
-          return hashes;
+          return hash_each_step(world, stepper, steps);
         },
         40, 4);
 }

@@ -107,19 +107,8 @@ TEST_CASE("mixed: the same bits in all lanes, in threads, on GL and in all mixes
         Stepper first(lanes(1));
         run(m.world, first, c.before);
         Stepper stepper(settings);
-        std::vector<std::uint64_t> all;
-        for (int i = 0; i < steps; i++) {
-          run(m.world, stepper, 1);
-          all.push_back(m.world.hash());
-        }
-        return all;
+        return hash_each_step(m.world, stepper, steps);
       };
-      require_gl();
-      const auto wanted = hashes(lanes(1), 30);
-      CHECK(hashes(lanes(4), 30) == wanted);
-      CHECK(hashes(lanes(0), 30) == wanted);
-      StepSettings there;
-      there.set_all(Place::gl);
-      CHECK(hashes(there, 30) == wanted);
+      check_same_bits(hashes, 30, 30);
     }
 }

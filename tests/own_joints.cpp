@@ -173,11 +173,7 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
           World world = linked_chains(precision);
           Stepper stepper(settings);
           add_all(stepper, world);
-          std::vector<std::uint64_t> hashes;
-          for (int i = 0; i < steps; i++) {
-            run(world, stepper, 1);
-            hashes.push_back(world.hash());
-          }
+          const std::vector<std::uint64_t> hashes = hash_each_step(world, stepper, steps);
           CHECK(stepper.step(world, frame).refined > 0);  // octaves are part of it
           return hashes;
         },

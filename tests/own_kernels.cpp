@@ -181,12 +181,7 @@ TEST_CASE("forces once a step and in each sub-step: the same bits everywhere, in
     Stepper stepper(settings);
     for (const bool once : makers) add(stepper, s.world, once);
     if (removed) must(stepper.remove_kernel(s.world, *removed ? "tether" : "thruster"));
-    std::vector<std::uint64_t> hashes;
-    for (int i = 0; i < steps; i++) {
-      run(s.world, stepper, 1);
-      hashes.push_back(s.world.hash());
-    }
-    return hashes;
+    return hash_each_step(s.world, stepper, steps);
   };
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     check_same_bits(

@@ -114,12 +114,7 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
           World world = crowd(150, precision);
           Stepper stepper(settings);
           add_kernels(stepper, world, 0.7);
-          std::vector<std::uint64_t> hashes;
-          for (int i = 0; i < steps; i++) {
-            run(world, stepper, 1);
-            hashes.push_back(world.hash());
-          }
-          return hashes;
+          return hash_each_step(world, stepper, steps);
         },
         6, 3);
 }

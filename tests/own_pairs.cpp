@@ -112,12 +112,7 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
             World world = cloud(count, precision);
             Stepper stepper(settings);
             add_attraction(stepper, world);
-            std::vector<std::uint64_t> hashes;
-            for (int i = 0; i < steps; i++) {
-              run(world, stepper, 1);
-              hashes.push_back(world.hash());
-            }
-            return hashes;
+            return hash_each_step(world, stepper, steps);
           },
           4, 2);
 }

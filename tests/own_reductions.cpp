@@ -82,11 +82,7 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
           must(stepper.add_kernel(s.world, {.text = totals::text()}));
           must(stepper.add_kernel(
               s.world, {.text = brake::text(), .stage = Stage::impulses, .once_a_step = true, .parameters = {{"limit", 200.0}}}));
-          std::vector<std::uint64_t> hashes;
-          for (int i = 0; i < steps; i++) {
-            run(s.world, stepper, 1);
-            hashes.push_back(s.world.hash());
-          }
+          const std::vector<std::uint64_t> hashes = hash_each_step(s.world, stepper, steps);
           CHECK(double(total<Real>(s.world, "kinetic")) > 0);
           return hashes;
         },

@@ -45,10 +45,7 @@ struct Middle {
     Stepper stepper(lanes(1));
     run(s.world, stepper, c.before);
     snapshot = s.world.snapshot();
-    for (int i = 0; i < steps; i++) {
-      run(s.world, stepper, 1);
-      hashes.push_back(s.world.hash());
-    }
+    hashes = hash_each_step(s.world, stepper, steps);
     CHECK((s.world.contact_count() > 0 || s.world.joint_count() > 0));  // something to solve
     must(s.world.restore(snapshot));
   }

@@ -227,7 +227,8 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
       CHECK((runs(plan, kernel) > 0) == (s.bodies && s.free_contacts && !s.frictionless()));
       CHECK((runs(plan, kernel + "_frictionless") > 0) == (s.bodies && s.frictionless()));
     }
-    CHECK(runs(plan, s.frictionless() ? "contact_refresh_frictionless" : "contact_refresh") == (s.bodies && s.free_contacts && s.gyroscopic ? 2 * int(s.substeps) : 0));
+    CHECK(runs(plan, s.frictionless() ? "contact_refresh_frictionless" : "contact_refresh") ==
+          (s.bodies && s.free_contacts && s.gyroscopic ? 2 * int(s.substeps) : 0));
     for (const char* kernel : {"tree_contact_warm", "tree_contact_prepare"})
       CHECK(runs(plan, kernel) == (s.bodies && s.tree_contacts ? int(s.substeps) : 0));
     CHECK(runs(plan, "tree_contact_solve") == (s.bodies && s.tree_contacts ? 2 * int(s.substeps) : 0));

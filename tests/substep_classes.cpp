@@ -132,12 +132,7 @@ TEST_CASE("octaves: equal hashes in lanes, threads, on GL and in all mixes") {
     const auto hashes_of = [&](const StepSettings& settings, int steps) {
       Yard yard(precision);
       Stepper stepper(settings);
-      std::vector<std::uint64_t> all;
-      for (int i = 0; i < steps; i++) {
-        run(yard.world, stepper, 1);
-        all.push_back(yard.world.hash());
-      }
-      return all;
+      return hash_each_step(yard.world, stepper, steps);
     };
     check_same_bits(hashes_of, 60, 8);
   }

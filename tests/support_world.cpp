@@ -72,6 +72,15 @@ void run(World& world, Stepper& stepper, int steps, double dt) {
   }
 }
 
+std::vector<std::uint64_t> hash_each_step(World& world, Stepper& stepper, int steps, double dt) {
+  std::vector<std::uint64_t> hashes;
+  for (int i = 0; i < steps; i++) {
+    run(world, stepper, 1, dt);
+    hashes.push_back(world.hash());
+  }
+  return hashes;
+}
+
 int runs(const StepPlan& plan, std::string_view kernel) {
   return int(std::ranges::count_if(
       plan.entries, [&](const PlanEntry& e) { return e.kind == PlanEntry::Kind::kernel && kernel_name(e) == kernel; }));

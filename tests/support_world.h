@@ -42,6 +42,8 @@ void check_same_bits(const HashesOf& hashes_of, int steps, int steps_on_gl);
 
 /// Takes the steps; a refused one fails the test with its sentence.
 void run(World& world, Stepper& stepper, int steps, double dt = frame);
+/// Takes the steps as above; the world's hash after each.
+std::vector<std::uint64_t> hash_each_step(World& world, Stepper& stepper, int steps, double dt = frame);
 /// How often a plan has this kernel.
 int runs(const StepPlan& plan, std::string_view kernel);
 /// One step; its error where it was refused.

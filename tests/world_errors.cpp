@@ -51,10 +51,9 @@ struct BadBody {
 }  // namespace
 
 TEST_CASE("names of error codes") {
-  const char* names[] = {"none",          "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion",
-                         "bad_time_step", "stale_id",    "bad_joint",    "bad_argument",     "unknown_name",
-                         "name_taken",    "wrong_type",  "unavailable",  "buffer_full",      "device_error",
-                         "bad_file",      "bad_snapshot"};
+  const char* names[] = {"none",        "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion", "bad_time_step",
+                         "stale_id",    "bad_joint",   "bad_argument", "unknown_name",     "name_taken",          "wrong_type",
+                         "unavailable", "buffer_full", "device_error", "bad_file",         "bad_snapshot"};
   for (int i = 0; i < int(std::size(names)); i++) CHECK(std::string(name(ErrorCode(i))) == names[i]);
   CHECK(int(ErrorCode::bad_snapshot) + 1 == int(std::size(names)));
 }

@@ -1,33 +1,11 @@
 // Bodies of a world: creating and destroying them, and what a host reads and writes of them.
 #include <cmath>
 
-#include "pcphys/constants.h"
 #include "world/state.h"
 #include "world/validate.h"
 
 namespace pcphys {
 namespace {
-
-/// Mass and moments of a dynamic body: as given, or from its one shape.
-Result<MassProperties> mass_of(const BodyDef& def) {
-  if (def.moments) {
-    if (!def.mass) return Error{ErrorCode::bad_mass, "Moments of inertia are given without a mass; give both, or neither."};
-    return MassProperties{*def.mass, *def.moments};
-  }
-  if (def.shapes.empty()) return Error{ErrorCode::bad_mass, "A dynamic body without shapes needs a mass and moments of inertia."};
-  if (def.shapes.size() > 1 || def.shapes[0].local != Pose{})
-    return Error{ErrorCode::bad_mass,
-                 "A body's frame is its principal frame; pass a body of several or displaced shapes through make_compound first, "
-                 "or give mass and moments."};
-  Result<MassProperties> m = mass_properties(def.shapes[0], def.density);
-  if (!m || !def.mass) return m;
-  const double scale = *def.mass / m->mass;
-  return MassProperties{*def.mass, scale * m->moments};
-}
-
-Error no_rotation() {
-  return {ErrorCode::bad_argument, "The body does not rotate (BodyDef::rotates), so it has no angular velocity; create one that does."};
-}
 
 void write_material(Tables& t, std::uint32_t row, const Material& m) {
   t.set(Buffer::material, row, 0, m.static_friction);
@@ -60,35 +38,6 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
 }
 
 }  // namespace
-
-Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
-  orientation = def.pose.orientation;
-  Status ok;
-  if (def.kind > BodyKind::dynamic)
-    ok = Error{ErrorCode::bad_argument, "A body is of no known kind; use BodyKind::fixed, kinematic or dynamic."};
-  if (ok) ok = check_finite(def.pose.position, "position of a body");
-  if (ok) ok = check_unit(orientation, "orientation of a body");
-  if (ok) ok = check_finite(def.velocity, "velocity of a body");
-  if (ok) ok = check_finite(def.angular_velocity, "angular velocity of a body");
-  if (ok) ok = check(def.material);
-  if (ok) ok = check_finite(def.linear_drag, "linear drag of a body");
-  if (ok) ok = check_finite(def.angular_drag, "angular drag of a body");
-  if (ok && (def.linear_drag < 0 || def.angular_drag < 0))
-    ok = Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
-  for (const ShapeDef& shape : def.shapes) {
-    if (ok) ok = check(shape);
-    if (ok && shape.kind == ShapeKind::plane && def.kind != BodyKind::fixed)
-      ok = Error{ErrorCode::degenerate_shape, "A plane is infinite; use it on fixed bodies only."};
-  }
-  if (!ok) return ok.error();
-  if (def.kind != BodyKind::dynamic) return MassProperties{};
-  Result<MassProperties> mass = mass_of(def);
-  if (mass) ok = check(*mass, def.rotates);
-  if (ok && !def.rotates && def.angular_velocity != Vec3{}) ok = no_rotation();
-  if (!ok) return ok.error();
-  if (mass && !def.rotates) mass->moments = {};
-  return mass;
-}
 
 World::World(const WorldDef& def) : state_(std::make_unique<WorldState>(def)) {}
 World::~World() = default;
