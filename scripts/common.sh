@@ -15,7 +15,7 @@ trap give_back EXIT
 
 jobs=${PCPHYS_JOBS:-$(nproc 2>/dev/null || echo 2)}
 
-# build <preset>: configure once, then build.
+# build <preset> [target]: configure once, then build all or that.
 build() {
   local preset=$1
   if command -v ninja >/dev/null && [ -z "${CMAKE_GENERATOR:-}" ] && [ ! -f "build/$preset/CMakeCache.txt" ]; then
@@ -29,5 +29,5 @@ build() {
   say "Configuring (preset $preset)"
   cmake --preset "$preset"
   say "Building with $jobs jobs"
-  cmake --build "build/$preset" --parallel "$jobs"
+  cmake --build "build/$preset" --parallel "$jobs" ${2:+--target "$2"}
 }
