@@ -109,6 +109,10 @@ TEST_CASE("C3: a needle that tumbles and falls from many heights never gains ene
     }
 }
 
+TEST_CASE("B10: a ragdoll pulled by a hand with 15 times its weight holds its joints, and its limits within 5 degrees") {
+  for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "1e4 N"));
+}
+
 TEST_CASE("B10: a ragdoll dragged through a gap stays finite") {
   for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "dragged"), metric("not finite"));
 }

@@ -218,3 +218,31 @@ TEST_CASE("octaves: a step that makes a free tree spin far faster than it was ma
       CHECK(std::isfinite(world.kinetic_energy()));
     }
 }
+
+TEST_CASE("octaves: a ragdoll that is pulled gets them by how far its body would go in a sub-step, limits or not, and no other") {
+  // a forearm of 1.7 kg and 0.18 m (twice its radius of gyration): a tenth of that in 1/240 s with 1,800 N
+  const auto asked = [](bool limits, double force, bool called, Precision precision) {
+    World world({precision, {}});
+    RagdollDef chain = RagdollDef::human();
+    if (!limits)
+      for (BoneDef& bone : chain.bones) bone.freedom = {};
+    const Ragdoll pulled = must(world.create_ragdoll(chain, {{0, 5, 0}, {}})), other = must(world.create_ragdoll(chain, {}));
+    const BodyId arm = pulled.bones[6];
+    if (called)
+      (void)must(world.add_force(arm, [=](const World&, BodyId) { return Wrench{{force, 0, 0}, {}}; }));
+    else
+      (void)must(world.add_force(arm, {{0.5 * force, 0, 0}, {}})), (void)must(world.add_force(arm, {{0.5 * force, 0, 0}, {}}));
+    Stepper stepper;
+    const StepReport& report = stepper.step(world, frame);
+    REQUIRE(report);
+    CHECK(report.refined == (report.substeps > 4 ? pulled.bones.size() : 0));
+    return report.substeps;
+  };
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    for (const bool called : {false, true}) {
+      CHECK(asked(true, 1500, called, precision) == 4);
+      CHECK(asked(true, 1e4, called, precision) > asked(true, 3e3, called, precision));
+      CHECK(asked(true, 1e6, called, precision) == 64);
+      CHECK(asked(false, 3e3, called, precision) == 4);
+    }
+}

@@ -81,6 +81,9 @@ inline constexpr double largest_joint_turn = 0.5;
 /// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in a tree that nothing
 /// touches.
 inline constexpr double largest_spin_change = 0.006;
+/// And so does one in a tree with limits that the host pulls by more than this share of its size in a sub-step, or turns by so much [rad];
+/// sub-steps are to bring that down to the second.
+inline constexpr double largest_pull = 0.1, pull_aim = 0.03;
 inline constexpr std::uint32_t large_island = 256;
 /// Rounds after which a device that finds islands is stopped; a chain of a million bodies takes 23.
 inline constexpr std::uint32_t most_island_rounds = 1000;

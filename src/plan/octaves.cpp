@@ -38,6 +38,7 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   loads_.want(state, settings, dt, beyond, wanted_);
   if (faces) columns_.want(state, trees, h, beyond, islands_, wanted_);
   want_for_spins(state, forest, h, beyond, wanted_);
+  pulls_.want(state, forest, h, beyond, wanted_);
   for (Wanted& w : wanted_) {
     w.more = w.octave > highest;
     w.octave = std::min(w.octave, highest);

@@ -10,6 +10,7 @@
 #include "plan/islands.h"
 #include "plan/loads.h"
 #include "plan/loops.h"
+#include "plan/pulls.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -64,6 +65,7 @@ class Octaves {
   Loads loads_;
   Loops loops_;
   Columns columns_;
+  Pulls pulls_;
   Islands islands_;
   std::vector<Wanted> wanted_;
   std::vector<std::uint32_t> sudden_;  // rows of bodies that a try of this step made spin far faster than it was made for
