@@ -113,6 +113,6 @@ TEST_CASE("B10: a ragdoll pulled by a hand with 15 times its weight holds its jo
   for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "1e4 N"));
 }
 
-TEST_CASE("B10: a ragdoll dragged through a gap stays finite") {
-  for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "dragged"), metric("not finite"));
+TEST_CASE("B10: a ragdoll dragged through a gap stays finite, closes within a second of its end and gains no energy then") {
+  for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "dragged"));
 }

@@ -85,6 +85,9 @@ inline constexpr double largest_spin_change = 0.006;
 /// sub-steps are to bring that down to the second.
 inline constexpr double largest_pull = 0.1, pull_aim = 0.03;
 inline constexpr std::uint32_t large_island = 256;
+/// A joint tree on what does not answer is torn where a joint is open by more than that share of its body's size, and apart where no turning
+/// closes it, by that share. A torn one that turns by more than this in a sub-step [rad] whirls: its steps are made again with all sub-steps.
+inline constexpr double torn = 0.1, tear_apart = 0.5, whirling = 0.1;
 /// Rounds after which a device that finds islands is stopped; a chain of a million bodies takes 23.
 inline constexpr std::uint32_t most_island_rounds = 1000;
 /// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half the sub-step)^2 is

@@ -7,6 +7,7 @@
 #include "plan/infos.h"
 #include "plan/island_class.h"
 #include "plan/spins.h"
+#include "plan/tears.h"
 
 namespace pcphys {
 
@@ -94,17 +95,19 @@ void Octaves::count_limited() {
   for (const std::uint32_t root : limits_) limited_ += islands_.size(root);
 }
 
-bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
+bool Octaves::find_tighter(const WorldState& state, const Forest& forest, const Tears& tears) {
   bool tighter = loops_.find_tighter(state, islands_);
   if (highest_ < sudden_octaves) return tighter;
   wanted_.clear();
   want_for_sudden_spins(state, forest, h_, highest_, wanted_);
-  for (const Wanted& w : wanted_) {
-    const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
-    if (w.octave < made + sudden_octaves) continue;
+  const std::size_t spins = wanted_.size();
+  tears.want(state, h_, highest_, wanted_);
+  for (std::size_t i = 0; i < wanted_.size(); i++) {
+    const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[wanted_[i].body]);
+    if (wanted_[i].octave < made + (i < spins ? sudden_octaves : 1)) continue;
     islands_.build(state);
-    if (islands_.size(islands_.root(w.body)) > constants::large_island) continue;
-    sudden_.push_back(w.body);
+    if (islands_.size(islands_.root(wanted_[i].body)) > constants::large_island) continue;
+    sudden_.push_back(wanted_[i].body);
     tighter = true;
   }
   return tighter;

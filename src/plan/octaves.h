@@ -16,6 +16,7 @@
 namespace pcphys {
 
 class Forest;
+class Tears;
 class TreeNodes;
 
 /// Of a step, whatever asks for them.
@@ -45,7 +46,7 @@ class Octaves {
     sudden_.clear();
   }
   /// After a try: whether the step is to be made again, with more sub-steps.
-  bool find_tighter(const WorldState& state, const Forest& forest);
+  bool find_tighter(const WorldState& state, const Forest& forest, const Tears& tears);
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
@@ -68,8 +69,9 @@ class Octaves {
   Pulls pulls_;
   Islands islands_;
   std::vector<Wanted> wanted_;
-  std::vector<std::uint32_t> sudden_;  // rows of bodies that a try of this step made spin far faster than it was made for
-  double h_ = 0;                       // of octave 0 in the last `choose`, as is
+  std::vector<std::uint32_t>
+      sudden_;    // rows of bodies that a try of this step made spin far faster than it was made for, or tore
+  double h_ = 0;  // of octave 0 in the last `choose`, as is
   std::uint8_t highest_ = 0;
   std::vector<std::uint8_t> of_bodies_, before_;
   std::vector<std::uint32_t> limits_;  // roots of islands that would have got more

@@ -18,6 +18,7 @@
 #include "plan/plan.h"
 #include "plan/sleepers.h"
 #include "plan/step_infos.h"
+#include "plan/tears.h"
 #include "step/called_forces.h"
 #include "step/check_settings.h"
 #include "step/force_jumps.h"
@@ -43,6 +44,7 @@ struct Stepper::Inside {
   Detector detector;
   Schedule schedule;
   Octaves octaves;
+  Tears tears;
   FourthOrder fourth;
   Runner runner;
   StepReport report;
@@ -208,6 +210,7 @@ struct Stepper::Inside {
     runner.keep(s, Buffer::joint_impulse);
     schedule.trees.solved().write(s);
     write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+    tears.update_structure(s, schedule.trees.forest());
     octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
     fourth.forget();
   }
@@ -265,6 +268,9 @@ struct Stepper::Inside {
       if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
       lap(Timer::broad);
       called.add(s, runner);
+      const auto apart = tears.apart(s);
+      detector.let_through(apart);
+      report.let_through = std::uint32_t(apart.size());
       if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
       lap(Timer::narrow);
       if (detector.touched().empty()) return {};
@@ -272,6 +278,16 @@ struct Stepper::Inside {
       report.woke += sleepers.wake_touched(s, detector.touched());
       detector.put_back(s);
     }
+  }
+
+  /// `h`: the shortest sub-step [s]. Of how many bodies.
+  std::uint32_t slow_torn(WorldState& s, double h) {
+    const std::uint32_t bodies = tears.find_unresolved(s, h);
+    if (bodies == 0) return 0;
+    runner.keep(s, Buffer::motion);
+    runner.keep(s, Buffer::velocity_parts);
+    tears.slow(s);
+    return bodies;
   }
 
   /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
@@ -289,6 +305,7 @@ struct Stepper::Inside {
                        own.kernels().pairs_of_bodies(), settings, dt) ||
         other)
       schedule.group(octaves.of_bodies());
+    report.slowed = octaves.limited() > 0 ? slow_torn(s, substep_length(dt, settings.substeps << highest_octave(settings))) : 0;
     PlanSignature wanted = signature(settings, s, schedule);
     wanted.octaves = octaves.used();
     wanted.second_order = fourth.reasons();
@@ -323,7 +340,7 @@ struct Stepper::Inside {
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
                            "(StepSettings::islands). The world is as it was."});
-    tighter = tries + 1 < most_tries && octaves.find_tighter(s, schedule.trees.forest());
+    tighter = tries + 1 < most_tries && octaves.find_tighter(s, schedule.trees.forest(), tears);
     tries += tighter;
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
