@@ -94,8 +94,7 @@ void plain_tower(Trial& trial, int count) {
 
 // ---- B9 ------------------------------------------------------------------------------------------------
 
-/// In the manner of Box2D's and Box3D's samples, with usual numbers, not theirs: five storeys of cards that lean by 25 degrees, with level
-/// ones across.
+/// Box2D's and Box3D's (samples, class CardHouse; E. Catto, MIT): five storeys of cards that lean by 25 degrees, with level ones across.
 void card_house(Trial& trial, double margin) {
   const double thin = 0.001, half = 0.2, deep = 0.1, lean = 25 * pi / 180;
   Simulated& run = trial.start(
@@ -188,6 +187,37 @@ void jenga(Trial& trial) {
   trial.report("down [m]", m.down, 0.005);
 }
 
+/// Box3D's (samples, class JengaStack; E. Catto, MIT): 30 layers of two beams each, laid crosswise; 1 cm of air between two layers, and the
+/// lowest is half sunk into the floor.
+void beams(Trial& trial) {
+  const double thick = 0.1, half = 1;
+  const int layers = 30;
+  Simulated& run = trial.start([=](scenes::Builder& builder) {
+    (void)builder.world().set_gravity(down);
+    builder.set_material(0.6, 0);
+    add_floor(builder);
+    for (int layer = 0; layer < layers; ++layer)
+      for (const double side : {1.0, -1.0}) {
+        const bool turned = layer % 2 == 0;
+        const double out = side * (half - 2 * thick);
+        const Vec3 centre{turned ? out : 0, turned ? 0 : out, (2.1 * layer + 0.5) * thick};
+        add_block(builder, {half, thick, thick}, 1000 * 8 * half * thick * thick,
+                  {centre, turned ? axis_angle({0, 0, 1}, 0.5 * pi) : Quat{}});
+      }
+  });
+  std::vector<Vec3> start;
+  for (int i = 0; i < 2 * layers; ++i) start.push_back(run.pose(i + 1).position);
+  run.step(trial.dt(), trial.steps(20));
+  Worst across, height;
+  for (int i = 0; i < 2 * layers; ++i) {
+    const Vec3 at = run.pose(i + 1).position, from = start[std::size_t(i)];
+    across.add(std::hypot(at.x - from.x, at.y - from.y));
+    height.add(std::fabs(at.z - (2 * (i / 2) + 1) * thick));
+  }
+  trial.report("across [m]", across, 0.05);
+  trial.report("off its height [m]", height, 0.05);
+}
+
 /// A row of dominoes, of which the first is pushed: all must fall.
 void dominoes(Trial& trial) {
   const int count = 20;
@@ -258,7 +288,7 @@ void add_stacks(std::vector<Case>& cases) {
 
   cases.push_back(
       {"B9",
-       "card house, arch, jenga, dominoes",
+       "card house, arch, jenga, beams, dominoes",
        {{.name = "cards",
          .run = [](Trial& t) { card_house(t, StepSettings{}.contact_margin); },
          .steps = fine,
@@ -282,6 +312,13 @@ void add_stacks(std::vector<Case>& cases) {
          .lost_at = 0.5},
         {.name = "jenga",
          .run = jenga,
+         .steps = fine,
+         .substeps = {4},
+         .more_steps = longer,
+         .more_substeps = fewer,
+         .lost_at = 0.5},
+        {.name = "30 layers of beams",
+         .run = beams,
          .steps = fine,
          .substeps = {4},
          .more_steps = longer,

@@ -71,6 +71,9 @@ inline constexpr double uneven_masses = 16, heavy_overlap = 0.015, load_overlap 
 /// What stands high on small bodies may need more, too (plan/columns.h): where the weight above the lowest would press them in by more than
 /// the first share of their size (twice the radius of gyration), sub-steps are to bring that down to the second.
 inline constexpr double column_overlap = 0.02, column_aim = 0.005;
+/// And what is slender: where twice what a column as high as the island would shrink by, as a share of the island's width, times its height over
+/// its width, is more than this. Towers lean by themselves from there on.
+inline constexpr double column_lean = 0.02;
 /// Islands of few bodies get more where a column of them as high as the island would shrink by more than the first share of their size;
 /// sub-steps are to bring that down to the second.
 inline constexpr double column_sag = 0.002, sag_aim = 4e-4;

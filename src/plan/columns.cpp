@@ -10,6 +10,16 @@
 
 namespace pcphys {
 
+namespace {
+/// How far its mass extends along a direction: twice the radius of gyration for bodies of equal moments, and by the second moment of mass
+/// along the direction, tr(I) / 2 - u I u, for others. A beam that lies is as high as it is thick.
+double size_along(const WorldState& state, std::uint32_t row, Vec3 up) {
+  const Vec3 u = rotate(conjugate(state.orientation(row)), up), m = state.tables.get3(Buffer::mass, row, 0);
+  const double second = 0.5 * (m.x + m.y + m.z) - (m.x * u.x * u.x + m.y * u.y * u.y + m.z * u.z * u.z);
+  return 2 * std::sqrt(2 * std::max(second, 0.0) * state.tables.get(Buffer::motion, row, 3));
+}
+}  // namespace
+
 void Columns::list(const WorldState& state, const TreeNodes& trees, Islands& islands) {
   islands.build(state);
   listed_ = true;
@@ -26,11 +36,10 @@ void Columns::list(const WorldState& state, const TreeNodes& trees, Islands& isl
       columns_.push_back({root});
     }
     const Vec3 moments = state.tables.get3(Buffer::mass, row, 0);
-    const double size = 2 * std::sqrt(std::max({moments.x, moments.y, moments.z}) * state.tables.get(Buffer::motion, row, 3));
-    Column& column = columns_[column_of_[root]];
-    column.bodies++;
-    column.sizes += size;
-    bodies_.push_back({row, column_of_[root]});
+    const bool even = moments.x == moments.y && moments.y == moments.z;
+    const double size = even ? 2 * std::sqrt(moments.x * state.tables.get(Buffer::motion, row, 3)) : 0;
+    columns_[column_of_[root]].bodies++;
+    bodies_.push_back({row, column_of_[root], size});
   }
 }
 
@@ -40,13 +49,23 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
   if (g == 0 || highest_octave == 0) return;
   if (!listed_) list(state, trees, islands);
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  for (Column& column : columns_) column.low = infinite, column.high = -infinite;
+  for (Column& column : columns_) {
+    std::ranges::fill(column.low, infinite);
+    std::ranges::fill(column.high, -infinite);
+    column.sizes = 0;
+  }
   const Vec3 up = (-1 / g) * state.gravity;
+  const Vec3 beside = std::fabs(up.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 across = (1 / length(cross(up, beside))) * cross(up, beside), axes[] = {up, across, cross(up, across)};
   for (const Body& body : bodies_) {
-    const double height = dot(up, state.tables.get3(Buffer::pose, body.row, 0));
+    const Vec3 at = state.tables.get3(Buffer::pose, body.row, 0);
     Column& column = columns_[body.column];
-    column.low = std::min(column.low, height);
-    column.high = std::max(column.high, height);
+    column.sizes += body.size > 0 ? body.size : size_along(state, body.row, up);
+    for (int k = 0; k < 3; k++) {
+      const double x = dot(axes[k], at);
+      column.low[k] = std::min(column.low[k], x);
+      column.high[k] = std::max(column.high[k], x);
+    }
   }
   // how far the weight of one body presses in one as heavy [m]
   const double give = g / (frequency * frequency);
@@ -55,8 +74,11 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
     if (const std::uint8_t octave = octave_for(share, aim, highest_octave); octave > 0) wanted.push_back({root, octave, true});
   };
   for (const Column& column : columns_) {
-    const double size = column.sizes / column.bodies, high = std::min((column.high - column.low) / size, double(column.bodies));
+    const double size = column.sizes / column.bodies, height = column.extent(0),
+                 high = std::min(height / size, double(column.bodies));
+    const double wide = std::max(column.extent(1), column.extent(2)) + size;
     want(column.root, give * high / size, constants::column_overlap, constants::column_aim);
+    want(column.root, give * high * high * height / (wide * wide), constants::column_lean, constants::column_lean);
     if (column.bodies <= constants::small_island)
       want(column.root, 0.5 * give * high * high / size, constants::column_sag, constants::sag_aim);
   }

@@ -1,6 +1,6 @@
 // Sub-steps for what stands high on bodies that are small for the sub-step. A contact gives by the load over its lighter body's mass, times
-// the square of the sub-step (docs/impulses.md): where that is no longer small beside the bodies, piles sink, lean and fall. How many
-// bodies of its own kind a body may carry is taken from how high its island is, so that it is known before the load is there.
+// the square of the sub-step (docs/impulses.md): where that is no longer small beside the bodies, piles sink, lean and fall, slender ones
+// sooner. How many bodies of its own kind a body may carry is taken from how high its island is, so that it is known before the load is there.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -24,12 +24,14 @@ class Columns {
  private:
   struct Body {
     std::uint32_t row, column;
+    double size;  // in any direction [m]; 0: it depends on how the body lies
   };
   struct Column {
     std::uint32_t root;  // of its island
     std::uint32_t bodies = 0;
-    double sizes = 0;          // sum over its bodies of twice the largest radius of gyration [m]
-    double low = 0, high = 0;  // along gravity, upward [m]
+    double sizes = 0;            // sum over its bodies of their size along gravity [m]
+    double low[3]{}, high[3]{};  // along three axes, the first of which leads up [m]
+    double extent(int axis) const { return high[axis] - low[axis]; }
   };
   void list(const WorldState& state, const TreeNodes& trees, Islands& islands);
 
