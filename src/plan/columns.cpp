@@ -37,7 +37,7 @@ void Columns::list(const WorldState& state, const TreeNodes& trees, Islands& isl
     }
     const Vec3 moments = state.tables.get3(Buffer::mass, row, 0);
     const bool even = moments.x == moments.y && moments.y == moments.z;
-    const double size = even ? 2 * std::sqrt(moments.x * state.tables.get(Buffer::motion, row, 3)) : 0;
+    const double size = even ? state.size(row) : 0;
     columns_[column_of_[root]].bodies++;
     bodies_.push_back({row, column_of_[root], size});
   }

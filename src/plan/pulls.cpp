@@ -1,7 +1,6 @@
 #include "plan/pulls.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pcphys/constants.h"
 #include "plan/forest.h"
@@ -12,11 +11,9 @@ namespace {
 
 /// How far a sub-step of `h` would take the body: in sizes of it (twice its radius of gyration), or radians, whichever is more.
 double pull(const WorldState& state, std::uint32_t row, double h) {
-  const double inverse_mass = state.tables.get(Buffer::motion, row, 3);
-  const Vec3 moments = state.tables.get3(Buffer::mass, row, 0);
-  const double size = 2 * std::sqrt(std::max({moments.x, moments.y, moments.z}) * inverse_mass);
+  const double size = state.size(row);
   if (!(size > 0)) return 0;  // it does not rotate: no joint holds it by an angle
-  const double way = length(state.given_force(row)) * inverse_mass / size;
+  const double way = length(state.given_force(row)) * state.tables.get(Buffer::motion, row, 3) / size;
   return h * h * std::max(way, length(state.spin_of(row, state.given_torque(row))));
 }
 

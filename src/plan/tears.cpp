@@ -1,7 +1,6 @@
 #include "plan/tears.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pcphys/constants.h"
 #include "plan/forest.h"
@@ -17,11 +16,8 @@ void Tears::update_structure(const WorldState& state, const Forest& forest) {
     if (tree.front().flipped || state.responds(tree.front().body)) continue;
     for (const TreeNode& node : tree.subspan(1)) {
       const JointDef& joint = state.joints[node.joint].def;
-      const Vec3 moments = state.tables.get3(Buffer::mass, node.body, 0);
-      const double size =
-          2 * std::sqrt(std::max({moments.x, moments.y, moments.z}) * state.tables.get(Buffer::motion, node.body, 3));
-      links_.push_back(
-          {node.body, tree[node.parent].body, node.joint, length(joint.frame_a.position) + length(joint.frame_b.position), size});
+      links_.push_back({node.body, tree[node.parent].body, node.joint,
+                        length(joint.frame_a.position) + length(joint.frame_b.position), state.size(node.body)});
     }
     first_.push_back(links_.size());
   }

@@ -68,6 +68,11 @@ Vec3 WorldState::momentum_of_rotation(std::uint32_t row) const {
 
 Vec3 WorldState::angular_velocity(std::uint32_t row) const { return spin_of(row, momentum_of_rotation(row)); }
 
+double WorldState::size(std::uint32_t row) const {
+  const Vec3 moments = tables.get3(Buffer::mass, row, 0);
+  return 2 * std::sqrt(std::max({moments.x, moments.y, moments.z}) * tables.get(Buffer::motion, row, 3));
+}
+
 Vec3 WorldState::spin_of(std::uint32_t row, Vec3 angular_momentum) const {
   const Quat q = orientation(row);
   const Vec3 pi = rotate(conjugate(q), angular_momentum), i = tables.get3(Buffer::mass, row, 4);

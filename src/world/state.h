@@ -185,6 +185,8 @@ struct WorldState {
   Pose pose(std::uint32_t row) const;
   void set_position(std::uint32_t row, Vec3 position);
   Quat orientation(std::uint32_t row) const;
+  /// Twice its largest radius of gyration [m]; 0 of a body that does not rotate, or that no impulse moves.
+  double size(std::uint32_t row) const;
   void set_orientation(std::uint32_t row, Quat q);
   Vec3 velocity(std::uint32_t row) const;
   Vec3 momentum_of_rotation(std::uint32_t row) const;
