@@ -246,19 +246,11 @@ struct Stepper::Inside {
     freeze(s);
   }
 
-  static bool some_awake(const WorldState& s) {
-    if (s.stirred > 0) return true;
-    for (std::uint32_t row = 1; row < s.bodies.size(); row++)
-      if (s.goes(row)) return true;
-    return false;
-  }
-
   /// Pairs and contacts. What sleeps and is stirred or touched wakes, and then has its contacts found, too.
   Status detect(WorldState& s, double dt, Detector::Found& found) {
     Status ok;
     report.woke = 0;
-    const bool all =
-        s.sleepers > 0 && (Unrest::of_parameters(own.ordered()) || (unrest.together(own.ordered()) && some_awake(s)));
+    const bool all = unrest.wakes_all(s, own.ordered());
     if (all || (s.sleepers > 0 && (scheduled_serial != s.serial || scheduled_rest != s.rest_version))) {
       runner.keep(s, Buffer::rest);
       report.woke = all ? sleepers.wake_all(s) : sleepers.wake_stirred(s);
@@ -299,7 +291,7 @@ struct Stepper::Inside {
     Status ok = detect(s, dt, found);
     if (!ok) return ok;
     regrouped = found.changed || other || contacts_version != s.contacts_version;
-    if (found.changed || other || contacts_version != s.contacts_version) update_contacts(s);
+    if (regrouped) update_contacts(s);
     choose_order(fourth, s, schedule.trees, dt);
     if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
                        own.kernels().pairs_of_bodies(), settings, dt) ||

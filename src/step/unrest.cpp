@@ -27,8 +27,19 @@ bool made_anew(OwnKernels::Ordered kernels, Buffer buffer) {
     return std::ranges::any_of(k->arguments, [&](const OwnArgument& a) { return a.buffer == buffer && a.anew(); });
   });
 }
+bool some_awake(const WorldState& s) {
+  if (s.stirred > 0) return true;
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++)
+    if (s.goes(row)) return true;
+  return false;
+}
 
 }  // namespace
+
+bool Unrest::wakes_all(const WorldState& s, OwnKernels::Ordered kernels) {
+  if (s.sleepers == 0) return false;
+  return of_parameters(kernels) || (together(kernels) && some_awake(s));
+}
 
 bool Unrest::of_parameters(OwnKernels::Ordered kernels) {
   return std::ranges::any_of(

@@ -12,8 +12,8 @@ namespace pcphys {
 
 class Unrest {
  public:
-  /// Whether the host has given a kernel another parameter since the last step: nobody is at rest.
-  static bool of_parameters(OwnKernels::Ordered kernels);
+  /// Before a step: whether all that sleep are to wake.
+  bool wakes_all(const WorldState& state, OwnKernels::Ordered kernels);
   /// Whether a kernel of pairs moves bodies: they sleep together or not at all.
   bool together(OwnKernels::Ordered kernels);
   /// After a step: of whom it changed a property of the host's own that goes on from what it was and that forces or velocities follow
@@ -26,6 +26,8 @@ class Unrest {
   void stir_sleepers(WorldState& state) const;
 
  private:
+  /// Whether the host has given a kernel another parameter since the last step: nobody is at rest.
+  static bool of_parameters(OwnKernels::Ordered kernels);
   void find_behind(OwnKernels::Ordered kernels);
   bool moves(const OwnKernel& kernel) const;
   void mark(const WorldState& state, const OwnArgument& argument, const Runner& runner);

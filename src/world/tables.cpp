@@ -1,6 +1,7 @@
 #include "world/tables.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <utility>
 
@@ -141,10 +142,24 @@ void Tables::touch_all() {
   for (Column& column : columns_) column.version++;
 }
 
+namespace {
+/// The n reals of a row from `offset` on.
+template <std::size_t n>
+std::array<double, n> read(const Tables& tables, Buffer buffer, std::uint32_t row, std::uint32_t offset) {
+  const std::byte* from =
+      tables.bytes(buffer).data() + row * tables.row_bytes(buffer) + std::size_t(offset) * tables.real_bytes();
+  std::array<double, n> values;
+  if (tables.precision() == Precision::f32)
+    std::copy_n(reinterpret_cast<const float*>(from), n, values.begin());
+  else
+    std::copy_n(reinterpret_cast<const double*>(from), n, values.begin());
+  return values;
+}
+}  // namespace
+
 double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
   assert(row < rows(columns_[index(buffer)].table));
-  const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
-  return precision_ == Precision::f32 ? double(data<float>(buffer)[i]) : data<double>(buffer)[i];
+  return read<1>(*this, buffer, row, offset)[0];
 }
 void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
   assert(row < rows(columns_[index(buffer)].table));
@@ -156,7 +171,9 @@ void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double 
   touch(buffer);
 }
 Vec3 Tables::get3(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
-  return {get(buffer, row, offset), get(buffer, row, offset + 1), get(buffer, row, offset + 2)};
+  assert(row < rows(columns_[index(buffer)].table));
+  const auto [x, y, z] = read<3>(*this, buffer, row, offset);
+  return {x, y, z};
 }
 void Tables::set3(Buffer buffer, std::uint32_t row, std::uint32_t offset, Vec3 v) {
   set(buffer, row, offset, v.x);
@@ -164,7 +181,9 @@ void Tables::set3(Buffer buffer, std::uint32_t row, std::uint32_t offset, Vec3 v
   set(buffer, row, offset + 2, v.z);
 }
 Quat Tables::get4(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
-  return {get(buffer, row, offset), get(buffer, row, offset + 1), get(buffer, row, offset + 2), get(buffer, row, offset + 3)};
+  assert(row < rows(columns_[index(buffer)].table));
+  const auto [x, y, z, w] = read<4>(*this, buffer, row, offset);
+  return {x, y, z, w};
 }
 void Tables::set4(Buffer buffer, std::uint32_t row, std::uint32_t offset, Quat q) {
   set3(buffer, row, offset, {q.x, q.y, q.z});
