@@ -183,7 +183,7 @@ void add_bounces(std::vector<Case>& cases) {
     ball.variants.push_back(
         {.name = "e = " + text(r.e), .run = [r](Trial& t) { bouncing(t, r); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1});
   }
-  for (double e : {0.0, 0.5, 0.9}) {
+  for (double e : {0.0, 0.25, 0.5, 0.75, 0.9}) {
     ball.variants.push_back(
         {.name = "rest, e = " + text(e), .run = [e](Trial& t) { comes_to_rest(t, e); }, .coarse = true, .substeps = {1, 4}});
   }

@@ -55,12 +55,15 @@ void thin_dropped(Trial& trial, const Thin& thin) {
     builder.add(def);
   });
   const double start = energy(run);
+  double least = start;
   Worst gain;
   for (long k = 0; k < trial.steps(5); ++k) {
     run.step(trial.dt());
-    gain.add(energy(run) / start - 1);
+    const double now = energy(run);
+    least = std::min(least, now);
+    gain.add((now - least) / start);
   }
-  trial.report("energy gained, relative", gain, 1e-2);
+  trial.report("energy above its least before / that of the start", gain, 1e-2);
   trial.report("energy left at 5 s, relative", energy(run) / start);
   trial.report("not finite", nonfinite(run), 0.0);
 }
@@ -239,7 +242,7 @@ void any_step_tower(Trial& trial) {
     run.step(trial.dt(), std::min(look, steps - k));
     gain.add(energy(run) / start - 1);
   }
-  trial.report("across [m]", moved(run).across, trial.dt() < 1.0 / 50 ? std::optional(0.05) : std::nullopt);
+  trial.report("across [m]", moved(run).across, 0.05);
   trial.report("down [m]", moved(run).down);
   trial.report("energy above the start, relative", gain, 1e-2);
   trial.report("not finite", nonfinite(run), 0.0);
@@ -260,7 +263,7 @@ void any_step_ragdoll(Trial& trial) {
     gap.add(joint_gap(run));
     gain.add(energy(run) / start - 1);
   }
-  trial.report("joint gap [m]", gap, trial.dt() < 1.0 / 50 ? std::optional(0.01) : std::nullopt);
+  trial.report("joint gap [m]", gap, 0.01);
   trial.report("energy above the start, relative", gain, 1e-2);
   trial.report("not finite", nonfinite(run), 0.0);
 }
@@ -307,7 +310,7 @@ void add_extreme_motion(std::vector<Case>& cases) {
   cases.push_back({"C7",
                    "steps from 1e-5 to 0.1 s",
                    {{.name = "pendulum", .run = any_step_pendulum, .steps = all, .substeps = {1}},
-                    {.name = "tower of 10", .run = any_step_tower, .steps = all, .substeps = {4}, .slow = {1e-5}},
+                    {.name = "tower of 10", .run = any_step_tower, .steps = all, .substeps = {4}},
                     {.name = "ragdoll", .run = any_step_ragdoll, .steps = all, .substeps = {4}}}});
 }
 

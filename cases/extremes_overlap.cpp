@@ -8,6 +8,28 @@ namespace {
 
 // ---- C8 ------------------------------------------------------------------------------------------------
 
+/// Speeds are those of places, since what undoes an overlap is no motion and shows in no velocity. Two that part keep to the limit;
+/// what lies between others is pushed by all of them.
+class Places {
+ public:
+  explicit Places(const Simulated& run) : before_(places(run)) {}
+  /// How fast each body went in the last step [m/s].
+  std::vector<Vec3> speeds(const Simulated& run, double dt) {
+    std::vector<Vec3> now = places(run), way(now.size());
+    for (std::size_t i = 0; i < now.size(); ++i) way[i] = (1 / dt) * (now[i] - before_[i]);
+    before_ = std::move(now);
+    return way;
+  }
+
+ private:
+  static std::vector<Vec3> places(const Simulated& run) {
+    std::vector<Vec3> all;
+    for (int i = 0; i < run.bodies(); ++i) all.push_back(run.pose(i).position);
+    return all;
+  }
+  std::vector<Vec3> before_;
+};
+
 void two_boxes(Trial& trial, double overlap) {
   Simulated& run = trial.start([=](scenes::Builder& builder) {
     add_block(builder, {0.5, 0.5, 0.5}, 1, {});
@@ -16,32 +38,42 @@ void two_boxes(Trial& trial, double overlap) {
   const double push = StepSettings{}.push_speed;
   Worst speed;
   bool apart = false;
+  Places places(run);
   for (long k = 0; k < trial.steps(2); ++k) {
     run.step(trial.dt());
-    speed.add(length(run.velocity(1) - run.velocity(0)));
+    const std::vector<Vec3> way = places.speeds(run, trial.dt());
+    speed.add(length(way[1] - way[0]));
     const Vec3 d = run.pose(1).position - run.pose(0).position;
     apart = std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)}) > 1 - 0.005;
   }
   trial.report("speed apart [m/s]", speed, 1.01 * push);
   trial.report("overlap after 2 s", apart ? 0 : 1, 0.0);
-  trial.report("energy at the end [J]", kinetic_energy(run), 0.5 * push * push);
+  trial.report("energy at the end [J]", kinetic_energy(run), 0.25 * push * push);  // half of a kg at the limit
 }
 
 void pyramid(Trial& trial) {
   const int base = 4;
+  const double overlap = 0.25;
   Simulated& run = trial.start([=](scenes::Builder& builder) {
     (void)builder.world().set_gravity(down);
     builder.set_material(0.6, 0);
     add_floor(builder);
-    add_pyramid(builder, {.base = base, .overlap = 0.25});
+    add_pyramid(builder, {.base = base, .overlap = overlap});
   });
+  const double push = StepSettings{}.push_speed;
+  // each that lies on another is lifted by what the two overlap, and by what those below are
+  double lifted = 0;
+  for (int row = 0; row < base; ++row) lifted += (base - row) * (row + 0.5) * overlap;
   Worst speed;
+  Places places(run);
   for (long k = 0; k < trial.steps(2); ++k) {
     run.step(trial.dt());
-    for (int i = 1; i < run.bodies(); ++i) speed.add(run.velocity(i).z);
+    const std::vector<Vec3> way = places.speeds(run, trial.dt());
+    for (std::size_t i = 1; i < way.size(); ++i) speed.add(way[i].z);
   }
-  trial.report("speed upwards [m/s]", speed, base * StepSettings{}.push_speed);
+  trial.report("speed upwards [m/s]", speed, base * push);
   trial.report("overlap after 2 s [m]", deepest_contact(run.problem().world), 0.01);
+  trial.report("kinetic energy at the end [J]", kinetic_energy(run), 2 * gravity * lifted + 0.5 * push * push);
   trial.report("not finite", nonfinite(run), 0.0);
 }
 
@@ -53,13 +85,16 @@ void ten_spheres(Trial& trial) {
       add_ball(builder, 0.5, 1, {x, y, z});
     }
   });
+  const double push = StepSettings{}.push_speed;
   Worst speed;
+  Places places(run);
   for (long k = 0; k < trial.steps(2); ++k) {
     run.step(trial.dt());
-    for (int i = 0; i < 10; ++i) speed.add(length(run.velocity(i)));
+    for (const Vec3& way : places.speeds(run, trial.dt())) speed.add(length(way));
   }
-  trial.report("speed [m/s]", speed, 10 * StepSettings{}.push_speed);
+  trial.report("speed [m/s]", speed, 10 * push);
   trial.report("overlap after 2 s [m]", deepest_contact(run.problem().world), 0.01);
+  trial.report("kinetic energy at the end [J]", kinetic_energy(run), 10 * 0.5 * push * push);  // of each at the limit
   trial.report("not finite", nonfinite(run), 0.0);
 }
 

@@ -92,6 +92,13 @@ void size_of_drop(Trial& trial, ShapeKind kind, double size, double restitution)
   trial.report("speed at rest / sqrt(size) [m/s]", length(other.velocity(1)) / time, restitution > 0 ? 1e-2 : 1e-3);
 }
 
+/// At rest, with steps as long as they are whatever its size.
+void rests_at_any_size(Trial& trial, ShapeKind kind, double size) {
+  Simulated& run = drop(trial, kind, size, 0);
+  run.step(trial.dt(), trial.steps(6 * std::max(1.0, std::sqrt(size))));
+  trial.report("penetration at rest / size", deepest_contact(run.problem().world) / size, 1e-3);
+}
+
 void tiny_pyramid(Trial& trial) {
   const double edge = 0.05;
   Simulated& run = trial.start([=](scenes::Builder& builder) {
@@ -104,6 +111,7 @@ void tiny_pyramid(Trial& trial) {
   const Moved m = moved(run);
   trial.report("across / edge", m.across / edge, 0.1);
   trial.report("down / edge", m.down / edge, 0.1);
+  trial.report("deepest contact / edge", deepest_contact(run.problem().world) / edge);
 }
 
 // ---- C4 ------------------------------------------------------------------------------------------------
@@ -225,6 +233,13 @@ void add_scales(std::vector<Case>& cases) {
                                  .run = [kind = kind, s, e](Trial& t) { size_of_drop(t, kind, s, e); },
                                  .steps = fine,
                                  .substeps = {4}});
+  for (const auto& [kind, name] :
+       {std::pair{ShapeKind::sphere, "sphere"}, {ShapeKind::box, "box"}, {ShapeKind::capsule, "capsule"}})
+    for (double s : {1e-3, 1e-2, 1.0, 100.0, 1e3})
+      size.variants.push_back({.name = name + text(" of %g m, steps as they are", s),
+                               .run = [kind = kind, s](Trial& t) { rests_at_any_size(t, kind, s); },
+                               .steps = {1.0 / 60, 1.0 / 240},
+                               .substeps = {4}});
   size.variants.push_back({.name = "pyramid of 5 cm boxes", .run = tiny_pyramid, .steps = {1.0 / 60}, .substeps = {4}});
 
   Case& far = cases.emplace_back(Case{"C4", "far from the origin", {}});

@@ -119,14 +119,15 @@ void add_free_motion(std::vector<Case>& cases) {
     drag.variants.push_back(
         {.name = name, .run = [f = f](Trial& t) { fall_by_seed(t, f); }, .steps = with_long_step(), .own = true});
   cases.push_back({"A2", "projectile", {{.name = "thrown", .run = projectile, .steps = with_long_step(), .coarse = true}}});
-  cases.push_back({"A5",
-                   "constant torque spins a box up",
-                   {{.name = "10 s", .run = [](Trial& t) { spin_up(t, 10); }, .coarse = true, .floor = last_place(250), .lost_at = 1},
-                    {.name = "off at 5 s",
-                     .run = [](Trial& t) { spin_up(t, 5); },
-                     .coarse = true,
-                     .floor = last_place(187.5),
-                     .lost_at = 1}}});
+  cases.push_back(
+      {"A5",
+       "constant torque spins a box up",
+       {{.name = "10 s", .run = [](Trial& t) { spin_up(t, 10); }, .coarse = true, .floor = last_place(250), .lost_at = 1},
+        {.name = "off at 5 s",
+         .run = [](Trial& t) { spin_up(t, 5); },
+         .coarse = true,
+         .floor = last_place(187.5),
+         .lost_at = 1}}});
 }
 
 }  // namespace pcphys::cases

@@ -115,6 +115,12 @@ double lean(const Simulated& run) {
   return std::atan2(p.x, -p.z);
 }
 
+/// Energy that the pendulum gained: rounding, which in single precision is judged at the two longer steps.
+std::optional<double> never_gains(const Trial& trial) {
+  const double rounding = trial.either(1e-12, 1e-5);
+  return trial.at({rounding, rounding, rounding, rounding});
+}
+
 /// Which stops it without a rebound.
 void stop_at_limit(Trial& trial) {
   constexpr double t_hit = 0.5828961625247803, w_hit = 5.042178964653778, limit = -pi / 6;
@@ -140,7 +146,7 @@ void stop_at_limit(Trial& trial) {
   trial.report("beyond the limit from 3 steps later [rad]", later, 1e-4);
   trial.report("swings back to 30 deg, relative", std::fabs(amplitude / (pi / 6) - 1),
                trial.at({infinite, infinite, 1e-2, 1e-2}, 3));
-  trial.report("energy gained / (2 m g l)", gained, trial.at({1.36e-3, 8.4e-5, 3.4e-6, 4.8e-8}));
+  trial.report("energy gained / (2 m g l)", gained, never_gains(trial));
 }
 
 /// Which throws it back, up to `height` [rad].
@@ -166,7 +172,7 @@ void thrown_back(Trial& trial, double restitution, double height) {
   trial.report("instant of the rebound [s]", std::fabs(hit - t_hit), 1.001 * trial.dt());
   trial.report("beyond the limit [rad]", beyond, w_hit * trial.dt());
   trial.report("swings back, relative", std::fabs(back / height - 1), trial.at({infinite, infinite, 1e-2, 1e-2}, 3));
-  trial.report("energy gained / (2 m g l)", gained, trial.at({1.36e-3, 8.4e-5, 3.4e-6, 4.8e-8}));
+  trial.report("energy gained / (2 m g l)", gained, never_gains(trial));
 }
 
 // ---- A20 -----------------------------------------------------------------------------------------------

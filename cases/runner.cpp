@@ -66,7 +66,7 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
         const bool slow = std::any_of(variant.slow.begin(), variant.slow.end(), [&](double s) { return same(s, dt.value); });
         if ((slow && !selection.slow) || (selection.dt && !same(*selection.dt, dt.value))) continue;
         // what is slow with one sub-step is slower with more
-        if (n.value > 1 && same(dt.value, ladder.back()) && !selection.slow) continue;
+        if (n.value > 1 && substeps.size() > 1 && same(dt.value, ladder.back()) && !selection.slow) continue;
         if (n.value > 1 && !engine.has_substeps() && substeps.size() > 1) continue;
         result.push_back({precision, dt.value, n.value, dt.bounded && n.bounded, variant.order});
       }
@@ -246,13 +246,17 @@ std::optional<double> order_of_convergence(std::span<const double> steps, std::s
   std::vector<std::pair<double, double>> points;
   for (std::size_t i = 0; i < steps.size(); ++i) points.emplace_back(steps[i], errors[i]);
   std::sort(points.begin(), points.end(), std::greater<>());
-  std::vector<std::pair<double, double>> kept;  // logarithms, from the longest step on while the error falls
+  std::vector<std::pair<double, double>> kept;  // logarithms, from the longest step on
   for (const auto& [dt, error] : points) {
     if (!(error > floor) || !std::isfinite(error)) break;
-    const double x = std::log(dt), y = std::log(error);
-    if (!kept.empty() && kept.back().second - y < 0.3 * (kept.back().first - x)) break;
-    kept.emplace_back(x, y);
+    kept.emplace_back(std::log(dt), std::log(error));
   }
+  const auto level = [&] {  // at the end: what is left there is rounding
+    const auto [x, y] = kept.back();
+    const auto [longer, before] = kept[kept.size() - 2];
+    return before - y < 0.3 * (longer - x);
+  };
+  while (kept.size() > 1 && level()) kept.pop_back();
   if (kept.size() < 2) return {};
   const std::size_t first = kept.size() > 3 ? kept.size() - 3 : 0;
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;

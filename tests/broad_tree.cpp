@@ -255,6 +255,23 @@ TEST_CASE("tree: depth is logarithmic where codes cannot tell objects apart") {
   }
 }
 
+TEST_CASE("tree: depth stays below 2 log2 n + 8 on lines, planes and in one x, in any order") {
+  const std::size_t count = 100000;
+  Random random(14);
+  Boxes line, plane, same_x;
+  for (std::size_t i = 0; i < count; ++i) {
+    line.push_back(cube(0.03f * float(i), 0, 0, 0.01f));
+    plane.push_back(cube(random(0, 10), random(0, 10), 0, 0.01f));
+    same_x.push_back(cube(1e3f, random(0, 2), random(0, 2), 0.01f));
+  }
+  Boxes reversed(line.rbegin(), line.rend());
+  for (const Boxes* boxes : {&line, &reversed, &plane, &same_x}) {
+    KdTree tree;
+    tree.build(*boxes, everyone(count));
+    CHECK(checked_depth(tree, count) <= std::uint32_t(2 * std::log2(double(count)) + 8));
+  }
+}
+
 TEST_CASE("tree: the deepest codes stay within the bound") {
   // Distances that halve: every level splits one object off, on each of the three axes.
   Boxes boxes;

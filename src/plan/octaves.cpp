@@ -45,7 +45,7 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
     w.octave = std::min(w.octave, highest);
   }
   loops_.want(state, h, highest, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
-  for (const std::uint32_t row : sudden_) wanted_.push_back({row, highest, false});
+  wanted_.insert(wanted_.end(), sudden_.begin(), sudden_.end());
   h_ = h, highest_ = highest;
   before_.swap(of_bodies_);
   of_bodies_.clear();
@@ -98,18 +98,25 @@ void Octaves::count_limited() {
 bool Octaves::find_tighter(const WorldState& state, const Forest& forest, const Tears& tears) {
   bool tighter = loops_.find_tighter(state, islands_);
   if (highest_ < sudden_octaves) return tighter;
+  // those that want so many octaves more than the step was made in get them, or all there are
+  const auto again = [&](unsigned more, bool all) {
+    for (const Wanted& w : wanted_) {
+      const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
+      if (w.octave < made + more) continue;
+      islands_.build(state);
+      if (islands_.size(islands_.root(w.body)) > constants::large_island) continue;
+      sudden_.push_back({w.body, all ? highest_ : w.octave, false});
+      tighter = true;
+    }
+    wanted_.clear();
+  };
   wanted_.clear();
   want_for_sudden_spins(state, forest, h_, highest_, wanted_);
-  const std::size_t spins = wanted_.size();
+  again(sudden_octaves, true);
+  want_for_cracks(state, forest, h_, highest_, wanted_);
+  again(sudden_octaves, false);
   tears.want(state, h_, highest_, wanted_);
-  for (std::size_t i = 0; i < wanted_.size(); i++) {
-    const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[wanted_[i].body]);
-    if (wanted_[i].octave < made + (i < spins ? sudden_octaves : 1)) continue;
-    islands_.build(state);
-    if (islands_.size(islands_.root(wanted_[i].body)) > constants::large_island) continue;
-    sudden_.push_back(wanted_[i].body);
-    tighter = true;
-  }
+  again(1, true);
   return tighter;
 }
 

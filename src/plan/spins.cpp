@@ -43,27 +43,42 @@ bool at_limit(const WorldState& state, std::span<const TreeNode> tree) {
   });
 }
 
+/// How much the last sub-step changed the spin of one of its bodies, at most [rad/s]; 0 where that is below `least`.
+template <class Scalar>
+double largest_change(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree, double least) {
+  double change = 0;
+  for (const TreeNode& node : tree)
+    if (bounds.change(node.body) > least * least && state.responds(node.body))
+      change = std::max(change, 2 * length(state.spin_of(node.body, state.tables.get3(Buffer::velocity_parts, node.body, 4))));
+  return change;
+}
+
+/// What a tree that nothing touches needs for its whips, where they ask for `least` octaves.
+template <class Scalar>
+std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree, double h,
+                             unsigned least, std::uint8_t highest) {
+  if (was_touched<Scalar>(state.tables, tree)) return 0;
+  const double most = constants::largest_spin_change / h;
+  const double change = largest_change(state, bounds, tree, most * (1 << 2 * (least - 1)));
+  const std::uint8_t octave = octave_for(change, most, highest);
+  return octave >= least && !meets_others(state, tree) && !at_limit(state, tree) ? octave : 0;
+}
+
 template <class Scalar>
 void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
   const SpinBounds<Scalar> bounds(state.tables);
-  const double spin_most = constants::largest_joint_turn / h, change_most = constants::largest_spin_change / h;
+  const double spin_most = constants::largest_joint_turn / h;
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.front().flipped) continue;  // turns on a pivot
-    double whip = 0;
-    const bool touched = was_touched<Scalar>(state.tables, tree);
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;
-      const bool spins = bounds.spin(row) > spin_most * spin_most;
-      const bool whips = !touched && bounds.change(row) > change_most * change_most;
-      if (!(spins || whips) || !state.responds(row)) continue;
-      if (whips) whip = std::max(whip, 2 * length(state.spin_of(row, state.tables.get3(Buffer::velocity_parts, row, 4))));
+      if (!(bounds.spin(row) > spin_most * spin_most) || !state.responds(row)) continue;
       const Vec3 spin = state.angular_velocity(row);
       if (const std::uint8_t octave = octave_for(dot(spin, spin), spin_most * spin_most, highest_octave); octave > 0)
         wanted.push_back({row, octave, false});
     }
-    if (const std::uint8_t octave = octave_for(whip, change_most, highest_octave);
-        octave > 0 && !meets_others(state, tree) && !at_limit(state, tree))
+    if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, 1, highest_octave); octave > 0)
       wanted.push_back({tree.back().body, octave, false});
   }
 }
@@ -88,7 +103,26 @@ void want_sudden(const WorldState& state, const Forest& forest, double h, std::u
   }
 }
 
+template <class Scalar>
+void want_cracks(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+                 std::vector<Wanted>& wanted) {
+  const SpinBounds<Scalar> bounds(state.tables);
+  for (std::size_t i = 0; i < forest.trees(); i++) {
+    const std::span<const TreeNode> tree = forest.tree(i);
+    if (tree.front().flipped) continue;
+    if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, sudden_octaves, highest_octave); octave > 0)
+      wanted.push_back({tree.back().body, octave, false});
+  }
+}
+
 }  // namespace
+
+void want_for_cracks(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+                     std::vector<Wanted>& wanted) {
+  if (forest.trees() == 0) return;
+  state.tables.precision() == Precision::f32 ? want_cracks<float>(state, forest, h, highest_octave, wanted)
+                                             : want_cracks<double>(state, forest, h, highest_octave, wanted);
+}
 
 void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                            std::vector<Wanted>& wanted) {

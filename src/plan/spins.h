@@ -26,4 +26,9 @@ void want_for_spins(const WorldState& state, const Forest& forest, double h, std
 void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                            std::vector<Wanted>& wanted);
 
+/// After a step: adds what trees that nothing touches need for whips that the step before it did not tell of, where that is
+/// `sudden_octaves` or more.
+void want_for_cracks(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+                     std::vector<Wanted>& wanted);
+
 }  // namespace pcphys
