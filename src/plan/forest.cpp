@@ -179,4 +179,10 @@ void pack_trees(const Forest& forest, const TreeShapes& shapes, std::uint32_t wi
   for (std::size_t block = 0; width == 1 && block < out.count(); block++) add_levels(block, out);
 }
 
+bool has_limits(const WorldState& state, std::span<const TreeNode> tree) {
+  return std::ranges::any_of(tree, [&](const TreeNode& node) {
+    return node.joint != 0 && state.joints[node.joint].def.freedom.kind != AngleFreedom::Kind::free;
+  });
+}
+
 }  // namespace pcphys

@@ -71,6 +71,9 @@ struct TreeBlocks {
   std::uint32_t count() const { return ranges.empty() ? 0 : ranges.back().end; }
 };
 
+/// Whether some joint of the tree holds an angle.
+bool has_limits(const WorldState& state, std::span<const TreeNode> tree);
+
 /// Which trees of a forest have one shape: one topology, and joints the same way round.
 class TreeShapes {
  public:

@@ -17,12 +17,6 @@ double pull(const WorldState& state, std::uint32_t row, double h) {
   return h * h * std::max(way, length(state.spin_of(row, state.given_torque(row))));
 }
 
-bool has_limits(const WorldState& state, std::span<const TreeNode> tree) {
-  return std::ranges::any_of(tree, [&](const TreeNode& node) {
-    return node.joint != 0 && state.joints[node.joint].def.freedom.kind != AngleFreedom::Kind::free;
-  });
-}
-
 }  // namespace
 
 void Pulls::want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,

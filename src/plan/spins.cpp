@@ -1,6 +1,7 @@
 #include "plan/spins.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pcphys/constants.h"
 #include "plan/forest.h"
@@ -71,11 +72,16 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.front().flipped) continue;  // turns on a pivot
+    // what swings on something that does not give way bends limits as a pull does (plan/pulls.h)
+    const bool whirls = !state.responds(tree.front().body) && !was_touched<Scalar>(state.tables, tree) && has_limits(state, tree);
+    const double most = whirls ? std::sqrt(constants::largest_pull) / h : spin_most;
+    const double aim = whirls ? std::sqrt(constants::pull_aim) / h : spin_most;
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;
-      if (!(bounds.spin(row) > spin_most * spin_most) || !state.responds(row)) continue;
+      if (!(bounds.spin(row) > most * most) || !state.responds(row)) continue;
       const Vec3 spin = state.angular_velocity(row);
-      if (const std::uint8_t octave = octave_for(dot(spin, spin), spin_most * spin_most, highest_octave); octave > 0)
+      if (!(dot(spin, spin) > most * most)) continue;
+      if (const std::uint8_t octave = octave_for(dot(spin, spin), aim * aim, highest_octave); octave > 0)
         wanted.push_back({row, octave, false});
     }
     if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, 1, highest_octave); octave > 0)
