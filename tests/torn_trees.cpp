@@ -93,7 +93,7 @@ TEST_CASE("torn: what is whole is let through nothing and keeps its spin, howeve
 
 TEST_CASE("torn: the same bits in lanes, in threads, on GL and in all mixes") {
   for (const Precision precision : {Precision::f32, Precision::f64}) {
-    Gap gap(precision, 50);
+    Gap gap(precision, 70);
     Stepper first(lanes(1));
     StepReport report;
     std::vector<std::byte> before;
