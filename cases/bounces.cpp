@@ -183,9 +183,14 @@ void add_bounces(std::vector<Case>& cases) {
     ball.variants.push_back(
         {.name = "e = " + text(r.e), .run = [r](Trial& t) { bouncing(t, r); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1});
   }
+  // the plane's normal is turned into place and is off by a rounding, so a ball at rest on it rolls by as much
+  const double tilt = 1e-13;
   for (double e : {0.0, 0.25, 0.5, 0.75, 0.9}) {
-    ball.variants.push_back(
-        {.name = "rest, e = " + text(e), .run = [e](Trial& t) { comes_to_rest(t, e); }, .coarse = true, .substeps = {1, 4}});
+    ball.variants.push_back({.name = "rest, e = " + text(e),
+                             .run = [e](Trial& t) { comes_to_rest(t, e); },
+                             .coarse = true,
+                             .substeps = {1, 4},
+                             .floor = e > 0 ? std::optional(tilt) : std::nullopt});
   }
   ball.variants.push_back({.name = "1000 bounces",
                            .run = keeps_bouncing,

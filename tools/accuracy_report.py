@@ -207,8 +207,12 @@ def draw_all(rows, titles, folder, kind):
             if draw_case(plt, case, titles.get(case, ""), of_case, published, folder / f"{case}.{kind}")]
 
 
+def trial(row):
+    return tuple(row[k] for k in ("case", "variant", "precision", "dt", "substeps", "peer"))
+
+
 def key(row):
-    return tuple(row[k] for k in ("case", "variant", "precision", "dt", "substeps", "metric", "peer"))
+    return trial(row) + (row["metric"],)
 
 
 def in_order(rows):
@@ -219,8 +223,8 @@ def in_order(rows):
 
 def add_hashes(rows, others):
     """What another run tells of the same trials on gl."""
-    known = {key(row): row["gl_hash"] for row in others}
-    return [dict(row, gl_hash=row["gl_hash"] or known.get(key(row))) for row in rows]
+    known = {trial(row): row["gl_hash"] for row in others}
+    return [dict(row, gl_hash=row["gl_hash"] or known.get(trial(row))) for row in rows]
 
 
 # ---- the page --------------------------------------------------------------------------------------
