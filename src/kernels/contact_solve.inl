@@ -5,6 +5,7 @@
 #include "contact_response.inl"
 #include "contact_visit.inl"
 #include "contact_low.inl"
+#include "contact_carried.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
@@ -19,7 +20,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   // (between bodies that move what a row lets go of is what lets piles rest)
   precise Real both = a.inverse_mass * b.inverse_mass; Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
-  Visit r = pc_visit(PC_PASS m, pc_twist(a, b, arms, n, t1, t2), shift, n, t1, t2, preload PC_ACTS);
+  Twist now = pc_carried(PC_PASS pc_twist(a, b, arms, n, t1, t2), a, b, arms, t1, t2);
+  Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload PC_ACTS);
 #ifdef PC_PLACED
   a.inverse_mass = pc_select(acts, a.inverse_mass, PC_REAL(0.0)); b.inverse_mass = pc_select(acts, b.inverse_mass, PC_REAL(0.0));  // not stored
 #endif

@@ -41,6 +41,7 @@ PC_INFO_FIELD(restitution_threshold, "approach speed below which nothing bounces
 PC_INFO_FIELD(rounding, "relative: velocities this far below what a contact's impulse would give read as zero")
 PC_INFO_FIELD(gap_rounding, "relative: so much of the arms of a contact is rounding in its gaps")
 PC_INFO_FIELD(fine, "1 in short sub-steps of single precision, whose loads are those of roundings (docs/impulses.md)")
+PC_INFO_FIELD(carries, "1 where there are kinematic bodies: contacts go by the arcs on which those that turn carry what they meet")
 PC_INFO_FIELD(substeps, "how many a step of the class has")
 PC_INFO_FIELD(step, "their sum: what a kernel of the host's own that runs once a step is told as its h [s]")
 PC_INFO_FIELD(largest_state, "a body with larger numbers is frozen")

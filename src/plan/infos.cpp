@@ -77,6 +77,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
 
   biased.fine = sizeof(Scalar) == 4 && h < constants::short_substep;
+  biased.carries = from.carries;
   biased.substeps = Scalar(from.substeps << octave);
   biased.step = Scalar(from.h * from.substeps);
   biased.largest_state = Scalar(constants::largest_state);

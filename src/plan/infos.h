@@ -22,17 +22,19 @@ struct Settling {
 struct InfoInputs {
   InfoInputs() = default;
   /// `h`: the world's sub-step, of octave 0; `last_substep`: of the step before, 0 if there was none [s].
-  InfoInputs(const StepSettings& settings, Vec3 gravity, double h, double last_substep)
+  InfoInputs(const StepSettings& settings, Vec3 gravity, double h, double last_substep, bool carries = false)
       : gravity(gravity),
         h(h),
         last_substep(last_substep),
         push_speed(settings.push_speed),
         restitution_threshold(settings.restitution_threshold),
-        substeps(settings.substeps) {}
+        substeps(settings.substeps),
+        carries(carries) {}
 
   Vec3 gravity;
   double h = 0, last_substep = 0, push_speed = 0, restitution_threshold = 0;
   std::uint32_t substeps = 1;
+  bool carries = false;  // some body is kinematic
   friend bool operator==(const InfoInputs&, const InfoInputs&) = default;
 };
 

@@ -110,7 +110,7 @@ struct Stepper::Inside {
   }
 
   const void* fill(const WorldState& s, double h) {
-    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep), octaves_of(octaves.used()));
+    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0), octaves_of(octaves.used()));
   }
 
   Status prepare(Precision precision) {

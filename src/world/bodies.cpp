@@ -74,7 +74,10 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   s.set_position(row, def.pose.position);
   s.set_orientation(row, orientation);
   if (def.kind == BodyKind::dynamic) s.set_mass(row, *mass);
-  if (def.kind == BodyKind::kinematic) s.tables.set3(Buffer::mass, row, 4, {1, 1, 1});
+  if (def.kind == BodyKind::kinematic) {
+    s.tables.set3(Buffer::mass, row, 4, {1, 1, 1});
+    s.kinematic++;
+  }
   if (def.kind != BodyKind::fixed) {
     s.tables.set3(Buffer::motion, row, 0, def.velocity);
     s.set_angular_velocity(row, def.angular_velocity);
@@ -99,6 +102,7 @@ Status World::destroy(BodyId body) {
   for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
     if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index) s.remove_joint(row);
   const std::uint32_t row = s.body_ids.row(body.index), last = std::uint32_t(s.bodies.size()) - 1;
+  if (s.bodies[row].kind == BodyKind::kinematic) s.kinematic--;
   for (std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
   for (std::uint32_t shape : s.bodies[row].shapes) {
     s.shapes[shape].alive = false;

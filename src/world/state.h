@@ -100,6 +100,7 @@ struct WorldState {
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;      // objects, kinds, filters
   std::uint64_t joint_changes = 0;          // how many of these were of joints alone
+  std::uint32_t kinematic = 0;              // bodies of that kind
   double settling = 0;                      // the largest of the bodies' property of that name
   std::uint32_t sleepers = 0, stirred = 0;  // bodies of which that property is not 0
   bool rests = false;                       // some body has a property of rest that is not as it was made
