@@ -150,7 +150,7 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
   app.add_flag("--first", options.first, "with --backend gl: those 600 steps alone, for the hashes; no errors");
   app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
       ->capture_default_str();
-  app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 1 s runs once")
+  app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 0.3 s runs once")
       ->capture_default_str();
   app.add_option("--peers", options.peers, "other engines beside pcphys: all, none, or names with commas between")
       ->capture_default_str();
