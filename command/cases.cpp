@@ -142,7 +142,8 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
   app.add_option("CASE", options.names, "names of cases; all when none is given");
   app.add_flag("--list", options.list, "list the cases and their variants");
   app.add_flag("--all", options.all, "the step lengths that take minutes too");
-  app.add_option("--variant", options.variant, "only the variant of this name, as --list shows it; where none has it, those whose names start so");
+  app.add_option("--variant", options.variant,
+                 "only the variant of this name, as --list shows it; where none has it, those whose names start so");
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--dt", options.dt, "this step length only [s], also as a fraction");
   app.add_option("--backend", options.backend, "gl: run the first 600 steps of everything there too, and compare hashes")
