@@ -142,7 +142,8 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
   app.add_option("CASE", options.names, "names of cases; all when none is given");
   app.add_flag("--list", options.list, "list the cases and their variants");
   app.add_flag("--all", options.all, "the step lengths that take minutes too");
-  app.add_option("--variant", options.variant, "only the variant of this name, as --list shows it; where none has it, those whose names start so");
+  app.add_option("--variant", options.variant,
+                 "only the variant of this name, as --list shows it; where none has it, those whose names start so");
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--dt", options.dt, "this step length only [s], also as a fraction");
   app.add_option("--backend", options.backend, "gl: run the first 600 steps of everything there too, and compare hashes")
@@ -150,7 +151,7 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
   app.add_flag("--first", options.first, "with --backend gl: those 600 steps alone, for the hashes; no errors");
   app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
       ->capture_default_str();
-  app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 1 s runs once")
+  app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 0.3 s runs once")
       ->capture_default_str();
   app.add_option("--peers", options.peers, "other engines beside pcphys: all, none, or names with commas between")
       ->capture_default_str();

@@ -13,10 +13,13 @@ namespace {
 struct Case {
   const char* scene;
   int count;
-  int before;  // steps on the CPU until something touches, made before the comparison on GL begins
+  int before;       // steps on the CPU until something touches, made before the comparison on GL begins
+  int most = 1000;  // steps on GL at most
 };
-constexpr Case cases[] = {{"balls", 60, 70}, {"ragdolls", 8, 60},  {"pyramid", 20, 5}, {"chain", 20, 5},
-                          {"door", 1, 35},   {"dominoes", 20, 40}, {"stack", 10, 5},   {"hulls", 20, 50}};
+constexpr Case cases[] = {{"balls", 60, 70}, {"ragdolls", 8, 60},     {"pyramid", 20, 5},
+                          {"chain", 20, 5},  {"door", 1, 35},         {"dominoes", 20, 40},
+                          {"stack", 10, 5},  {"hulls", 20, 50},       {"chainswing", 20, 40, 15},
+                          {"heavy", 2, 5},   {"ballistic", 30, 0, 40}};
 constexpr int cpu_steps = 600, gl_steps = 120, gl_mixed_steps = 30;
 
 std::string text(const Case& c, Precision precision) {
@@ -46,7 +49,8 @@ struct Middle {
     run(s.world, stepper, c.before);
     snapshot = s.world.snapshot();
     hashes = hash_each_step(s.world, stepper, steps);
-    CHECK((s.world.contact_count() > 0 || s.world.joint_count() > 0));  // something to solve
+    const bool meets = std::string(c.scene) != "ballistic";
+    CHECK((s.world.contact_count() > 0 || s.world.joint_count() > 0) == meets);  // something to solve
     must(s.world.restore(snapshot));
   }
   void rewind() { must(s.world.restore(snapshot)); }
@@ -70,7 +74,7 @@ void check_mixes(Precision precision, int all_gl, int mixed) {
     Middle m(c, precision, std::max(all_gl, mixed));
     for (std::size_t i = 0; i < steppers.size(); i++) {
       INFO(text(c, precision) << ": " << mixes()[i].text());
-      CHECK(first_difference(m, steppers[i], i == 7 ? all_gl : mixed) == -1);
+      CHECK(first_difference(m, steppers[i], std::min(c.most, i == 7 ? all_gl : mixed)) == -1);
     }
   }
 }

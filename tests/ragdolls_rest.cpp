@@ -1,6 +1,7 @@
 // Pins how a heap of ragdolls comes to rest. Its joints have no friction and the scene no drag, so single limbs swing on for long, and its
 // energy is not monotone: what limits and overlaps hold as springs is not in the sum. It never rises by more than a ten-thousandth or
-// two of what there is, and with a little drag the motion dies (docs/joint-trees.md).
+// two of what there is, with a little drag the motion dies, and without it becomes less: in heaps of 100 each time, in those of 8 over six
+// seeds together (docs/joint-trees.md).
 #include <limits>
 
 #include "support_world.h"
@@ -61,17 +62,24 @@ Rest tell(Precision precision, int count, std::uint64_t seed, double drag) {
 
 }  // namespace
 
-// Measured: energy rises again by 0.19 J of 1,459 at most; with drag at 20 s 0.028 J move.
+// Measured: energy rises again by 0.19 J of 1,459 at most; with drag at 20 s 0.028 J move; without 3.1 and 3.7 J of six heaps at 5 s, 0.59
+// and 0.63 at 20 s, 0.41 at most of one, and in 4 of 12 heaps more than at 5 s.
 TEST_CASE("ragdolls at rest: of 8 energy rises by no more than 2.5e-4, and with drag they come to rest") {
-  for (const Precision precision : {Precision::f32, Precision::f64})
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    double early = 0, late = 0;  // kinetic energy of all heaps without drag at 5 and 20 s [J]
     for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6})
       for (const double drag : {0.0, 0.25}) {
         CAPTURE(seed);
         CAPTURE(drag);
         const Rest r = tell(precision, 8, seed, drag);
         CHECK(r.rise <= 2.5e-4 * r.potential);
-        if (drag > 0) CHECK(r.moving[2] <= 0.05);
+        CHECK(r.moving[2] <= (drag > 0 ? 0.05 : 0.7));
+        if (drag > 0) continue;
+        early += r.moving[0];
+        late += r.moving[2];
       }
+    CHECK(late <= 0.5 * early);
+  }
 }
 
 // Measured: 1.1 J of 17,600; with drag at 20 s 0.07 and 0.09 J move, without 1.6 and 3.4.
@@ -80,6 +88,8 @@ TEST_CASE("ragdolls at rest: 100") {
     for (const double drag : {0.0, 0.25}) {
       const Rest r = tell(Precision::f32, 100, seed, drag);
       CHECK(r.rise <= 1.5e-4 * r.potential);
-      if (drag > 0) CHECK(r.moving[2] <= 0.2);
+      CHECK(r.moving[1] < r.moving[0]);
+      CHECK(r.moving[2] < r.moving[1]);
+      CHECK(r.moving[2] <= (drag > 0 ? 0.2 : 0.5 * r.moving[0]));
     }
 }
