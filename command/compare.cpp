@@ -37,7 +37,8 @@ Result<Entry> parse(const std::string& text) {
 Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_options) {
   std::vector<std::string> names = options.scenes;
   if (names.empty())
-    for (const scenes::SceneInfo& info : scenes::list()) names.push_back(std::string(info.name));
+    for (const scenes::SceneInfo& info : scenes::list())
+      if (!info.own_kernels) names.push_back(std::string(info.name));
   std::vector<Setup> result;
   if (run_options.sleep == "on")
     return Error{ErrorCode::bad_argument, "--sleep on is not for compare: the peers keep everything awake; leave it off."};
@@ -51,7 +52,11 @@ Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_
     const auto setup = resolve(own, 600);
     if (!setup) return setup.error();
     World world;  // an unknown scene or a bad count is noticed before hours of others
-    if (const auto scene = scenes::make(setup->scene, setup->scene_options, world); !scene) return scene.error();
+    const auto scene = scenes::make(setup->scene, setup->scene_options, world);
+    if (!scene) return scene.error();
+    if (!scene->kernels.empty())
+      return Error{ErrorCode::bad_argument, "The forces of scene " + scene->name +
+                                                " are a kernel of its own, which no other engine runs; compare another scene."};
     result.push_back(*setup);
   }
   return result;

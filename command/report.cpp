@@ -109,6 +109,7 @@ std::string device_name(const Simulation& simulation) {
 Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
   const Setup& setup = simulation.setup;
   const scenes::Metrics& end = outcome.end;
+  const Incidents& all = outcome.incidents;
   Json left_out = Json::array();
   for (const LeftOut& item : simulation.stepper.plan().left_out) left_out.push_back({{"what", item.what}, {"why", item.why}});
   Json json{
@@ -131,6 +132,13 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"substeps", setup.settings.substeps},
       {"substeps_last", outcome.last.substeps},
       {"refined_last", outcome.last.refined},
+      {"most_substeps", all.most_substeps},
+      {"repeats", all.repeats},
+      {"given_up", all.given_up},
+      {"limited", all.limited},
+      {"let_through", all.let_through},
+      {"slowed", all.slowed},
+      {"frozen", all.frozen},
       {"fourth_order_last", outcome.last.fourth_order},
       {"sleep", setup.settings.sleep},
       {"islands", name(setup.settings.islands)},

@@ -67,6 +67,7 @@ Status make_steps(Simulation& simulation, Outcome& outcome, Notes& notes) {
       outcome.last = report;
       return Error{report.error.code, "Step " + std::to_string(step) + " of " + setup.scene + " failed. " + report.error.message};
     }
+    outcome.incidents.add(report);
     if (step > setup.warmup) outcome.times.add(ms, report);
     if (step == setup.steps) outcome.last = report;
     notes.add(step, ms, report, simulation);

@@ -22,12 +22,23 @@ Result<Simulation> Simulation::make(const Setup& setup) {
   if (!cpu) return cpu.error();
   result.lanes = (*cpu)->width();
   if (auto status = result.stepper.configure(setup.settings); !status) return status.error();
+  if (auto status = scenes::add_kernels(result.scene, result.world, result.stepper); !status) return status.error();
   return result;
 }
 
 void Times::add(double ms, const StepReport& report) {
   step.push_back(ms);
   for (std::size_t i = 0; i < timer_count; ++i) stages[i].push_back(report.ms[i]);
+}
+
+void Incidents::add(const StepReport& report) {
+  most_substeps = std::max(most_substeps, report.substeps);
+  repeats += report.repeats;
+  given_up += report.given_up;
+  limited += report.limited;
+  let_through += report.let_through;
+  slowed += report.slowed;
+  frozen += report.frozen.size();
 }
 
 double Times::max_fps() const {

@@ -47,11 +47,21 @@ struct Peaks {
   double energy = 0, potential_low = 0, potential_high = 0;
 };
 
+/// What steps did beside moving on, over the run: sums of StepReport's counts, and its largest sub-steps.
+struct Incidents {
+  std::uint32_t most_substeps = 0;
+  std::uint64_t repeats = 0, given_up = 0;                             // times, steps
+  std::uint64_t limited = 0, let_through = 0, slowed = 0, frozen = 0;  // bodies, once a step
+
+  void add(const StepReport& report);
+};
+
 /// What is known after a run.
 struct Outcome {
   Times times;
   scenes::Metrics start, end;
   Peaks peaks;
+  Incidents incidents;
   StepReport last;
   std::uint64_t hash = 0;
 };

@@ -58,5 +58,6 @@ void build_door(Builder& builder);
 void build_dominoes(Builder& builder);
 void build_hulls(Builder& builder);
 void build_ballistic(Builder& builder);
+void build_magnets(Builder& builder);
 
 }  // namespace pcphys::scenes

@@ -28,6 +28,8 @@ constexpr Entry entries[] = {
     {{"dominoes", "COUNT dominoes along a spiral; a ball knocks over the first", 50, 1'000'000}, build_dominoes},
     {{"hulls", "COUNT random convex hulls of 8 to 32 vertices fall into an open-lidded box", 40, 1'000'000}, build_hulls},
     {{"ballistic", "COUNT spinning balls in free fall that meet nothing", 1'000, 4'000'000}, build_ballistic},
+    {{"magnets", "COUNT balls with poles in an open-lidded box: unlike ones pull, like ones push each other", 72, 100'000, true},
+     build_magnets},
 };
 
 constexpr auto infos = [] {
@@ -87,6 +89,12 @@ Result<Scene> make(std::string_view name, const SceneOptions& options, World& wo
     return scene;
   }
   return Error{ErrorCode::unknown_name, "There is no scene '" + std::string(name) + "'; choose one of " + names() + "."};
+}
+
+Status add_kernels(const Scene& scene, World& world, Stepper& stepper) {
+  for (const KernelDef& kernel : scene.kernels)
+    if (const Status added = stepper.add_kernel(world, kernel); !added) return added;
+  return {};
 }
 
 }  // namespace pcphys::scenes

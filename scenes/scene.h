@@ -9,7 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "pcphys/kernel.h"
 #include "pcphys/result.h"
+#include "pcphys/step.h"
 #include "pcphys/types.h"
 #include "pcphys/world.h"
 
@@ -49,15 +51,17 @@ struct Scene {
   std::vector<SceneBody> bodies;  // fixed ones too
   std::vector<JointId> joints;
   std::vector<Support> supports;
-  double inner_width = 0;       // of the open-lidded box; 0: there is none [m]
-  double wall_height = 0;       // [m]
-  std::optional<double> floor;  // height of the ground, where there is one [m]
+  std::vector<KernelDef> kernels;  // of the scene's own: what its bodies do to each other; see add_kernels
+  double inner_width = 0;          // of the open-lidded box; 0: there is none [m]
+  double wall_height = 0;          // [m]
+  std::optional<double> floor;     // height of the ground, where there is one [m]
 };
 
 struct SceneInfo {
   std::string_view name;
   std::string_view description;
   int default_count, max_count;
+  bool own_kernels = false;  // has kernels of its own, which other engines do not run
 };
 
 std::span<const SceneInfo> list();
@@ -65,5 +69,8 @@ std::span<const SceneInfo> list();
 /// Builds a scene into an empty world, and sets the world's gravity to (0, -9.81, 0).
 /// Errors: unknown_name; bad_argument for a count or ratio outside its range.
 Result<Scene> make(std::string_view name, const SceneOptions& options, World& world);
+
+/// Adds the scene's own kernels to a stepper of its world. Errors: those of Stepper::add_kernel.
+Status add_kernels(const Scene& scene, World& world, Stepper& stepper);
 
 }  // namespace pcphys::scenes

@@ -21,8 +21,8 @@ struct Case {
   const char* scene;
   int count;
 };
-constexpr Case cases[] = {{"balls", 60},      {"ragdolls", 8}, {"pyramid", 10}, {"stack", 10},    {"chain", 20},
-                          {"chainswing", 20}, {"heavy", 2},    {"door", 1},     {"dominoes", 20}, {"hulls", 40}};
+constexpr Case cases[] = {{"balls", 60}, {"ragdolls", 8}, {"pyramid", 10},  {"stack", 10}, {"chain", 20},  {"chainswing", 20},
+                          {"heavy", 2},  {"door", 1},     {"dominoes", 20}, {"hulls", 40}, {"magnets", 72}};
 
 constexpr const char* header =
     "# Hashes of scenes on the CPU: scene,count,precision,steps,hash (steps of 1/60 s, 4 sub-steps).\n"
@@ -36,6 +36,7 @@ std::vector<std::string> table() {
     for (const Precision precision : {Precision::f32, Precision::f64}) {
       SceneWorld s = scene_world(c.scene, c.count, precision);
       Stepper stepper(lanes(0));
+      must(scenes::add_kernels(s.scene, s.world, stepper));
       int made = 0;
       for (const int steps : {120, 600}) {
         run(s.world, stepper, steps - made);

@@ -231,3 +231,15 @@ TEST_CASE("a stepper's past changes nothing: a fresh one goes on alike, at any s
     }
   }
 }
+
+TEST_CASE("parity of the scene whose forces are its own kernel: magnets, in all lanes, threads and places") {
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    check_same_bits(
+        [&](const StepSettings& settings, int steps) {
+          SceneWorld s = scene_world("magnets", 72, precision);
+          Stepper stepper(settings);
+          must(scenes::add_kernels(s.scene, s.world, stepper));
+          return hash_each_step(s.world, stepper, steps);
+        },
+        150, 8);
+}

@@ -15,7 +15,8 @@ import tempfile
 from pathlib import Path
 
 PARITY = [("balls", 60), ("ragdolls", 8), ("pyramid", 20), ("chain", 20), ("door", 1), ("dominoes", 20), ("stack", 10), ("hulls", 20),
-          ("chainswing", 20), ("heavy", 2), ("ballistic", 1000)]
+          ("chainswing", 20), ("heavy", 2), ("ballistic", 1000),
+          ("magnets", 72)]
 LARGE = [("balls", 1000), ("balls", 10000), ("ragdolls", 100), ("ragdolls", 1000), ("pyramid", 60)]
 LANES = {"float": (1, 4, 8), "double": (1, 4)}
 STAGES = ("integrate", "joints", "impulses")

@@ -73,6 +73,7 @@ struct StepReport {
   /// Times that this step was undone and made anew: for loops under sudden tension and spins that jumped (docs/substeps.md), for bodies that
   /// went further than contacts were looked for, for one that had to be frozen.
   std::uint32_t repeats = 0;
+  bool given_up = false;  // the step was kept as it was after eight tries, though it asked to be made anew once more
   /// Bodies of joint trees that are torn, since what they hang on pulls them through what does not give way: those that went through it, and
   /// those that were slowed since no sub-step follows how they whirl (docs/substeps.md#torn).
   std::uint32_t let_through = 0, slowed = 0;

@@ -332,8 +332,7 @@ struct Stepper::Inside {
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
                            "(StepSettings::islands). The world is as it was."});
-    tighter = tries + 1 < most_tries && octaves.find_tighter(s, schedule.trees.forest(), tears);
-    tries += tighter;
+    tighter = once_more(octaves.find_tighter(s, schedule.trees.forest(), tears));
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
     if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
@@ -344,7 +343,7 @@ struct Stepper::Inside {
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);
-    strayed = before && ++tries < most_tries && find_strays(s, *before);
+    strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
     s.last_substep = h;
     s.settling = Settling(h, s.gravity).left(s.settling);
@@ -359,6 +358,13 @@ struct Stepper::Inside {
     report.tree_contacts_as_rows = schedule.contacts.beside_trees();
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
     return {};
+  }
+
+  /// Whether a step that asks for it is made anew: most_tries times in all.
+  bool once_more(bool asked) {
+    if (!asked) return false;
+    report.given_up = ++tries >= most_tries;
+    return !report.given_up;
   }
 
   /// What the device is asked about islands, if it is.
