@@ -1,5 +1,5 @@
 // What a step does not pay for: kinds of scene with all on and with something left out, taking turns; and what planning costs.
-//   leaving_out/KIND                 median step of both [ms], kernel runs of a step, memory of its buffers; docs/leaving-out.md
+//   leaving_out/KIND                 median step of both [ms], its contacts, kernel runs of a step, memory of its buffers; docs/leaving-out.md
 //   planning/unchanged/SCENE         the timer `plan` where nothing has changed
 //   planning/joint/SCENE             lists, pairs and plan of a step after a joint was added, beyond an ordinary one's
 //   planning/nothing                 a step of a world in which nothing moves
@@ -35,7 +35,7 @@ struct Run {
   Stepper stepper;
   scenes::Scene scene;
   Error error;
-  std::vector<double> ms;
+  std::vector<double> ms, contacts;  // of each step
 
   void make(const char* name, int count) {
     scenes::SceneOptions options;
@@ -49,7 +49,9 @@ struct Run {
   void step() {
     if (error.code != ErrorCode::none) return;
     const auto begin = std::chrono::steady_clock::now();
-    error = stepper.step(world, dt).error;
+    const StepReport& report = stepper.step(world, dt);
+    error = report.error;
+    contacts.push_back(report.contacts);
     ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
   }
   template <class Do> void each_dynamic(Do&& change) {
@@ -119,6 +121,17 @@ struct Run {
     const auto made = world.create_joint(pin);
     if (!made) check(made.error());
   }
+  /// Far away one ball lies on a floor with friction: rows of all contacts are whole, and the heap moves by the same bits.
+  void rough_ball() {
+    for (const bool floor : {true, false}) {
+      BodyDef def;
+      if (floor) def.kind = BodyKind::fixed;
+      def.shapes = {floor ? ShapeDef::box({1, 0.5, 1}) : ShapeDef::sphere(0.15)};
+      def.pose.position = {1000, floor ? -0.5 : 0.15, 0};
+      def.material = {0.5, 0.5, 0};
+      if (const auto made = world.create_body(def); !made) check(made.error());
+    }
+  }
   void own_kernel(bool once) {
     const auto added = world.add_property<std::uint32_t>("steps", 0, "1");
     if (!added) return check(added.error());
@@ -152,6 +165,13 @@ const std::vector<Kind>& kinds() {
       {"balls, friction; none",
        [](Run& r) {
          r.make("balls", some), r.materials({0.5, 0.5, 0});
+       },
+       [](Run& r) {
+         r.make("balls", some), r.materials({0, 0, 0});
+       }},
+      {"balls without friction, and a rough one far away; alone",
+       [](Run& r) {
+         r.make("balls", some), r.materials({0, 0, 0}), r.rough_ball();
        },
        [](Run& r) {
          r.make("balls", some), r.materials({0, 0, 0});
@@ -225,7 +245,8 @@ void leave_out(benchmark::State& state, const Kind& kind) {
   kind.left_out(out);
   for (auto _ : state) {
     for (int i = 0; i < before + timed; i++) {
-      if (i == before) on.ms.clear(), out.ms.clear();
+      if (i == before)
+        for (Run* run : {&on, &out}) run->ms.clear(), run->contacts.clear();
       on.step();
       out.step();
     }
@@ -235,6 +256,8 @@ void leave_out(benchmark::State& state, const Kind& kind) {
     if (run->error.code != ErrorCode::none) return state.SkipWithError(run->error.message.c_str());
   state.counters["on_ms"] = median(on.ms);
   state.counters["out_ms"] = median(out.ms);
+  state.counters["on_contacts"] = median(on.contacts);
+  state.counters["out_contacts"] = median(out.contacts);
   state.counters["on_kernels"] = double(on.kernels());
   state.counters["out_kernels"] = double(out.kernels());
   state.counters["on_bytes"] = on.memory();

@@ -27,6 +27,16 @@ constexpr const char* domains[] = {"body",  "contact", "contact",         "conta
                                    "joint", "joint",   "joint of a tree", "tree",
                                    "body",  "pair of bodies"};
 
+/// An element of the kernel's domain, in words.
+std::string domain(const PlanEntry& entry, const World& world) {
+  if (!entry.own) return domains[std::size_t(schema(entry.kernel).domain)];
+  const Table table = entry.own->table;
+  const std::string row = table == Table::body    ? "body"
+                          : table == Table::joint ? "joint"
+                                                  : "row of " + std::string(world.state().own.table_name(table));
+  return entry.own->form == OwnKernel::Form::pair ? "pair of " + (table == Table::body ? "bodies" : row + "s") : row;
+}
+
 /// Which bytes an element of each kernel reads and writes, and what a step holds of one.
 struct Bytes {
   std::size_t read = 0, written = 0;
@@ -60,10 +70,17 @@ Json entry_json(const PlanEntry& entry, const World& world) {
   json["reads"] = names(reads(entry));
   json["writes"] = names(writes(entry));
   const Bytes bytes = bytes_of(entry, world);
-  json["domain"] = entry.own ? "row" : domains[std::size_t(schema(entry.kernel).domain)];
+  json["domain"] = domain(entry, world);
   json["bytes_read"] = bytes.read;
   json["bytes_written"] = bytes.written;
   return json;
+}
+
+/// Of a buffer and of its table; of lists there is none.
+std::pair<std::string_view, std::string_view> names_of(Buffer buffer, const WorldState& s) {
+  for (const OwnProperty& p : s.own.list)
+    if (p.used && p.buffer == buffer) return {p.name, s.own.table_name(p.table)};
+  return {schema(buffer).name, of_table(buffer) ? name(schema(buffer).table) : std::string_view()};
 }
 
 /// Buffers that the plan binds, by place, and those of bodies, joints and contacts that it does not need.
@@ -71,12 +88,10 @@ Json buffers_json(const StepPlan& plan, const World& world) {
   Json bound = Json::array(), not_needed = Json::array();
   std::vector<bool> used(buffer_count);
   for (const PlanBinding& b : plan.bindings) {
-    if (is_own(b.buffer)) continue;
-    used[std::size_t(b.buffer)] = true;
-    bound.push_back({{"buffer", schema(b.buffer).name},
-                     {"table", of_table(b.buffer) ? name(schema(b.buffer).table) : std::string_view()},
-                     {"place", name(b.place)},
-                     {"bytes_per_row", row_bytes(b.buffer, world)}});
+    const auto [buffer, table] = names_of(b.buffer, world.state());
+    if (!is_own(b.buffer)) used[std::size_t(b.buffer)] = true;
+    bound.push_back(
+        {{"buffer", buffer}, {"table", table}, {"place", name(b.place)}, {"bytes_per_row", row_bytes(b.buffer, world)}});
   }
   for (std::size_t b = 0; b < buffer_count; ++b)
     if (!used[b]) not_needed.push_back(schema(Buffer(b)).name);
@@ -92,8 +107,7 @@ std::string bytes_text(const StepPlan& plan, const World& world) {
     const Bytes bytes = bytes_of(entry, world);
     std::string line = "  " + std::string(kernel_name(entry));
     line.resize(std::max<std::size_t>(line.size() + 1, 26), ' ');
-    text += line + std::to_string(bytes.read) + " " + std::to_string(bytes.written) + " a " +
-            (entry.own ? "row" : domains[std::size_t(schema(entry.kernel).domain)]) + "\n";
+    text += line + std::to_string(bytes.read) + " " + std::to_string(bytes.written) + " a " + domain(entry, world) + "\n";
   }
   std::size_t per_body = 0;
   const Json buffers = buffers_json(plan, world);

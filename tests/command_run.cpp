@@ -201,6 +201,22 @@ TEST_CASE("plan: friction, restitution and drag of all bodies, as asked, and wha
   CHECK(still["energy_end"] < still["energy_start"]);
 }
 
+TEST_CASE("plan names the buffers of the host's own with their table, bytes and what an element is") {
+  const Json plan = command("plan magnets --count 20 --steps 2 --json -").json();
+  const Json& bound = plan["buffers"]["bound"];
+  const auto pole = std::ranges::find_if(bound, [](const Json& b) { return b["buffer"] == "pole"; });
+  REQUIRE(pole != bound.end());
+  CHECK((*pole)["table"] == "body");
+  CHECK((*pole)["bytes_per_row"] == 4);
+  const Json& held = plan["memory"]["buffers"];
+  const auto use = std::ranges::find_if(held, [](const Json& b) { return b["buffer"] == "pole"; });
+  REQUIRE(use != held.end());
+  CHECK((*use)["bytes"] >= 20 * 4);
+  bool pairs = false;
+  for (const Json& entry : plan["entries"]) pairs |= entry.contains("domain") && entry["domain"] == "pair of bodies";
+  CHECK(pairs);
+}
+
 TEST_CASE("scenes, doctor, help and version answer") {
   CHECK(command("scenes").out.find("ragdolls") != std::string::npos);
   const Json doctor = command("doctor --json -").json();

@@ -42,6 +42,14 @@ PCPHYS_KERNEL(all_types,
                 n = n + 3u;
               })
 
+PCPHYS_KERNEL(all_numbers,
+              (PC_INOUT(float) single, PC_INOUT(double) twice, PC_INOUT(int) whole, PC_INOUT(uint) k, PC_PARAM(int) less), {
+                single = single * single;
+                twice = twice + double(single);
+                whole = whole - less;
+                k = k * 5u;
+              })
+
 PCPHYS_KERNEL(count_steps, (PC_INOUT(uint) steps), { steps = steps + 1u; })
 
 PCPHYS_KERNEL(clock_time, (PC_INOUT(Real) time, PC_PARAM(Real) h), { time = time + h; })
@@ -132,16 +140,50 @@ TEST_CASE("every type is read and written alike on both sides") {
       must(world.add_property<Vec4>("f", {1, 2, 3, 40}, "1", table));
       must(world.add_property<Mat3>("m", {1, 2, 3, 4, 5, 6, 7, 8, 9}, "1", table));
       must(world.add_property<std::uint32_t>("n", 7, "1", table));
+      const auto single = must(world.add_property<float>("single", 0.9f, "1", table));
+      const auto twice = must(world.add_property<double>("twice", 0.1, "1", table));
+      const auto whole = must(world.add_property<std::int32_t>("whole", 3, "1", table));
+      const auto k = must(world.add_property<std::uint32_t>("k", 1, "1", table));
       StepSettings settings;
       if (gl) settings.set_all(Place::gl);
       Stepper stepper(settings);
       must(stepper.add_kernel(world, {.text = all_types::text(), .over = table, .parameters = {{"by", Vec3{0.5, 0.75, 1}}}}));
+      must(stepper.add_kernel(world, {.text = all_numbers::text(), .over = table, .parameters = {{"less", std::int32_t(2)}}}));
       run(world, stepper, 3);
       CHECK(must(world.get(must(world.property<std::uint32_t>("n")), RowOf(100))) == 7 + 3 * 3 * 4);
+      float square = 0.9f;
+      double sum = 0.1;
+      for (int i = 0; i < 12; i++) square = square * square, sum = sum + double(square);
+      CHECK(must(world.get(single, RowOf(1))) == square);
+      CHECK(must(world.get(twice, RowOf(100))) == sum);
+      CHECK(must(world.get(whole, RowOf(50))) == 3 - 2 * 12);
+      CHECK(must(world.get(k, RowOf(50))) == 244140625u);
       hashes[gl] = world.hash();
     }
     CHECK(hashes[0] == hashes[1]);
   }
+}
+
+TEST_CASE("a kernel of GLSL alone, from a string: the bits of the one of both sides, wherever its stage is") {
+  require_gl();
+  std::vector<std::uint64_t> hashes;
+  for (const bool text_alone : {false, true})
+    for (const Place place : {Place::cpu, Place::gl}) {
+      SceneWorld s = with_own(Precision::f32);
+      StepSettings settings;
+      settings.set_all(place);
+      Stepper stepper(settings);
+      const std::string body = "{\n  Vec3 away = pc_sub(home, position);\n  force = pc_madd(force, away, stiffness);\n}";
+      const KernelText glsl{
+          .name = "tether",
+          .signature = "(PC_IN(Vec3) position, PC_IN(Vec3) home, PC_INOUT(Vec3) force, PC_PARAM(Real) stiffness)",
+          .body = body.c_str(),
+          .file = nullptr};  // the library keeps what it needs of them
+      must(stepper.add_kernel(s.world, {.text = text_alone ? glsl : tether::text(), .parameters = {{"stiffness", 20.0}}}));
+      run(s.world, stepper, 20);
+      hashes.push_back(s.world.hash());
+    }
+  for (const std::uint64_t hash : hashes) CHECK(hash == hashes[0]);
 }
 
 TEST_CASE("forces made once a step are held: those of each sub-step begin with them") {

@@ -32,6 +32,7 @@ PCPHYS_KERNEL(drain, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), { fuel = fuel -
 PCPHYS_KERNEL(refill, (PC_OUT(Real) fuel, PC_PARAM(Real) full), { fuel = full; })
 PCPHYS_KERNEL(sum_up, (PC_IN(Real) fuel, PC_SUM(Real) total), { total = fuel; })
 PCPHYS_KERNEL(reset, (PC_OUT(Real) fuel), { fuel = PC_REAL(0.0); })
+PCPHYS_KERNEL(look, (PC_INOUT(Real) fuel, PC_OUT(Real) a), { a = fuel; })
 
 const int no_glsl_line = __LINE__ + 1;
 PCPHYS_KERNEL(no_glsl, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), {
@@ -135,12 +136,14 @@ TEST_CASE("order: two that write the same anew, names, and circles") {
                 "There is a kernel \"refill\" already");
   CHECK_REFUSED(w, s.add_kernel(w, {.text = reset::text()}), ErrorCode::bad_argument,
                 "\"reset\" and \"refill\" both write \"fuel\" anew");
-  must(s.add_kernel(w, {.text = reset::text(), .follows = {"refill"}}));
+  must(s.add_kernel(w, {.text = look::text(), .follows = {"refill"}}));
+  must(s.add_kernel(w, {.text = reset::text(), .follows = {"look"}}));  // and so refill, too
   must(s.add_kernel(w, {.text = drain::text(), .parameters = {{"flow", 0.5}}}));
   CHECK_REFUSED(w, s.set_parameter("drain", {"flux", 1.0}), ErrorCode::unknown_name, "has no parameter \"flux\"");
   CHECK_REFUSED(w, s.set_parameter("leak", {"flow", 1.0}), ErrorCode::unknown_name, "There is no kernel \"leak\"");
   run(w, s, 1);
   CHECK(must(w.get(must(w.property<Real>("fuel")), w.bodies()[0])) == -0.5);  // refilled, reset, drained
+  CHECK(must(w.get(must(w.property<Real>("a")), w.bodies()[0])) == 3);        // what it was before reset
   must(s.remove_kernel(w, "reset"));
   run(w, s, 1);
   CHECK(must(w.get(must(w.property<Real>("fuel")), w.bodies()[0])) == 2.5);

@@ -123,6 +123,33 @@ TEST_CASE("a kernel that comes, goes or is given another parameter wakes all; on
   });
 }
 
+TEST_CASE("kernels that go together, or with their stepper, wake all, and nobody gathers forces for them any more") {
+  enum class Way { all, stepper, another_world };
+  for (const Way way : {Way::all, Way::stepper, Way::another_world})
+    both_places([&](const StepSettings& settings) {
+      Pushed t(settings);
+      const auto gathers = [&] {
+        return std::ranges::any_of(t.stepper.memory(t.world), [](const BufferUse& use) { return use.name == "pc_given_force"; });
+      };
+      CHECK(!gathers());
+      must(t.stepper.add_kernel(t.world, {.text = push::text(), .parameters = {{"by", Vec3{0, 3000, 0}}}}));
+      CHECK(gathers());
+      t.fall_asleep();
+      World other;
+      if (way == Way::all) t.stepper.remove_kernels();
+      if (way == Way::stepper) t.stepper = Stepper(settings);
+      if (way == Way::another_world) must(t.stepper.add_kernel(other, {.text = push::text(), .parameters = {{"by", Vec3{}}}}));
+      CHECK(t.all_asleep());
+      if (way == Way::another_world) t.stepper.remove_kernels();
+      run(t.world, t.stepper, 1);
+      for (int i = 0; i < 6; i++) CHECK(!t.asleep(i));
+      CHECK(!gathers());
+      CHECK(t.stepper.plan().own.empty());
+      t.fall_asleep();
+      return t.hash();
+    });
+}
+
 TEST_CASE("a parameter that changes in each step lets nobody sleep") {
   both_places([](const StepSettings& settings) {
     Pushed t(settings);

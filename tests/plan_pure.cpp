@@ -27,6 +27,10 @@ template <class Visit> void for_all_signatures(Visit&& visit) {
         s.tree_contacts = s.trees && bits & 256;
         s.tree_joints = s.trees && bits & 512;
         s.friction = bits & 1024;
+        s.sleep = bits & 3;
+        s.body_events = bits & 5;
+        s.contact_events = bits & 9;
+        s.touches = s.contact_events && s.contacts();
         visit(s);
       }
 }
@@ -210,6 +214,10 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
     CHECK((reason(plan, "impulses") != "") == !s.contacts());
     CHECK((reason(plan, "restitution") != "") == (s.contacts() && !s.restitution));
     CHECK((reason(plan, "drag") != "") == (s.bodies && !s.drag));
+    CHECK((reason(plan, "sleeping") != "") == !s.sleep);
+    CHECK((reason(plan, "events of contacts") != "") == !s.touches);
+    CHECK((reason(plan, "events of bodies") != "") == !s.body_events);
+    CHECK(reason(plan, "kernels of the host's own") == "none was added");
     CHECK((reason(plan, "gyroscopic terms") != "") == (s.bodies && !s.gyroscopic));
     if (s.bodies && !plan.flight) CHECK(runs(plan, s.drag ? "integrate_drag" : "integrate") == int(s.substeps));
     if (s.bodies && !plan.flight) CHECK(runs(plan, s.gyroscopic ? "advance" : "advance_round") == int(s.substeps));

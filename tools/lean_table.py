@@ -20,14 +20,15 @@ def size(count):
 
 
 def kinds(bench):
-    lines = ["| scene: with; without | bodies | step, ms | | kernel runs | | memory | | time left |",
-             "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| scene: with; without | bodies | step, ms | | contacts | | kernel runs | | memory | | time left |",
+             "|---|---|---|---|---|---|---|---|---|---|---|"]
     for row in rows(bench, "^leaving_out/"):
         name = row["name"].split("/")[1]
         if "error_message" in row:
             lines.append(f"| {name} | {row['error_message']} |")
             continue
-        lines.append(f"| {name} | {row['bodies']:.0f} | {row['on_ms']:.4f} | {row['out_ms']:.4f} | {row['on_kernels']:.0f} | "
+        lines.append(f"| {name} | {row['bodies']:.0f} | {row['on_ms']:.4f} | {row['out_ms']:.4f} | {row['on_contacts']:.0f} | "
+                     f"{row['out_contacts']:.0f} | {row['on_kernels']:.0f} | "
                      f"{row['out_kernels']:.0f} | {size(row['on_bytes'])} | {size(row['out_bytes'])} | "
                      f"{100 * row['out_ms'] / row['on_ms']:.0f} % |")
     return lines

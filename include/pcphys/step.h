@@ -65,11 +65,11 @@ enum class Timer : std::uint8_t { forces, broad, narrow, plan, upload, integrate
 const char* name(Timer timer);
 
 struct StepReport {
-  Error error;                     // code none: the step was made. Otherwise the world is as it was before
-  std::uint64_t step = 0;          // how many steps this stepper has made
-  std::uint32_t substeps = 0;      // the most that an island made: the setting, or more (StepSettings::refinement)
-  std::uint32_t refined = 0;       // bodies whose islands made more than the setting
-  std::uint32_t limited = 0;       // bodies whose islands would have made more yet: beyond StepSettings::refinement, or too large
+  Error error;                 // code none: the step was made. Otherwise the world is as it was before
+  std::uint64_t step = 0;      // how many steps this stepper has made
+  std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
+  std::uint32_t refined = 0;   // bodies whose islands made more than the setting
+  std::uint32_t limited = 0;   // bodies whose islands would have made more yet: beyond StepSettings::refinement, or too large
   /// Times that this step was undone and made anew: for loops under sudden tension and spins that jumped (docs/substeps.md), for bodies that
   /// went further than contacts were looked for, for one that had to be frozen.
   std::uint32_t repeats = 0;
@@ -95,7 +95,7 @@ struct StepReport {
 
 /// Memory of a step, of one buffer in one place.
 struct BufferUse {
-  std::string_view name, table;  // table: empty where it is of none
+  std::string_view name, table;  // as long as the world has that property; table: empty where it is of none
   Place place = Place::cpu;
   std::size_t bytes = 0;
 };
@@ -124,7 +124,8 @@ class Stepper {
   /// a stage is on gl and its compiler refuses the text. Nothing is added then.
   Status add_kernel(World& world, const KernelDef& def);
   Status remove_kernel(World& world, std::string_view name);
-  /// All of them, whether their world is still there or not: then this stepper can step another.
+  /// All of them, whether their world is still there or not: then this stepper can step another. Where it is, its next step, by whatever
+  /// stepper, wakes who sleeps there, as remove_kernel does at once; so it is when a stepper goes that has kernels.
   void remove_kernels();
   /// From the next step on; of the type that it was given as.
   Status set_parameter(std::string_view kernel, const KernelParameter& parameter);
@@ -134,7 +135,8 @@ class Stepper {
   const StepPlan& plan() const;
   Result<StepPlan> plan_for(const World& world, double dt);
 
-  /// What the buffers of this world and of its last step take, those that take any, with the device's copies.
+  /// What the buffers of this world, the host's own properties among them, and of its last step take, those that take any, with the
+  /// device's copies.
   std::vector<BufferUse> memory(const World& world) const;
 
   /// "cpu, 8 lanes", or the GL renderer's name; empty when no stage runs there.

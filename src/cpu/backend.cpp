@@ -69,6 +69,7 @@ class CpuBackend final : public Backend {
   std::size_t held_bytes(Buffer buffer) const override {
     return std::size_t(buffer) < scratch_.size() ? scratch_[std::size_t(buffer)].capacity() : 0;
   }
+  std::size_t sum_bytes() const override { return own_.sum_bytes(); }
   Status upload(Buffer) override { return {}; }
   Status download(Buffer) override { return {}; }
   Status set_infos(const void* infos, std::size_t) override {

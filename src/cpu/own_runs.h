@@ -15,6 +15,8 @@ class OwnRuns {
   /// `buffers`: where they stand, by Buffer; `info`: the block of the run.
   void run(const KernelRun& run, std::span<void* const> buffers, const std::byte* info, const Workers* workers);
 
+  std::size_t sum_bytes() const { return sums_.capacity(); }
+
  private:
   /// Where the arguments of a run stand.
   struct Columns {

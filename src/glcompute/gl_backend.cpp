@@ -35,6 +35,7 @@ class GlBackend final : public Backend {
   Status attach(Buffer buffer, void* host, std::size_t bytes) override;
   Status reserve(Buffer buffer, std::size_t slots) override;
   std::size_t held_bytes(Buffer buffer) const override { return memory_.held_bytes(buffer); }
+  std::size_t sum_bytes() const override { return own_.sum_bytes(); }
   Status upload(Buffer buffer) override { return transfer(buffer, &GlBuffer::upload); }
   Status download(Buffer buffer) override { return transfer(buffer, &GlBuffer::download); }
   Status keep(Buffer buffer) override;

@@ -22,6 +22,8 @@ class OwnPrograms {
   /// Of all other forms: both programs, with the barriers before and between them.
   Status run_in_two(const KernelRun& run, GlMemory& memory);
 
+  std::size_t sum_bytes() const { return sums_.capacity(); }
+
  private:
   const OwnProgram& of(const OwnKernel& kernel) const { return programs_.at(kernel.serial); }
   /// `values`: how many of each sum stand between the two.

@@ -271,11 +271,12 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   static std::atomic<std::uint64_t> serials{0};
   auto k = std::make_shared<OwnKernel>();
   k->serial = ++serials;
-  k->name = def.text.name;
-  k->signature = def.text.signature;
-  k->body = def.text.body ? def.text.body : "";
+  const auto text = [](const char* given) { return given ? given : ""; };
+  k->name = text(def.text.name);
+  k->signature = text(def.text.signature);
+  k->body = text(def.text.body);
   k->own_lines = k->body.find('\n') != k->body.npos;
-  k->file = def.text.file;
+  k->file = text(def.text.file);
   k->line = def.text.line;
   k->real_bytes = s.tables.real_bytes();
   const bool single = s.tables.precision() == Precision::f32;

@@ -56,6 +56,7 @@ struct OwnKernel {
   KernelLoop loop = nullptr;
   PairsLoop pairs = nullptr;
   bool in_cpp() const { return loop || pairs; }
+  bool of_library() const { return name.starts_with(own_prefix); }
   std::optional<double> cutoff;  // of pairs
   Table table = Table::body;
   Stage stage = Stage::integrate;

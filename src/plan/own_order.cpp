@@ -8,10 +8,24 @@
 namespace pcphys {
 namespace {
 
+using Kernels = std::vector<std::shared_ptr<OwnKernel>>;
+
+/// Whether the host said so, of the two or by way of others.
+bool follows(const Kernels& all, const OwnKernel& later, const OwnKernel& earlier) {
+  std::vector<const OwnKernel*> reached{&later};  // later ones of it are not looked at yet
+  for (std::size_t i = 0; i < reached.size(); i++)
+    for (const std::string& name : reached[i]->follows) {
+      if (name == earlier.name) return true;
+      const auto found = std::ranges::find(all, name, [](const auto& k) -> const std::string& { return k->name; });
+      if (found != all.end() && std::ranges::find(reached, found->get()) == reached.end()) reached.push_back(found->get());
+    }
+  return false;
+}
+
 /// Whether a must run before b, of one moment.
-bool precedes(const OwnKernel& a, const OwnKernel& b) {
-  if (std::ranges::find(b.follows, a.name) != b.follows.end()) return true;
-  if (std::ranges::find(a.follows, b.name) != a.follows.end()) return false;
+bool precedes(const Kernels& all, const OwnKernel& a, const OwnKernel& b) {
+  if (follows(all, b, a)) return true;
+  if (follows(all, a, b)) return false;
   const auto rank = [](const OwnArgument& argument) { return argument.anew() ? 0 : argument.writes() ? 1 : 2; };
   for (const OwnArgument& x : a.arguments)
     for (const OwnArgument& y : b.arguments)
@@ -24,22 +38,20 @@ bool same_moment(const OwnKernel& a, const OwnKernel& b) {
   return a.stage == b.stage && a.after == b.after && a.once_a_step == b.once_a_step;
 }
 
-using Kernels = std::vector<std::shared_ptr<OwnKernel>>;
-
 /// One that has to run before b; null: none.
-const OwnKernel* before(const Kernels& left, const OwnKernel& b) {
+const OwnKernel* before(const Kernels& all, const Kernels& left, const OwnKernel& b) {
   for (const auto& a : left)
-    if (a.get() != &b && same_moment(*a, b) && precedes(*a, b)) return a.get();
+    if (a.get() != &b && same_moment(*a, b) && precedes(all, *a, b)) return a.get();
   return nullptr;
 }
 
 /// Of kernels that each have one before them: some go in a circle.
-Error circle(const Kernels& left) {
+Error circle(const Kernels& all, const Kernels& left) {
   std::vector<const OwnKernel*> way;
   const OwnKernel* k = left.front().get();
   while (std::ranges::find(way, k) == way.end()) {
     way.push_back(k);
-    k = before(left, *k);
+    k = before(all, left, *k);
   }
   way.erase(way.begin(), std::ranges::find(way, k));
   std::string others;
@@ -69,8 +81,8 @@ Status OwnKernels::order(std::vector<std::shared_ptr<OwnKernel>>& out) const {
   Kernels left = kernels_;
   out.clear();
   while (!left.empty()) {
-    const auto free = std::ranges::find_if(left, [&](const auto& b) { return !before(left, *b); });
-    if (free == left.end()) return circle(left);
+    const auto free = std::ranges::find_if(left, [&](const auto& b) { return !before(kernels_, left, *b); });
+    if (free == left.end()) return circle(kernels_, left);
     out.push_back(*free);
     left.erase(free);
   }
@@ -89,8 +101,8 @@ Status OwnKernels::add(std::shared_ptr<OwnKernel> kernel) {
     if (!same_moment(*other, *kernel)) continue;
     for (const OwnArgument& a : other->arguments)
       for (const OwnArgument& b : kernel->arguments)
-        if (a.anew() && b.anew() && a.property == b.property && !contains(kernel->follows, other->name) &&
-            !contains(other->follows, kernel->name))
+        if (a.anew() && b.anew() && a.property == b.property && !follows(kernels_, *kernel, *other) &&
+            !follows(kernels_, *other, *kernel))
           return bad(
               *kernel,
               "and " + quoted(other->name) + " both write " + quoted(a.property) +

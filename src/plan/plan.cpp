@@ -149,7 +149,7 @@ class Builder {
   std::vector<Known> buffers_;  // by Buffer
 };
 
-void leave_out(const PlanSignature& s, StepPlan& plan) {
+void leave_out(const PlanSignature& s, OwnKernels::Ordered own, StepPlan& plan) {
   const auto out = [&](const char* what, const char* why) { plan.left_out.push_back({what, why}); };
   const bool idle = s.sleepers && !s.bodies;
   constexpr const char* all_sleep = "all bodies sleep";
@@ -183,6 +183,12 @@ void leave_out(const PlanSignature& s, StepPlan& plan) {
   if (s.contacts() && !s.restitution) out("restitution", "no contact has a restitution above zero");
   if (s.contacts() && !s.rolling) out("rolling friction", "no material that touches has any");
   if (s.contacts() && !s.impacts) out("impacts", "nothing bounces, and no body flies into another");
+  if (!s.sleep) out("sleeping", "the settings do not ask for it");
+  if (!s.touches)
+    out("events of contacts", s.contact_events ? "nothing touches in this step" : "the settings do not ask for them");
+  if (!s.body_events) out("events of bodies", "the settings do not ask for them");
+  if (std::ranges::all_of(own, [](const auto& k) { return k->of_library(); }))
+    out("kernels of the host's own", "none was added");
 }
 
 /// The kernels that move bodies between impulses.
@@ -369,7 +375,7 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   plan.substeps = s.substeps;
   plan.own.assign(own.begin(), own.end());
   plan.flight = in_flight(s, own);
-  leave_out(s, plan);
+  leave_out(s, own, plan);
   if (!s.bodies && own.empty() && !s.islands) return plan;
   Builder b(s, own, plan);
   if (!s.bodies) own_alone(b, s);

@@ -18,6 +18,9 @@ struct PlanSignature {
   std::uint32_t second_order = 0;  // of order 4, why some trees are not: bits by SecondOrder
   Integrator integrator = Integrator::verlet;
   bool resident = false;                    // StepSettings::resident
+  bool sleep = false;                       // and what else it asks for
+  bool contact_events = false;
+  bool body_events = false;
   std::array<Place, stage_count> places{};  // by Stage
   bool bodies = false;                      // some move
   bool sleepers = false;                    // some sleep
@@ -40,7 +43,7 @@ struct PlanSignature {
   unsigned visits = 1;                      // in a pass; more while some body that was just placed settles
   bool impacts = false;                     // or is between shapes that meet in flight
   bool rolling = false;                     // some contact resists rolling, or turning about its normal
-  bool touches = false;                     // the host asks for events of contacts
+  bool touches = false;                     // the host asks for events of contacts, and there are contacts
   bool islands = false;                     // a device is to say who is in which island
   bool islands_known = false;               // or has said it
   bool joints() const { return free_joints || tree_joints; }

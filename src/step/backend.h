@@ -55,6 +55,9 @@ class Backend {
   /// What the backend has itself for a buffer.
   virtual std::size_t held_bytes(Buffer buffer) const { return (void)buffer, std::size_t{0}; }
 
+  /// And for terms of what kernels of the host's own sum up.
+  virtual std::size_t sum_bytes() const { return 0; }
+
   /// Host to device and back, the whole buffer; nothing to do on the CPU.
   virtual Status upload(Buffer buffer) = 0;
   virtual Status download(Buffer buffer) = 0;

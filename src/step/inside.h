@@ -110,7 +110,8 @@ struct Stepper::Inside {
   }
 
   const void* fill(const WorldState& s, double h) {
-    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0), octaves_of(octaves.used()));
+    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0),
+                      octaves_of(octaves.used()));
   }
 
   Status prepare(Precision precision) {
@@ -317,7 +318,7 @@ struct Stepper::Inside {
     wanted.visits = found.placed && wanted.free_contacts ? Settling(h, s.gravity).visits : 1;
     wanted.impacts = found.impacts;
     wanted.rolling = found.rolling;
-    wanted.touches = EventRecorder::of_contacts(settings) && wanted.contacts();
+    wanted.touches = wanted.contact_events && wanted.contacts();
     if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
     list_islands(s, wanted);
     plan = &plans.find(wanted, own.ordered());

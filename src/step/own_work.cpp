@@ -25,8 +25,6 @@ PCPHYS_KERNEL(pc_take_forces, (PC_IN(Vec3) pc_held_force, PC_IN(Vec3) pc_held_to
   torque = pc_held_torque;
 })
 
-bool of_library(const OwnKernel& k) { return k.name.starts_with(own_prefix); }
-
 Buffer add_column(WorldState& s, const char* name, const char* unit) {
   const std::array<std::byte, 4 * 8> zero{};
   const Buffer buffer =
@@ -65,9 +63,12 @@ void stop_gathering(WorldState& s) {
   sum_all(s);
 }
 
-}  // namespace
-
-namespace {
+/// Kernels that went with a stepper's list of them, or with the stepper: what they held up falls, and nobody gathers forces for them.
+void forget_gone(WorldState& s) {
+  if (std::erase_if(s.kernel_holds, [](const auto& hold) { return hold.expired(); }) == 0) return;
+  if (s.kernel_holds.empty() && s.gathered) stop_gathering(s);
+  s.stir_all();
+}
 
 /// Of an argument the first row that is not finite; 0: none.
 std::uint32_t bad_row(const WorldState& s, const OwnArgument& a) {
@@ -79,9 +80,7 @@ std::string object(const WorldState& s, const OwnArgument& a, std::uint32_t row)
   if (a.single) return "the total of all rows";
   if (a.table == Table::body) return "body " + std::to_string(s.bodies[row].index);
   if (a.table == Table::joint) return "joint " + std::to_string(s.joints[row].index);
-  for (const OwnTable& t : s.own.tables)
-    if (t.used && t.table == a.table) return "row " + std::to_string(row) + " of \"" + t.name + "\"";
-  return "row " + std::to_string(row);
+  return "row " + std::to_string(row) + " of \"" + std::string(s.own.table_name(a.table)) + "\"";
 }
 
 }  // namespace
@@ -104,17 +103,17 @@ bool reads_finite(const WorldState& s, const OwnKernel& k) {
 Status OwnWork::check_written(const WorldState& s) const {
   for (const auto& k : ordered())
     for (const OwnArgument& a : k->arguments)
-      if (a.writes() && is_own(a.buffer) && !of_library(*k) && bad_row(s, a) != 0) return pcphys::check_written(s, *k);
+      if (a.writes() && is_own(a.buffer) && !k->of_library() && bad_row(s, a) != 0) return pcphys::check_written(s, *k);
   return {};
 }
 
 bool OwnWork::hosts() const {
-  return std::ranges::any_of(ordered(), [](const auto& k) { return !of_library(*k); });
+  return std::ranges::any_of(ordered(), [](const auto& k) { return !k->of_library(); });
 }
 OwnWork::Makers OwnWork::makers() const {
   Makers found;
   for (const auto& k : ordered())
-    if (!of_library(*k) && k->writes(Buffer::force)) (k->once_a_step ? found.once : found.each) = true;
+    if (!k->of_library() && k->writes(Buffer::force)) (k->once_a_step ? found.once : found.each) = true;
   return found;
 }
 
@@ -125,12 +124,13 @@ Status OwnWork::check(const WorldState& s) const {
                  "take them away (Stepper::remove_kernels)."};
   if (removals_ == s.removals) return {};
   for (const auto& k : ordered())
-    if (!of_library(*k))
+    if (!k->of_library())
       if (Status ok = check_properties(s, *k); !ok) return ok;
   return {};
 }
 
 Status OwnWork::follow(WorldState& s) {
+  forget_gone(s);
   if (kernels_.empty() && !s.gathered) return {};
   if (Status ok = check(s); !ok) return ok;
   if (serial_ != s.serial || removals_ != s.removals) forget_beginning();
@@ -138,6 +138,22 @@ Status OwnWork::follow(WorldState& s) {
   const Status ok = begin_forces(s);
   removals_ = s.removals;
   return ok;
+}
+
+void OwnWork::take_hold(WorldState& s) {
+  if (hold_) return;
+  hold_ = std::make_shared<const char>();
+  s.kernel_holds.push_back(hold_);
+}
+
+void OwnWork::let_go(WorldState& s) {
+  std::erase_if(s.kernel_holds, [&](const auto& hold) { return hold.lock() == hold_; });
+  hold_.reset();
+}
+
+void OwnWork::clear() {
+  kernels_.clear();
+  hold_.reset();
 }
 
 void OwnWork::forget_beginning() {
@@ -177,6 +193,7 @@ Result<const OwnKernel*> OwnWork::add(WorldState& s, const KernelDef& def) {
   if (Status ok = kernels_.add(std::move(*kernel)); !ok) return ok.error();
   serial_ = s.serial;
   removals_ = s.removals;
+  take_hold(s);
   return added;
 }
 
@@ -184,6 +201,7 @@ void OwnWork::put_back(const OwnWork& before) {
   kernels_.put_back(before.kernels_);
   serial_ = before.serial_;
   removals_ = before.removals_;
+  hold_ = before.hold_;
 }
 
 Status OwnWork::remove(WorldState& s, std::string_view name) {
@@ -192,6 +210,7 @@ Status OwnWork::remove(WorldState& s, std::string_view name) {
                  "This stepper has no kernels of this world; remove_kernel takes the world that they were added for."};
   const bool made = makers().any();
   if (Status ok = kernels_.remove(name); !ok) return ok;
+  if (hold_ && !hosts()) let_go(s);
   if (made && !makers().any()) {
     forget_beginning();
     stop_gathering(s);

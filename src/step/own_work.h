@@ -1,5 +1,6 @@
 // A stepper's kernels of the host's own, and what forces are before they add to them.
 #pragma once
+#include <memory>
 #include <string_view>
 
 #include "plan/own_kernels.h"
@@ -25,7 +26,8 @@ class OwnWork {
   Result<const OwnKernel*> add(WorldState& state, const KernelDef& def);
   Status remove(WorldState& state, std::string_view name);
   OwnKernel* find(std::string_view name) const { return kernels_.find(name); }
-  void clear() { kernels_.clear(); }
+  /// Their world learns of it when a stepper next follows it: it may be gone.
+  void clear();
   /// What was copied before a `clear`.
   void put_back(const OwnWork& before);
 
@@ -48,10 +50,14 @@ class OwnWork {
   Status begin_forces(WorldState& state);
   Status add_beginning(const WorldState& state, const KernelText& text, bool once_a_step);
   void forget_beginning();
+  void take_hold(WorldState& state);
+  void let_go(WorldState& state);
 
   OwnKernels kernels_;
   std::uint64_t serial_ = 0;    // of the world that they are of
   std::uint64_t removals_ = 0;  // of its properties, when they were last looked at
+  /// Lasts as long as there are kernels of the host's for that world (WorldState::kernel_holds).
+  std::shared_ptr<const char> hold_;
 };
 
 }  // namespace pcphys

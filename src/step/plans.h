@@ -3,6 +3,7 @@
 #include <deque>
 #include <utility>
 
+#include "events/event_recorder.h"
 #include "pcphys/step.h"
 #include "plan/own_kernels.h"
 #include "plan/plan.h"
@@ -18,6 +19,9 @@ inline PlanSignature signature(const StepSettings& settings, const WorldState& w
   s.integrator = settings.integrator;
   s.order = settings.order;
   s.resident = settings.resident;
+  s.sleep = settings.sleep;
+  s.contact_events = EventRecorder::of_contacts(settings);
+  s.body_events = settings.body_events;
   s.places = {settings.integrate, settings.joints, settings.impulses};
   s.bodies = schedule.moving > 0;
   s.sleepers = world.sleepers > 0;

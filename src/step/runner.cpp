@@ -99,14 +99,14 @@ void Runner::fetch(Buffer buffer) {
   if (fetched_) fetched_ = ok;
 }
 
-void Runner::list_memory(std::vector<BufferUse>& uses) const {
+void Runner::list_memory(MemoryUses& uses) const {
   for (const Place place : {Place::cpu, Place::gl}) {
-    const Device& d = devices_[std::size_t(place)];
-    for (std::size_t b = 0; d.backend && b < buffer_count; b++)
-      if (const std::size_t bytes = d.backend->held_bytes(Buffer(b)))
-        uses.push_back({schema(Buffer(b)).name, of_table(Buffer(b)) ? name(schema(Buffer(b)).table) : "", place, bytes});
+    const Backend* backend = devices_[std::size_t(place)].backend.get();
+    if (!backend) continue;
+    uses.add_buffers(place, [&](Buffer b) { return backend->held_bytes(b); });
+    uses.add("sums", "", place, backend->sum_bytes());
   }
-  if (const std::size_t bytes = rollback_.memory_bytes()) uses.push_back({"rollback", "", Place::cpu, bytes});
+  uses.add("rollback", "", Place::cpu, rollback_.memory_bytes());
 }
 
 void Runner::forget() {
@@ -279,7 +279,7 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
   unsigned octave = 0;
   for (const PlanEntry& entry : plan.entries) octave = std::max(octave, octave_of(entry.octave));
   infos_ = phase_count * (1 + octave);
-  may_be_undone_ = std::ranges::any_of(plan.own, [](const auto& k) { return !k->name.starts_with(own_prefix); });
+  may_be_undone_ = std::ranges::any_of(plan.own, [](const auto& k) { return !k->of_library(); });
   kept_.clear();
   if (plan.flight && !gl_ && plan.own.empty()) {        // nothing of it can fail
     if (settings.sleep) kept_.push_back(Buffer::pose);  // how far bodies went

@@ -8,6 +8,7 @@
 #include "pcphys/step.h"
 #include "plan/plan.h"
 #include "step/backend.h"
+#include "step/memory_uses.h"
 #include "step/rollback.h"
 #include "step/schedule.h"
 #include "world/state.h"
@@ -54,7 +55,7 @@ class Runner final : Keeper {
   /// What the devices hold is not the data of the world that comes.
   void forget();
   /// What backends and copies of this step's buffers take.
-  void list_memory(std::vector<BufferUse>& uses) const;
+  void list_memory(MemoryUses& uses) const;
   std::string device(Place place) const;
   /// After `prepare`.
   const Workers& workers() const { return *workers_; }

@@ -240,25 +240,6 @@ void Schedule::update_structure(const WorldState& state) {
   group({});
 }
 
-void Schedule::list_memory(std::vector<BufferUse>& uses) {
-  const TreeBlocks& blocks = trees.lists();
-  const std::pair<Buffer, const std::vector<std::uint32_t>*> lists[] = {{Buffer::bodies, &bodies},
-                                                                        {Buffer::contact_ends, &contacts.ends()},
-                                                                        {Buffer::contact_order, &contacts.order()},
-                                                                        {Buffer::joint_ends, &joints.ends()},
-                                                                        {Buffer::joint_order, &joints.order()},
-                                                                        {Buffer::joint_paths, &joints.paths()},
-                                                                        {Buffer::tree_blocks, &blocks.blocks},
-                                                                        {Buffer::tree_parents, &blocks.parents},
-                                                                        {Buffer::tree_ends, &blocks.ends},
-                                                                        {Buffer::tree_order, &blocks.order},
-                                                                        {Buffer::contact_paths, &contacts.paths()},
-                                                                        {Buffer::island_ends, &islands.ends()},
-                                                                        {Buffer::island_labels, &islands.labels_to_fill()}};
-  for (const auto& [buffer, list] : lists)
-    if (!list->empty()) uses.push_back({schema(buffer).name, "", Place::cpu, list->capacity() * sizeof(list->front())});
-}
-
 void Schedule::group(std::span<const std::uint8_t> octaves) {
   changes_++;
   own.forget_octaves();

@@ -156,8 +156,6 @@ class Schedule {
   std::span<const Range> ranges(unsigned octave) const { return std::span(body_ranges_).subspan(octave, 1); }
   bool grouped() const { return body_ranges_.size() > 1; }
   OctaveOf octave_of() const { return {octaves_, std::uint32_t(body_ranges_.size())}; }
-  /// Lists and slots, those that are there.
-  void list_memory(std::vector<BufferUse>& uses);
   /// Counts the changes of all that stands here, but for how it is packed.
   std::uint64_t changes() const { return changes_ + own.version + own.near.version + islands.version(); }
   std::span<const std::uint32_t> rows_that_move() const { return rows_; }

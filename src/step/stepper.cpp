@@ -67,7 +67,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.friction = detector.may_resist(world.state());
   wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
   wanted.rolling = detector.may_resist_rolling(world.state());
-  wanted.touches = EventRecorder::of_contacts(in.settings) && wanted.contacts();
+  wanted.touches = wanted.contact_events && wanted.contacts();
   FourthOrder order;
   in.choose_order(order, world.state(), schedule.trees, dt);
   wanted.octaves = order.classes(schedule.moving);
@@ -122,15 +122,11 @@ Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& pa
 }
 
 std::vector<BufferUse> Stepper::memory(const World& world) const {
-  const Tables& tables = world.state().tables;
-  std::vector<BufferUse> uses;
-  for (std::size_t b = 0; b < table_buffer_count; b++)
-    if (const std::size_t bytes = tables.held_bytes(Buffer(b)))
-      uses.push_back({schema(Buffer(b)).name, pcphys::name(schema(Buffer(b)).table), Place::cpu, bytes});
-  inside_->schedule.list_memory(uses);
-  if (const std::size_t bytes = inside_->detector.memory_bytes()) uses.push_back({"collision", "", Place::cpu, bytes});
+  MemoryUses uses(world.state());
+  uses.add_host(inside_->schedule);
+  uses.add("collision", "", Place::cpu, inside_->detector.memory_bytes());
   inside_->runner.list_memory(uses);
-  return uses;
+  return uses.take();
 }
 
 std::string Stepper::device(Place place) const { return inside_->runner.device(place); }

@@ -17,7 +17,6 @@ bool changed(const WorldState& s, const OwnArgument& a, const AlignedBytes& befo
   return false;
 }
 
-bool of_host(const OwnKernel& k) { return !k.name.starts_with(own_prefix); }
 /// What it makes follows from bodies or joints alone.
 bool total_of_bodies(const OwnKernel& k) {
   return k.form == OwnKernel::Form::reduction && (k.table == Table::body || k.table == Table::joint);
@@ -67,9 +66,9 @@ bool Unrest::together(OwnKernels::Ordered kernels) {
 
 /// Bodies, or what others move them by.
 bool Unrest::moves(const OwnKernel& k) const {
-  return of_host(k) && std::ranges::any_of(k.arguments, [&](const OwnArgument& a) {
-           return a.of_property() && a.writes() && (!is_own(a.buffer) || std::ranges::find(behind_, a.buffer) != behind_.end());
-         });
+  return !k.of_library() && std::ranges::any_of(k.arguments, [&](const OwnArgument& a) {
+    return a.of_property() && a.writes() && (!is_own(a.buffer) || std::ranges::find(behind_, a.buffer) != behind_.end());
+  });
 }
 
 /// What kernels that move bodies name, and whatever that is made of.

@@ -28,6 +28,12 @@ std::uint32_t OwnProperties::add(OwnProperty property) {
   return k;
 }
 
+std::string_view OwnProperties::table_name(Table table) const {
+  for (const OwnTable& t : tables)
+    if (t.used && t.table == table) return t.name;
+  return name(table);
+}
+
 std::vector<Field> fields(const Tables& tables, const OwnProperties& own, Table table, Role role) {
   std::vector<Field> found;
   const std::size_t real = tables.real_bytes();

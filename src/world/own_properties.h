@@ -32,6 +32,8 @@ struct OwnTable {
 struct OwnProperties {
   /// In the first free place; which.
   std::uint32_t add(OwnProperty property);
+  /// Of a table, the library's or the host's own.
+  std::string_view table_name(Table table) const;
   std::vector<OwnProperty> list;  // property k has the handle properties().size() + k
   std::vector<OwnTable> tables;   // table k has the id own_tables_from + k
 };

@@ -22,11 +22,6 @@ struct Found {
   Id<struct AnyPropertyTag> id;
 };
 
-std::string_view table_name(const WorldState& s, Table table) {
-  for (const OwnTable& t : s.own.tables)
-    if (t.used && t.table == table) return t.name;
-  return name(table);
-}
 Found listed(const WorldState& s, std::uint32_t k) {
   const PropertySchema& p = properties()[k];
   return {{p.name, p.unit, name(p.table), p.type, p.role, false},
@@ -37,7 +32,7 @@ Found listed(const WorldState& s, std::uint32_t k) {
 }
 Found own(const WorldState& s, std::uint32_t k) {
   const OwnProperty& p = s.own.list[k];
-  return {{p.name, p.unit, table_name(s, p.table), p.type, p.role, !p.name.starts_with(own_prefix)},
+  return {{p.name, p.unit, s.own.table_name(p.table), p.type, p.role, !p.name.starts_with(own_prefix)},
           p.table,
           p.buffer,
           0,

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -96,6 +97,9 @@ struct WorldState {
   OwnProperties own;
   std::unordered_map<std::uint32_t, MassProperties> frozen;  // by body index
   std::unordered_map<std::uint64_t, NoCollide> no_collide;   // by pair_key; only pairs with a reason
+
+  /// One of each stepper that has kernels of the host's own for this world.
+  std::vector<std::weak_ptr<const char>> kernel_holds;
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;      // objects, kinds, filters

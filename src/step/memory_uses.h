@@ -1,0 +1,39 @@
+// What buffers take, those of the library and the host's own properties, as Stepper::memory lists it.
+#pragma once
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "pcphys/step.h"
+#include "step/schedule.h"
+#include "world/state.h"
+
+namespace pcphys {
+
+class MemoryUses {
+ public:
+  explicit MemoryUses(const WorldState& state) : state_(state) {}
+
+  /// Of each buffer what `bytes` of it answers.
+  template <class BytesOf> void add_buffers(Place place, BytesOf&& bytes) {
+    for (std::size_t b = 0; b < buffer_count; b++) {
+      const bool in_table = of_table(Buffer(b));
+      add(schema(Buffer(b)).name, in_table ? name(schema(Buffer(b)).table) : "", place, bytes(Buffer(b)));
+    }
+    for (const OwnProperty& p : state_.own.list)
+      if (p.used) add(p.name, state_.own.table_name(p.table), place, bytes(p.buffer));
+  }
+  /// The host's tables, and the lists of a schedule.
+  void add_host(Schedule& schedule);
+  /// Nothing where there is none.
+  void add(std::string_view name, std::string_view table, Place place, std::size_t bytes) {
+    if (bytes > 0) uses_.push_back({name, table, place, bytes});
+  }
+  std::vector<BufferUse> take() { return std::move(uses_); }
+
+ private:
+  const WorldState& state_;
+  std::vector<BufferUse> uses_;
+};
+
+}  // namespace pcphys
