@@ -31,3 +31,12 @@ build() {
   say "Building with $jobs jobs"
   cmake --build "build/$preset" --parallel "$jobs" ${2:+--target "$2"}
 }
+
+# The first python3 on the path need not be the system's, which has the Debian package of matplotlib.
+drawing_python() {
+  local candidate
+  for candidate in python3 /usr/bin/python3; do
+    if "$candidate" -c 'import matplotlib' 2>/dev/null; then break; fi
+  done
+  echo "$candidate"
+}

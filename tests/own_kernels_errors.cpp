@@ -333,4 +333,7 @@ TEST_CASE("statements and what compilers say of them") {
   CHECK(with_quotes("1(8) : error C1503: undefined variable \"y\"\n0(2) : error", source) ==                        // NVIDIA
         "1(8) : error C1503: undefined variable \"y\"\n  there: x = y;\n0(2) : error");
   CHECK(with_quotes("out of memory", source) == "out of memory");
+  CHECK(with_quotes("0:3(1): warning: extension", source) == "0:3(1): warning: extension");  // nothing else is known then
+  CHECK(with_quotes("0:3(1): warning: extension\n1:8(7): error: `y' undeclared", source) ==
+        "1:8(7): error: `y' undeclared\n  there: x = y;");
 }

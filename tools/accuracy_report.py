@@ -252,12 +252,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("rows", nargs="+", type=Path, help="JSON of `pcphys accuracy` or `pcphys stability`; later files replace")
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of accuracy.md, stability.md and img/accuracy")
-    parser.add_argument("--hashes", type=Path, help="JSON of `pcphys accuracy --backend gl`: its hashes go into the table")
+    parser.add_argument("--hashes", type=Path, action="append", default=[],
+                        help="JSON of a run with --backend gl: its hashes go into the table; may be given again")
     parser.add_argument("--png", action="store_true", help="pictures as PNG only, to look at")
     arguments = parser.parse_args()
     rows = in_order(row for path in arguments.rows for row in json.loads(path.read_text()))
-    if arguments.hashes:
-        rows = add_hashes(rows, json.loads(arguments.hashes.read_text()))
+    for path in arguments.hashes:
+        rows = add_hashes(rows, json.loads(path.read_text()))
     titles = {row["case"]: row["title"] for row in rows}
     arguments.out.mkdir(parents=True, exist_ok=True)
     for page, groups in (("stability", "BC"), ("accuracy", "A")):

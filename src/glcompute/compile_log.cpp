@@ -21,6 +21,8 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
+bool speaks_of(std::string_view text, std::string_view word) { return text.find(word) != text.npos; }
+
 /// Takes a number, and says whether there was one.
 bool take(std::string_view& text, std::uint32_t& number) {
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -88,8 +90,10 @@ std::string by_statement(std::string_view line) {
 
 std::string with_quotes(std::string_view log, const ProgramSource& source) {
   std::string text;
+  const bool refused = speaks_of(log, "error");
   while (!log.empty()) {
     const std::string_view said = take_line(log);
+    if (refused && speaks_of(said, "warning") && !speaks_of(said, "error")) continue;  // drivers warn of what was not asked about
     text += (text.empty() ? "" : "\n") + std::string(said);
     Mark mark;
     const std::string_view at = find_mark(said, mark) ? line_at(source, mark) : std::string_view();
