@@ -50,9 +50,9 @@ struct Run {
     if (error.code != ErrorCode::none) return;
     const auto begin = std::chrono::steady_clock::now();
     const StepReport& report = stepper.step(world, dt);
-    error = report.error;
-    contacts.push_back(report.contacts);
     ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    contacts.push_back(report.contacts);
+    error = report.error;
   }
   template <class Do> void each_dynamic(Do&& change) {
     for (const scenes::SceneBody& body : scene.bodies)

@@ -76,19 +76,12 @@ Json entry_json(const PlanEntry& entry, const World& world) {
   return json;
 }
 
-/// Of a buffer and of its table; of lists there is none.
-std::pair<std::string_view, std::string_view> names_of(Buffer buffer, const WorldState& s) {
-  for (const OwnProperty& p : s.own.list)
-    if (p.used && p.buffer == buffer) return {p.name, s.own.table_name(p.table)};
-  return {schema(buffer).name, of_table(buffer) ? name(schema(buffer).table) : std::string_view()};
-}
-
 /// Buffers that the plan binds, by place, and those of bodies, joints and contacts that it does not need.
 Json buffers_json(const StepPlan& plan, const World& world) {
   Json bound = Json::array(), not_needed = Json::array();
   std::vector<bool> used(buffer_count);
   for (const PlanBinding& b : plan.bindings) {
-    const auto [buffer, table] = names_of(b.buffer, world.state());
+    const auto [buffer, table] = world.state().own.names(b.buffer);
     if (!is_own(b.buffer)) used[std::size_t(b.buffer)] = true;
     bound.push_back(
         {{"buffer", buffer}, {"table", table}, {"place", name(b.place)}, {"bytes_per_row", row_bytes(b.buffer, world)}});

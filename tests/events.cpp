@@ -43,40 +43,44 @@ class ListHash {
   std::uint64_t hash_ = 14695981039346656037ull;
 };
 
+/// Hashes of all lists up to each of so many steps; `act` comes before a step, `look` at what it told.
+template <class Act, class Look>
+std::vector<std::uint64_t> hash_lists(World& world, Stepper& stepper, int steps, Act&& act, Look&& look) {
+  std::vector<std::uint64_t> hashes;
+  ListHash hash;
+  for (int i = 0; i < steps; i++) {
+    act(i);
+    run(world, stepper, 1);
+    look(stepper.events());
+    hash.add(stepper.events());
+    hashes.push_back(hash.value());
+  }
+  return hashes;
+}
+StepSettings asking(StepSettings settings) {
+  ask_for_all(settings);
+  return settings;
+}
+constexpr auto no_act = [](int) {};
+
 HashesOf lists_of(const char* scene, int count, Precision precision) {
   return [=](const StepSettings& settings, int steps) {
     SceneWorld s = scene_world(scene, count, precision);
-    StepSettings with = settings;
-    ask_for_all(with);
-    Stepper stepper(with);
-    std::vector<std::uint64_t> hashes;
-    ListHash hash;
-    for (int i = 0; i < steps; i++) {
-      run(s.world, stepper, 1);
-      hash.add(stepper.events());
-      hashes.push_back(hash.value());
-    }
-    return hashes;
+    Stepper stepper(asking(settings));
+    return hash_lists(s.world, stepper, steps, no_act, [](const StepEvents&) {});
   };
 }
-
 /// Two towers fall asleep, and the first is pushed over then; what lies down may wake the other, and sleeps again.
 HashesOf lists_of_sleepers(Precision precision) {
   return [=](const StepSettings& settings, int steps) {
     Towers t(2, precision);
-    StepSettings with = sleepy(settings);
-    ask_for_all(with);
-    t.stepper = Stepper(with);
-    std::vector<std::uint64_t> hashes;
-    ListHash hash;
+    t.stepper = Stepper(asking(sleepy(settings)));
     std::size_t slept = 0, woken = 0;
-    for (int i = 0; i < steps; i++) {
-      if (i == 60) must(t.world.set_velocity(t.cubes[2], {3, 2, 0}));
-      run(t.world, t.stepper, 1);
-      hash.add(t.stepper.events());
-      slept += t.stepper.events().slept.size(), woken += t.stepper.events().woken.size();
-      hashes.push_back(hash.value());
-    }
+    const auto push = [&](int step) {
+      if (step == 60) must(t.world.set_velocity(t.cubes[2], {3, 2, 0}));
+    };
+    const auto hashes = hash_lists(t.world, t.stepper, steps, push,
+                                   [&](const StepEvents& e) { slept += e.slept.size(), woken += e.woken.size(); });
     CHECK(slept >= 6);
     CHECK(woken >= 3);
     return hashes;
@@ -85,19 +89,11 @@ HashesOf lists_of_sleepers(Precision precision) {
 HashesOf lists_in_flight(Precision precision) {
   return [=](const StepSettings& settings, int steps) {
     SceneWorld s = scene_world("ballistic", 20, precision);
-    StepSettings with = settings;
-    ask_for_all(with);
+    StepSettings with = asking(settings);
     with.resident = true;
     Stepper stepper(with);
-    std::vector<std::uint64_t> hashes;
-    ListHash hash;
-    for (int i = 0; i < steps; i++) {
-      run(s.world, stepper, 1);
-      CHECK(stepper.events().moved.size() == s.world.bodies().size());
-      hash.add(stepper.events());
-      hashes.push_back(hash.value());
-    }
-    return hashes;
+    return hash_lists(s.world, stepper, steps, no_act,
+                      [&](const StepEvents& e) { CHECK(e.moved.size() == s.world.bodies().size()); });
   };
 }
 

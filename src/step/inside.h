@@ -100,14 +100,7 @@ struct Stepper::Inside {
     return ok;
   }
   /// Compiles it where it is to run, while it can still be refused.
-  Status check_kernel(const WorldState& s, const OwnKernel& kernel) {
-    const Place stage_place = std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
-    const Place place = kernel.body.empty() ? Place::cpu : !kernel.in_cpp() ? Place::gl : stage_place;
-    if (stage_place == Place::gl && kernel.body.empty()) return {};  // runs on the CPU; the plan shows what goes to and fro
-    if (place == Place::cpu) return {};
-    if (Status ok = prepare(s.tables.precision()); !ok) return ok;
-    return runner.check(place, kernel);
-  }
+  Status check_kernel(const WorldState& s, const OwnKernel& kernel);
 
   const void* fill(const WorldState& s, double h) {
     return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0),
@@ -162,7 +155,8 @@ struct Stepper::Inside {
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
       if (leaving.empty()) return put_rest_back(s, ok);
-      freeze_leaving(s);
+      freeze(s);
+      update_structure(s);
     }
     record_events(s, dt);
     if (settings.sleep) let_sleep(s, dt);
@@ -208,9 +202,11 @@ struct Stepper::Inside {
     scheduled_rest = s.rest_version;
     other = true;
     schedule.update_structure(s);
-    runner.keep(s, Buffer::joint_impulse);
-    schedule.trees.solved().write(s);
-    write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+    if (s.joints.size() > 1) {  // else not even the rows that pad need be there
+      runner.keep(s, Buffer::joint_impulse);
+      schedule.trees.solved().write(s);
+      write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+    }
     tears.update_structure(s, schedule.trees.forest());
     octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
     fourth.forget();
@@ -223,14 +219,8 @@ struct Stepper::Inside {
   }
 
   /// Which trees move in fourth order in a step of dt.
-  void choose_order(FourthOrder& order, const WorldState& s, const TreeSlots& trees, double dt) const {
-    order.choose(s, trees.forest(), trees.solved(), trees.closing(), !own.ordered().empty(), settings, dt);
-  }
+  void choose_order(FourthOrder& order, const WorldState& s, const TreeSlots& trees, double dt) const;
 
-  void freeze_leaving(WorldState& s) {
-    freeze(s);
-    update_structure(s);
-  }
   void freeze(WorldState& s) {
     for (const std::uint32_t row : leaving) {
       report.frozen.push_back(s.body_ids.id<BodyId>(s.bodies[row].index));
@@ -283,6 +273,16 @@ struct Stepper::Inside {
     return bodies;
   }
 
+  /// And order, of each island, in which kernels then go.
+  void choose_substeps(WorldState& s, double dt, const Detector::Found& found) {
+    choose_order(fourth, s, schedule.trees, dt);
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
+                       own.kernels().pairs_of_bodies(), settings, dt) ||
+        other)
+      schedule.group(octaves.of_bodies());
+    report.slowed = octaves.limited() > 0 ? slow_torn(s, substep_length(dt, settings.substeps << highest_octave(settings))) : 0;
+  }
+
   /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
   Status attempt(WorldState& s, double dt) {
     Detector::Found found;
@@ -293,19 +293,13 @@ struct Stepper::Inside {
     if (!ok) return ok;
     regrouped = found.changed || other || contacts_version != s.contacts_version;
     if (regrouped) update_contacts(s);
-    choose_order(fourth, s, schedule.trees, dt);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
-                       own.kernels().pairs_of_bodies(), settings, dt) ||
-        other)
-      schedule.group(octaves.of_bodies());
-    report.slowed = octaves.limited() > 0 ? slow_torn(s, substep_length(dt, settings.substeps << highest_octave(settings))) : 0;
+    choose_substeps(s, dt, found);
     PlanSignature wanted = signature(settings, s, schedule);
     wanted.octaves = octaves.used();
     wanted.second_order = fourth.reasons();
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
-    wanted.free_contacts = schedule.contacts.any_without_trees();
-    wanted.tree_contacts = schedule.contacts.any_with_trees();
+    add_contacts(wanted, schedule, found, Settling(h, s.gravity).visits);
     if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
     jumps.act(s, own.ordered(), schedule.moving_bodies(), h, dt, runner);
     if (other) s.tables.resize(Table::node, 1);
@@ -313,12 +307,6 @@ struct Stepper::Inside {
     if (const std::uint32_t rows = schedule.trees.nodes().rows();
         (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
-    wanted.friction = found.friction || found.rolling;
-    wanted.restitution = found.restitution;
-    wanted.visits = found.placed && wanted.free_contacts ? Settling(h, s.gravity).visits : 1;
-    wanted.impacts = found.impacts;
-    wanted.rolling = found.rolling;
-    wanted.touches = wanted.contact_events && wanted.contacts();
     if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
     list_islands(s, wanted);
     plan = &plans.find(wanted, own.ordered());
@@ -348,6 +336,12 @@ struct Stepper::Inside {
     if (strayed) return {};
     s.last_substep = h;
     s.settling = Settling(h, s.gravity).left(s.settling);
+    tell(wanted, found);
+    return {};
+  }
+
+  /// Of a step that was made.
+  void tell(const PlanSignature& wanted, const Detector::Found& found) {
     report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
     report.refined = octaves.refined();
     report.limited = octaves.limited();
@@ -358,7 +352,6 @@ struct Stepper::Inside {
     report.joints_as_rows = schedule.joints.constraints() - schedule.joints.with_trees() - schedule.trees.free_springs();
     report.tree_contacts_as_rows = schedule.contacts.beside_trees();
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
-    return {};
   }
 
   /// Whether a step that asks for it is made anew: most_tries times in all.
@@ -379,13 +372,7 @@ struct Stepper::Inside {
   bool finds_islands() const { return settings.sleep && settings.islands == Place::gl; }
 
   /// Who comes when in pair kernels and reductions.
-  Status order_own(const WorldState& s, double dt, Schedule& of) const {
-    OwnLists& lists = of.own;
-    lists.order(s, own.kernels(), of.octave_of());
-    const double cutoff = own.kernels().cutoff();
-    if (cutoff == 0) return {};
-    return lists.near.find(s, of.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
-  }
+  Status order_own(const WorldState& s, double dt, Schedule& of) const;
   bool find_strays(const WorldState& s, const AlignedBytes& before) {
     const bool near = own.kernels().cutoff() > 0 && schedule.own.near.find_strays(s, schedule.rows_that_move());
     return detector.find_strays(s, before) || near;

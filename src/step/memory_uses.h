@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pcphys/step.h"
@@ -16,12 +17,13 @@ class MemoryUses {
 
   /// Of each buffer what `bytes` of it answers.
   template <class BytesOf> void add_buffers(Place place, BytesOf&& bytes) {
-    for (std::size_t b = 0; b < buffer_count; b++) {
-      const bool in_table = of_table(Buffer(b));
-      add(schema(Buffer(b)).name, in_table ? name(schema(Buffer(b)).table) : "", place, bytes(Buffer(b)));
-    }
+    const auto add_one = [&](Buffer buffer) {
+      const auto [name, table] = state_.own.names(buffer);
+      add(name, table, place, bytes(buffer));
+    };
+    for (std::size_t b = 0; b < buffer_count; b++) add_one(Buffer(b));
     for (const OwnProperty& p : state_.own.list)
-      if (p.used) add(p.name, state_.own.table_name(p.table), place, bytes(p.buffer));
+      if (p.used) add_one(p.buffer);
   }
   /// The host's tables, and the lists of a schedule.
   void add_host(Schedule& schedule);

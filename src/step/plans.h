@@ -3,6 +3,7 @@
 #include <deque>
 #include <utility>
 
+#include "collision/detector.h"
 #include "events/event_recorder.h"
 #include "pcphys/step.h"
 #include "plan/own_kernels.h"
@@ -37,6 +38,18 @@ inline PlanSignature signature(const StepSettings& settings, const WorldState& w
   s.tree_drives = schedule.trees.drives();
   s.joint_drives = schedule.trees.closing_drives();
   return s;
+}
+
+/// And what touches; `visits`: of contacts with what was just placed.
+inline void add_contacts(PlanSignature& s, const Schedule& schedule, const Detector::Found& found, unsigned visits) {
+  s.free_contacts = schedule.contacts.any_without_trees();
+  s.tree_contacts = schedule.contacts.any_with_trees();
+  s.friction = found.friction || found.rolling;
+  s.restitution = found.restitution;
+  s.visits = found.placed && s.free_contacts ? visits : 1;
+  s.impacts = found.impacts;
+  s.rolling = found.rolling;
+  s.touches = s.contact_events && s.contacts();
 }
 
 /// Those seen, few; they stay where they are.

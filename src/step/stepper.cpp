@@ -13,6 +13,26 @@ const char* name(Timer timer) {
   return names[std::size_t(timer)];
 }
 
+Status Stepper::Inside::check_kernel(const WorldState& s, const OwnKernel& kernel) {
+  const Place stage_place = std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
+  const Place place = kernel.body.empty() ? Place::cpu : !kernel.in_cpp() ? Place::gl : stage_place;
+  if (place == Place::cpu) return {};
+  if (Status ok = prepare(s.tables.precision()); !ok) return ok;
+  return runner.check(place, kernel);
+}
+
+Status Stepper::Inside::order_own(const WorldState& s, double dt, Schedule& of) const {
+  OwnLists& lists = of.own;
+  lists.order(s, own.kernels(), of.octave_of());
+  const double cutoff = own.kernels().cutoff();
+  if (cutoff == 0) return {};
+  return lists.near.find(s, of.rows_that_move(), lists.places(), cutoff, dt, settings.max_pairs);
+}
+
+void Stepper::Inside::choose_order(FourthOrder& order, const WorldState& s, const TreeSlots& trees, double dt) const {
+  order.choose(s, trees.forest(), trees.solved(), trees.closing(), !own.ordered().empty(), settings, dt);
+}
+
 Stepper::Stepper(const StepSettings& settings) : inside_(std::make_unique<Inside>()) { inside_->settings = settings; }
 Stepper::~Stepper() = default;
 Stepper::Stepper(Stepper&&) noexcept = default;

@@ -34,6 +34,12 @@ std::string_view OwnProperties::table_name(Table table) const {
   return name(table);
 }
 
+std::pair<std::string_view, std::string_view> OwnProperties::names(Buffer buffer) const {
+  for (const OwnProperty& p : list)
+    if (p.used && p.buffer == buffer) return {p.name, table_name(p.table)};
+  return {schema(buffer).name, of_table(buffer) ? name(schema(buffer).table) : std::string_view()};
+}
+
 std::vector<Field> fields(const Tables& tables, const OwnProperties& own, Table table, Role role) {
   std::vector<Field> found;
   const std::size_t real = tables.real_bytes();

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "world/tables.h"
@@ -34,6 +35,8 @@ struct OwnProperties {
   std::uint32_t add(OwnProperty property);
   /// Of a table, the library's or the host's own.
   std::string_view table_name(Table table) const;
+  /// Of a buffer, and of its table; a list is of none.
+  std::pair<std::string_view, std::string_view> names(Buffer buffer) const;
   std::vector<OwnProperty> list;  // property k has the handle properties().size() + k
   std::vector<OwnTable> tables;   // table k has the id own_tables_from + k
 };
