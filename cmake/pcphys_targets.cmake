@@ -30,20 +30,20 @@ endfunction()
 # Lanes of 4 and 8 exist on x86-64 only; elsewhere the scalar instantiations remain.
 macro(pcphys_drop_foreign_lanes sources)
   if(NOT PCPHYS_X86)
-    list(FILTER ${sources} EXCLUDE REGEX "/src/(cpu/kernels|collision/narrow)_[fd](4|8v?)\\.cpp$")
+    list(FILTER ${sources} EXCLUDE REGEX "/src/(cpu/kernels|collision/narrow)_[fd](1v|4|8v?)\\.cpp$")
   endif()
 endmacro()
 
 # One file per instantiation, each with the instruction set it may use; which one runs is chosen at run time.
 # -mno-fma: a compiler driver that defaults to a newer processor must not bring fused operations back.
 function(pcphys_set_lane_flags)
-  foreach(name f1 f4 f8 f8v d1 d4)
+  foreach(name f1 f1v f4 f8 f8v d1 d1v d4)
     set(flags ${PCPHYS_KERNEL_FLAGS} $<$<NOT:$<CONFIG:Debug>>:-O3>)
     if(PCPHYS_X86 AND name STREQUAL f4)
       list(APPEND flags -msse4.2 -mno-fma)
     elseif(PCPHYS_X86 AND name MATCHES "^(f8|d4)$")
       list(APPEND flags -mavx2 -mno-fma)
-    elseif(PCPHYS_X86 AND name STREQUAL f8v)
+    elseif(PCPHYS_X86 AND name MATCHES "v$")
       list(APPEND flags -mno-fma -mavx512f -mavx512vl -mavx512dq -mavx512bw)  # in this order: for Clang the first undoes the second
     endif()
     if(NOT name MATCHES "1$")

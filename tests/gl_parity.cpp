@@ -26,6 +26,11 @@ TEST_CASE("eight lanes of float equal scalar") {
 TEST_CASE("eight lanes of float with AVX-512 equal scalar") {
   if (has_avx512()) compare_lanes<float>(cpu_kernels_f1, cpu_kernels_f8v);
 }
+TEST_CASE("scalars with AVX-512 equal scalar") {
+  if (!has_avx512()) return;
+  compare_lanes<float>(cpu_kernels_f1, cpu_kernels_f1v);
+  compare_lanes<double>(cpu_kernels_d1, cpu_kernels_d1v);
+}
 TEST_CASE("four lanes of double equal scalar") {
   if (__builtin_cpu_supports("avx2")) compare_lanes<double>(cpu_kernels_d1, cpu_kernels_d4);
 }

@@ -35,6 +35,14 @@ const CpuKernels* find_kernels(Precision precision, std::uint32_t lanes) {
   return nullptr;
 }
 
+/// Those for what would leave lanes empty. One lane is not the plain reference where the processor has more registers.
+const CpuKernels* find_narrower(Precision precision, std::uint32_t lanes) {
+#ifdef PCPHYS_HAVE_X86_LANES
+  if (lanes == 1 && has_avx512()) return precision == Precision::f64 ? &cpu_kernels_d1v : &cpu_kernels_f1v;
+#endif
+  return find_kernels(precision, lanes);
+}
+
 class CpuBackend final : public Backend {
  public:
   /// `narrower`: also kernels of fewer lanes, for what would leave lanes empty.
@@ -42,7 +50,7 @@ class CpuBackend final : public Backend {
     of_lanes_[kernels.lanes] = &kernels;
     if (!narrower) return;
     for (std::uint32_t lanes : {1u, 4u})
-      if (lanes < kernels.lanes) of_lanes_[lanes] = find_kernels(kernels.f64 ? Precision::f64 : Precision::f32, lanes);
+      if (lanes < kernels.lanes) of_lanes_[lanes] = find_narrower(kernels.f64 ? Precision::f64 : Precision::f32, lanes);
   }
 
   std::string device() const override {

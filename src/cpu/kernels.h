@@ -23,9 +23,10 @@ struct CpuKernels {
 
 extern const CpuKernels cpu_kernels_f1, cpu_kernels_d1;
 #ifdef PCPHYS_HAVE_X86_LANES
-extern const CpuKernels cpu_kernels_f4, cpu_kernels_f8, cpu_kernels_f8v, cpu_kernels_d4;
+extern const CpuKernels cpu_kernels_f4, cpu_kernels_f8, cpu_kernels_d4;
+extern const CpuKernels cpu_kernels_f1v, cpu_kernels_f8v, cpu_kernels_d1v;  // with AVX-512VL
 
-/// Whether the processor has what f8v is compiled for.
+/// Whether the processor has what these are compiled for.
 bool has_avx512();
 #endif
 
