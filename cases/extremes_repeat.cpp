@@ -56,7 +56,7 @@ std::uint64_t hash_after(Trial& trial, const StepSettings& settings, Error& erro
       add_block(builder, {0.2, 0.15, 0.2}, 1, {p, {}});
   }
   for (int i = 0; i < 3; ++i)
-    builder.add_ragdoll(RagdollDef::human(), {{0.4, 0.1 * i, 2 + 0.7 * i}, axis_angle({1, 0, 0}, 0.4 * i)}, {}, i + 1);
+    builder.add_ragdoll(free_human(), {{0.4, 0.1 * i, 2 + 0.7 * i}, axis_angle({1, 0, 0}, 0.4 * i)}, {}, i + 1);
   Stepper stepper(settings);
   for (int i = 0; i < 300; ++i)
     if (const StepReport& report = stepper.step(world, trial.dt()); !report) {

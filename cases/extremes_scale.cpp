@@ -153,7 +153,7 @@ void far_scene(scenes::Builder& builder, Far what, Vec3 offset) {
       builder.set_material(0.5, 0);
       add_floor(builder, offset);
       for (int i = 0; i < 5; ++i)
-        builder.add_ragdoll(RagdollDef::human(),
+        builder.add_ragdoll(free_human(),
                             {offset + Vec3{0.1 * i, 0.05 * i, 0.3 + 0.6 * i}, axis_angle({1, 0, 0}, 0.1 * i)}, {}, i + 1);
   }
 }

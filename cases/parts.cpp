@@ -46,6 +46,12 @@ void add_pyramid(scenes::Builder& builder, const Pyramid& p) {
                 {{p.edge * (i - 0.5 * (p.base - row)), 0, rise * (half + p.edge * row)}, {}});
 }
 
+RagdollDef free_human() {
+  RagdollDef def = RagdollDef::human();
+  def.set_damping(0);
+  return def;
+}
+
 void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b) {
   JointDef def;
   def.a = a;

@@ -28,7 +28,7 @@ BoneDef end_bone(int limb, Vec3 joint, Vec3 centre, Vec3 along) {
 
 /// The human of the library with hands and feet, 16 bones, scaled to 70 kg; it stands along y.
 RagdollDef human() {
-  RagdollDef def = RagdollDef::human();
+  RagdollDef def = free_human();
   constexpr int forearm = 6, shin = 10;  // the left ones; the right ones follow
   for (int side : {0, 1}) {
     const double sign = side == 0 ? 1 : -1;

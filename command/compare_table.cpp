@@ -75,6 +75,7 @@ Json measures(const Contest& contest, std::size_t entrant) {
           {"peak_cone_excess_degrees", score.peak_limit.cone * degrees},
           {"energy_start", score.start.energy()},
           {"energy_end", end.energy()},
+          {"kinetic_energy_end", end.kinetic},
           {"energy_max", score.peak_energy},
           {"drift", end.drift.sideways},
           {"fallen", end.drift.fallen},

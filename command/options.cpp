@@ -97,7 +97,8 @@ Status check_numbers(const RunOptions& options) {
   if (!(options.ratio > 0 && std::isfinite(options.ratio)))
     return bad("--ratio is " + std::to_string(options.ratio) + "; give a finite mass ratio above 0.");
   for (const auto& [name, value] :
-       {std::pair("friction", options.friction), std::pair("restitution", options.restitution), std::pair("drag", options.drag)})
+       {std::pair("friction", options.friction), std::pair("restitution", options.restitution), std::pair("drag", options.drag),
+        std::pair("joint-damping", options.joint_damping)})
     if (value && !(*value >= 0 && std::isfinite(*value)))
       return bad("--" + std::string(name) + " is " + std::to_string(*value) + "; give a finite number, 0 or more.");
   return {};
@@ -147,6 +148,7 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--friction", options.friction, "of all bodies, static and kinetic (default: the scene's own)");
   app.add_option("--restitution", options.restitution, "of all bodies (default: the scene's own)");
   app.add_option("--drag", options.drag, "of all bodies that move, linear and angular [1/s] (default: the scene's own)");
+  app.add_option("--joint-damping", options.joint_damping, "of all joints [N m s/rad] (default: the scene's own)");
 }
 
 void add_run_options(CLI::App& app, RunOptions& options) {
@@ -201,6 +203,7 @@ Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   setup.scene_options.friction = options.friction;
   setup.scene_options.restitution = options.restitution;
   setup.scene_options.drag = options.drag;
+  setup.scene_options.joint_damping = options.joint_damping;
   setup.settings.narrow = options.narrow == "fcl" ? NarrowPhase::fcl : NarrowPhase::native;
   setup.settings.integrator = options.integrator == "seed" ? Integrator::seed : Integrator::verlet;
   setup.settings.substeps = std::uint32_t(options.substeps);

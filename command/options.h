@@ -27,7 +27,7 @@ struct RunOptions {
   std::optional<long long> steps;
   long long substeps = 4, order = 2, threads = 1, warmup = 0, device = -1;
   double ratio = 100;
-  std::optional<double> friction, restitution, drag;
+  std::optional<double> friction, restitution, drag, joint_damping;
   std::string json, csv, gltf, events;
   bool hash = false, poses = false, resident = false;
 };

@@ -172,6 +172,7 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"peak_limit_excess_degrees", outcome.peaks.limit_excess * degrees},
       {"energy_start", outcome.start.energy()},
       {"energy_end", end.energy()},
+      {"kinetic_energy_end", end.kinetic},
       {"energy_max", outcome.peaks.energy},
       {"potential_range", outcome.peaks.potential_high - outcome.peaks.potential_low},
       {"momentum", vector_json(end.momentum)},

@@ -73,6 +73,7 @@ class Bullet : public Peer {
     gCalculateCombinedRestitutionCallback = mean_restitution;
     gCalculateCombinedFrictionCallback = geometric_friction;
     untranslated_ = description.untranslated;
+    if (description.has_damping()) untranslated_.push_back(no_damping);
     world_.setGravity(to_bullet(description.gravity));
     if (options.iterations > 0) world_.getSolverInfo().m_numIterations = options.iterations;
     if (options.restitution_threshold)

@@ -88,11 +88,11 @@ Result<Description> Description::of(const World& world, std::span<const BodyId> 
   if (!world.springs().empty()) return Error{ErrorCode::unavailable, "Peers are given no springs: leave them or the peers out."};
   for (JointId id : world.joints()) {
     const JointDef def = *world.joint(id);
-    if (def.motor.torque > 0 || def.spring.stiffness > 0 || def.spring.damping > 0)
+    if (def.motor.torque > 0 || def.spring.stiffness > 0)
       return Error{ErrorCode::unavailable, "Peers are given no motors and springs of joints: leave them or the peers out."};
     if (!index.contains(def.a) || !index.contains(def.b))
       return Error{ErrorCode::unavailable, "A joint holds a body that the peer was not given: list all bodies of the world."};
-    result.joints.push_back({index[def.a], index[def.b], def.frame_a, def.frame_b, def.freedom, def.collide});
+    result.joints.push_back({index[def.a], index[def.b], def.frame_a, def.frame_b, def.freedom, def.collide, def.spring.damping});
   }
   result.untranslated = notes(world, result);
   return result;
@@ -102,6 +102,9 @@ bool Description::has_hulls() const {
   return std::ranges::any_of(bodies, [](const Body& body) {
     return std::ranges::any_of(body.shapes, [](const ShapeDef& shape) { return shape.kind == ShapeKind::hull; });
   });
+}
+bool Description::has_damping() const {
+  return std::ranges::any_of(joints, [](const Joint& joint) { return joint.damping > 0; });
 }
 bool Description::collides(std::size_t body) const {
   const auto& shapes = bodies[body].shapes;

@@ -29,6 +29,7 @@ struct Joint {
   Pose frame_a, frame_b;
   AngleFreedom freedom;
   bool collide = false;
+  double damping = 0;  // of its turning [N m s/rad]
 };
 
 /// A range of one angle of a joint [rad].
@@ -59,9 +60,14 @@ struct Description {
   bool moves(int body) const { return body >= 0 && bodies[std::size_t(body)].dynamic; }
   /// Whether some shape is a hull, which only Bullet is given.
   bool has_hulls() const;
+  /// Whether some joint has, which only MuJoCo is given.
+  bool has_damping() const;
   /// Whether a body has anything that could touch.
   bool collides(std::size_t body) const;
 };
+
+/// What a peer says whose joints have no damping.
+inline constexpr const char* no_damping = "joints turn without their damping";
 
 /// Takes a body's new wrench, and lists it among those that are pushed if it is not there.
 void change_wrench(std::vector<Body>& bodies, std::vector<std::size_t>& pushed, std::size_t body, const Wrench& wrench);

@@ -147,6 +147,8 @@ class Writer {
     return link.flipped ? Frames{j.frame_b, j.frame_a} : Frames{j.frame_a, j.frame_b};
   }
 
+  static std::string damping(const Joint& j) { return j.damping > 0 ? " damping='" + text(j.damping) + "'" : ""; }
+
   void write_joint(const Link& link, const Pose& own_frame) {
     const Joint& j = joint(link.joint);
     const std::string place = " pos='" + text(own_frame.position) + "'";
@@ -155,7 +157,7 @@ class Writer {
     if (is == JointKind::ball || is == JointKind::cone_twist) {
       bodies_ += "<joint type='ball' name='" + joint_name(link.joint, 0) + "'" + place;
       if (is == JointKind::cone_twist) bodies_ += " limited='true' range='0 " + text(j.freedom.cone) + "'";
-      bodies_ += "/>";
+      bodies_ += damping(j) + "/>";
       cones_ = cones_ || is == JointKind::cone_twist;
       return;
     }
@@ -172,7 +174,7 @@ class Writer {
       if (!range.free())
         bodies_ +=
             " limited='true' range='" + text(std::max(range.lower, -largest)) + " " + text(std::min(range.upper, largest)) + "'";
-      bodies_ += "/>";
+      bodies_ += damping(j) + "/>";
     }
   }
 
@@ -239,6 +241,7 @@ class Writer {
     if (cones_)
       notes.push_back("a cone limits the whole rotation of the joint, twist included; the twist has no limit of its own");
     if (hinges_) notes.push_back("pitch, yaw and roll are three hinges in a row, which agree with pcphys to first order");
+    if (hinges_ && description_.has_damping()) notes.push_back("damping acts on pitch, yaw and roll one by one");
     if (loop_limits_) notes.push_back("joints that close a loop have no limits");
     if (std::any_of(description_.joints.begin(), description_.joints.end(), [](const Joint& j) { return j.collide; }))
       notes.push_back("bodies that a joint connects never collide");

@@ -46,6 +46,7 @@ class Ode : public Peer {
     set_up_ode();
     dRandSetSeed(0);  // QuickStep visits rows in a random order: the same in every run
     untranslated_ = description.untranslated;
+    if (description.has_damping()) untranslated_.push_back(no_damping);
     world_ = dWorldCreate();
     moving_ = dHashSpaceCreate(nullptr);
     standing_ = dSimpleSpaceCreate(nullptr);

@@ -52,7 +52,7 @@ Result<int> checked_count(const SceneInfo& info, const SceneOptions& options) {
                                             "; give a number from 0 to " + std::to_string(info.max_count) + "."};
 }
 
-/// What the options say of all bodies.
+/// What the options say of all bodies and joints.
 Status adapt(World& world, const Scene& scene, const SceneOptions& options) {
   for (const SceneBody& body : scene.bodies) {
     Material material = *world.material(body.id);
@@ -61,6 +61,12 @@ Status adapt(World& world, const Scene& scene, const SceneOptions& options) {
     Status ok = options.friction || options.restitution ? world.set_material(body.id, material) : Status();
     if (ok && options.drag && body.kind == BodyKind::dynamic) ok = world.set_drag(body.id, *options.drag, *options.drag);
     if (!ok) return ok;
+  }
+  if (!options.joint_damping) return {};
+  for (const JointId joint : scene.joints) {
+    AngularSpring spring = world.joint(joint)->spring;
+    spring.damping = *options.joint_damping;
+    if (Status ok = world.set_spring(joint, spring); !ok) return ok;
   }
   return {};
 }

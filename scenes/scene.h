@@ -24,7 +24,8 @@ struct SceneOptions {
   // of all bodies; the scene's own when absent
   std::optional<double> friction;  // static and kinetic
   std::optional<double> restitution;
-  std::optional<double> drag;  // linear and angular, of bodies that move [1/s]
+  std::optional<double> drag;           // linear and angular, of bodies that move [1/s]
+  std::optional<double> joint_damping;  // of all joints [N m s/rad]
 };
 
 /// What metrics need to know of a body.

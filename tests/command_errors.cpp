@@ -57,6 +57,7 @@ const Case cases[] = {
     {"run balls --friction -1", 2, "friction"},
     {"run balls --restitution nan", 2, "restitution"},
     {"run balls --drag -1", 2, "drag"},
+    {"run ragdolls --joint-damping -1", 2, "joint-damping"},
     {"run balls --gltf motion.obj", 2, ".gltf or .glb"},
     {"run balls --json - --hash", 2, "--json -"},
     {"run balls --json - --csv -", 2, "--json -"},

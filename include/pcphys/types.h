@@ -162,6 +162,7 @@ struct BoneDef {
   Vec3 joint;       // where it is pinned to its parent, ragdoll's frame
   Quat joint_axes;  // of the joint frames, ragdoll's frame
   AngleFreedom freedom;
+  double damping = 0;  // torque against the joint's turning, per angular velocity [N m s/rad]; without any, what hangs free swings on
 };
 
 /// A tree of bones (section 9.1 of the original). Adjacent bones do not collide.
@@ -170,8 +171,11 @@ struct RagdollDef {
   double density = 1000;
   Material material;
 
-  /// The original's human: 12 capsules, 11 joints, root at the hips, feet at y = 0.
+  /// The original's human: 12 capsules, 11 joints, root at the hips, feet at y = 0. Its joints have a damping of 0.3 N m s/rad,
+  /// so that limbs that hang free come to rest.
   static RagdollDef human();
+  /// Gives all joints this damping [N m s/rad].
+  void set_damping(double damping);
 };
 
 struct Ragdoll {

@@ -256,6 +256,7 @@ JointDef bone_joint(const RagdollDef& def, const BoneDef& bone) {
   joint.frame_b = {rotate(conjugate(child.orientation), bone.joint - child.position),
                    conjugate(child.orientation) * bone.joint_axes};
   joint.freedom = bone.freedom;
+  joint.spring.damping = bone.damping;
   return joint;
 }
 

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double quarter = std::numbers::pi / 2;
+/// Enough for limbs that hang free to be still within seconds; the humanoids that come with MuJoCo have 0.5 to 5.
+constexpr double relaxed = 0.3;  // [N m s/rad]
 
 struct BoneRow {
   int parent;
@@ -55,10 +57,15 @@ RagdollDef RagdollDef::human() {
       bone.joint = row.joint;
       bone.joint_axes = axes_along(row.axis);
       bone.freedom = AngleFreedom::cone_and_twist(row.cone * degree, row.twist * degree);
+      bone.damping = relaxed;
     }
     def.bones.push_back(bone);
   }
   return def;
+}
+
+void RagdollDef::set_damping(double damping) {
+  for (BoneDef& bone : bones) bone.damping = damping;
 }
 
 }  // namespace pcphys
