@@ -108,6 +108,8 @@ inline constexpr double tree_damping = 0.4;
 /// Of contacts with joint trees, the share of a sub-step's impulse that goes into its slow mean, on which the soft
 /// constraint does not leak (docs/joint-trees.md).
 inline constexpr double mean_impulse_share = 0.025;
+/// And the mean at most what would give the lighter body this speed [m/s]: what cannot be pushed apart is not pushed ever harder.
+inline constexpr double mean_impulse_speed = 30;
 /// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
 inline constexpr double tree_spin_floor = 6e-5;
 /// Of fourth order a tree has no stiffness in its inertia: (frequency at which the forces of its pins would turn a body, times half the

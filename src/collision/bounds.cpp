@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "collision/detector.h"
 #include "collision/view.h"
@@ -62,6 +63,36 @@ template <class Scalar> void Detector::find_twists(const WorldState& s, const Op
                moving_.data(), movers_, twists_.data()->v});
 }
 
+// A blow that stops one body of a joint tree sends its neighbours on, or draws them along: a foot that stands is pushed through the floor
+// by what falls on it from the same ragdoll, though it did not move. So each may go as far as the fastest body that joints connect it
+// to, where that is further than half of the thinnest shape.
+void Detector::find_drawn(double dt) {
+  const bool drew = std::exchange(draws_, false);
+  if (!links_.empty()) {
+    drawn_.resize(twists_.size());
+    for (std::size_t row = 0; row < twists_.size(); row++) drawn_[row] = twists_[row].speed;
+    const auto join = [this](const std::array<std::uint32_t, 2>& link) {
+      float &a = drawn_[link[0]], &b = drawn_[link[1]];
+      a = b = std::max(a, b);
+    };
+    for (std::size_t i = links_.size(); i-- > 0;) join(links_[i]);  // to the root, and from there to all
+    for (const auto& link : links_) join(link);
+    const float least = 0.5f * thinnest_, step = float(dt);
+    for (std::size_t row = 0; row < twists_.size(); row++) {
+      const float way = drawn_[row] * step;
+      drawn_[row] = way > least && drawn_[row] > twists_[row].speed ? way : 0.0f;
+      draws_ |= drawn_[row] > 0;
+    }
+  }
+  if (drew && !draws_) drawn_.assign(twists_.size(), 0);
+  if (!strays_ && !draws_ && !drew) return;
+  float* const column = reinterpret_cast<float*>(columns_.data()) + (bound_columns - 1) * bodies_.size();
+  for (std::size_t i = 0; i < proxies_.size(); i++) {
+    const std::uint32_t row = bodies_[i];
+    column[i] = std::max(strays_ ? went_[row] : 0.0f, draws_ ? drawn_[row] : 0.0f);
+  }
+}
+
 // Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so that every
 // two shapes that come within the margin of each other have overlapping boxes.
 template <class Scalar> void Detector::bound(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
@@ -85,8 +116,7 @@ template <class Scalar> void Detector::bound(const WorldState& s, double dt, con
     if constexpr (rounds) round_row(rows + i * round_reals, bound_rows + i * round_reals);
   }
   float* const columns = reinterpret_cast<float*>(columns_.data());
-  if (strays_)
-    for (std::uint32_t i = 0; i < count; i++) columns[(bound_columns - 1) * stride + i] = went_[bodies_[i]];
+  find_drawn(dt);
   narrow_lanes<float>(options.lanes)
       .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt),
               float(length(s.gravity) * dt * dt), largest_turn, reach_.data(), tight_.data()});

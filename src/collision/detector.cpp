@@ -66,6 +66,27 @@ bool some_could_touch(const WorldState& s) {
   return false;
 }
 
+/// Of joints of free trees, the rows of the two bodies. (What hangs on something that never gives way may have nowhere to go, wherever it
+/// is looked for: docs/substeps.md, torn trees.)
+void list_links(const WorldState& s, std::vector<std::array<std::uint32_t, 2>>& links) {
+  links.clear();
+  std::vector<bool> held(s.bodies.size());
+  for (std::uint32_t row = 1; row < s.joints.size(); row++) {
+    const std::uint32_t a = s.body_ids.row(s.joints[row].body_a), b = s.body_ids.row(s.joints[row].body_b);
+    if (s.joints[row].spring) continue;
+    if (s.responds(a) && s.responds(b))
+      links.push_back({a, b});
+    else
+      held[a] = held[b] = true;
+  }
+  const auto pass_on = [&held](const std::array<std::uint32_t, 2>& link) {
+    if (held[link[0]] || held[link[1]]) held[link[0]] = held[link[1]] = true;
+  };
+  std::for_each(links.rbegin(), links.rend(), pass_on);
+  std::ranges::for_each(links, pass_on);
+  std::erase_if(links, [&held](const auto& link) { return held[link[0]]; });
+}
+
 /// Bodies that hang on joints, by row.
 std::vector<bool> jointed_rows(const WorldState& s) {
   std::vector<bool> jointed(s.bodies.size());
@@ -93,10 +114,12 @@ void Detector::follow_joints(const WorldState& s) {
     if (proxies_[shape].alive) pairs_.touch(shape);
   const std::vector<bool> jointed = jointed_rows(s);
   for (Proxy& proxy : proxies_) proxy.jointed = proxy.alive && jointed[proxy.body];
+  list_links(s, links_);
 }
 
 void Detector::rebuild(const WorldState& s) {
   pairs_ = PairCache();
+  list_links(s, links_);
   possible_ = some_could_touch(s);
   hints_.clear();
   hinted_ = false;
@@ -205,7 +228,10 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
                                             " is not finite; set it anew or destroy the body. The world is as before the step."};
   }
   if (report.changed) {
-    next_hints_.assign(pairs_.pairs().size(), 0);
+    const std::size_t pairs = pairs_.pairs().size();
+    if (next_hints_.capacity() < pairs)
+      next_hints_.reserve(pairs + pairs / 4);  // a few more than ever before are no reason to allocate
+    next_hints_.assign(pairs, 0);
     const auto previous = pairs_.previous_index();
     for (std::size_t i = 0; hinted_ && i < next_hints_.size(); i++)
       next_hints_[i] = previous[i] < hints_.size() ? hints_[previous[i]] : 0;

@@ -137,6 +137,7 @@ class Detector {
   /// What of boxes does not change while the structure and the margin stay.
   void list_columns(const WorldState& state, const Options& options);
   template <class Scalar> void find_twists(const WorldState& state, const Options& options);
+  void find_drawn(double dt);
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar>
   Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
@@ -202,6 +203,10 @@ class Detector {
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;  // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;      // some body has
+  std::vector<std::array<std::uint32_t, 2>> links_;  // rows of the two bodies of each joint that can both move
+  std::vector<float> drawn_;  // of bodies: how far others of their tree may send them in this step; 0: no further
+                              // than they go by themselves [m]
+  bool draws_ = false;        // some are
   PairCache pairs_;
   std::vector<std::uint32_t> near_;  // numbers of pairs
   Marks marks_;                      // of those that may have a manifold; where some shape is round

@@ -97,6 +97,11 @@ bool Detector::closes(const WorldState& s, double dt, Pair shapes, const Manifol
   Scalar d[3] = {0, 0, 0};
   BodyReader<Scalar>(s.tables).shift(a.body, b.body, d);
   const float apart[3] = {float(d[0]), float(d[1]), float(d[2])};
+  if (draws_ && a.responds != b.responds) {  // what stands is met by whatever is sent there
+    const double far = margin + double(drawn_[a.responds ? a.body : b.body]);
+    for (std::uint32_t i = 0; i < manifold.count; i++)
+      if (double(manifold.points[i].separation) <= far) return true;
+  }
   return gaps_close(manifold, twists_[a.body], twists_[b.body], apart, margin, dt, length(s.gravity) * dt * dt,
                     a.radius + b.radius);
 }

@@ -4,5 +4,6 @@
 #define PC_LANES 1
 #define PC_NAMESPACE lanes_d1v
 #define PC_EXPORT cpu_kernels_d1v
+#define PC_DOUBLE
 #include "cpu/kernels_all.inl"
 #endif

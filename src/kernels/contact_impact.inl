@@ -96,13 +96,15 @@ PC_FN Mask pc_impact_mine(PC_IO Slot m) {
 }
 
 // The way to the arms at impact: when the centres have come as near as the narrowest gap is wide. (Arms that are not those of the
-// way that was really gone would answer otherwise than masses say, and make energy.) Two that have met go on from that instant: at an
-// earlier or later one the point of their impact has moved on with one and not the other, and their spins would look like an approach.
+// way that was really gone would answer otherwise than masses say, and make energy.) Two that have met, and that nothing has brought
+// together again since, are seen at that instant: at an earlier or later one the point of their impact has moved on with one and not with the
+// other, and their spins would look like an approach.
 PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   Real nearest = pc_min(pc_min(PC_LD(contact_rows, m, ROW_S), PC_LD(contact_rows, m, ROW_S + 1u)), pc_min(PC_LD(contact_rows, m, ROW_S + 2u), PC_LD(contact_rows, m, ROW_S + 3u)));
   precise Real nearing = -pc_dot(n, relative); precise Real gap = nearest + pc_dot(n, come);
   precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing); Real since = pc_select(pc_impact_always(PC_PASS m), PC_LD(contact_rows, m, ROW_MET), PC_REAL(0.0));
-  Real until = pc_max(pc_min(flight, PC_INFO(h)), since);
+  precise Real rounding = PC_INFO(rounding) * pc_sqrt(pc_dot(relative, relative)); Mask stays = pc_and(since > PC_REAL(0.0), nearing < rounding);
+  Real until = pc_select(stays, since, pc_min(flight, PC_INFO(h)));
   return pc_madd(come, relative, until);
 }
 

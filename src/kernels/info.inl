@@ -23,6 +23,7 @@ PC_INFO_FIELD(impulse_trend, "share by which a change of a normal impulse goes o
 PC_INFO_FIELD(tree_contact_rate, "the first two of contacts with joint trees")
 PC_INFO_FIELD(tree_contact_impulse_scale, "")
 PC_INFO_FIELD(mean_share, "share of a sub-step's impulse in its slow mean")
+PC_INFO_FIELD(mean_most, "a slow mean gives the lighter body this speed at most [m/s]")
 PC_INFO_FIELD(load_ahead, "1 in the relax phase: friction goes by the load that the normal rows will take up; else 0")
 PC_INFO_FIELD(push_speed, "largest speed at which an overlap is undone [m/s]")
 PC_INFO_FIELD(joint_rate, "the same for joint rows")

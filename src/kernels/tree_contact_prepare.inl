@@ -70,12 +70,18 @@ PC_FN void pc_bound_masses(PC_IO Slot m, Mask these, BodyState a, BodyState b) {
   for (uint i = 0u; i < 3u; i++) { precise Real block = PC_LD(contact_rows, m, ROW_TT + i) * less; PC_ST(contact_rows, m, ROW_TT + i, block); }
 }
 
+// The most that a slow mean holds: what would give the lighter body that speed. A body that lies wedged between two others, each of which pushes
+// it towards the other, has no place to go; with means that hold whatever was pushed before, the two push ever harder.
+PC_FN Real pc_mean_most(PC_IO Meeting now) { precise Real light = now.a.inverse_mass + now.b.inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_INFO(mean_most); return most; }
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m); Real one = PC_REAL(1.0); Real none = PC_REAL(0.0);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1); Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2);
+  Real most = pc_mean_most(PC_PASS now);
   for (uint i = 0u; i < 4u; i++) {  // the slow means
-    Real mean = PC_LD(contact_impulses, m, IMPULSE_MEAN + i); precise Real next = mean + (PC_LD(contact_impulses, m, i) - mean) * PC_INFO(mean_share); PC_ST(contact_impulses, m, IMPULSE_MEAN + i, next);
+    Real mean = PC_LD(contact_impulses, m, IMPULSE_MEAN + i); precise Real next = mean + (PC_LD(contact_impulses, m, i) - mean) * PC_INFO(mean_share);
+    PC_ST(contact_impulses, m, IMPULSE_MEAN + i, pc_min(next, most));
   }
   Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); PC_ST(contact_rows, m, ROW_SCALE, scale);
   if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)

@@ -58,6 +58,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.tree_contact_rate = Scalar(of_tree.rate);
   biased.tree_contact_impulse_scale = Scalar(of_tree.impulse_scale);
   biased.mean_share = Scalar(constants::mean_impulse_share);
+  biased.mean_most = Scalar(constants::mean_impulse_speed);
   biased.push_speed = Scalar(from.push_speed);
   biased.joint_rate = Scalar(joint.rate);
   biased.joint_mass_scale = Scalar(joint.mass_scale);
