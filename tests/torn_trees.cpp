@@ -16,7 +16,9 @@ struct Gap {
 
   /// A ragdoll behind a hand at so many m/s, in front of two walls 0.1 m apart.
   explicit Gap(Precision precision, double speed) : world({precision, {}}) {
-    const Ragdoll doll = must(world.create_ragdoll(RagdollDef::human(), {}));
+    RagdollDef human = RagdollDef::human();
+    human.set_damping(0);  // what turns freely tears more easily
+    const Ragdoll doll = must(world.create_ragdoll(human, {}));
     joints = doll.joints;
     const BodyId arm = doll.bones[6];
     const Vec3 at = world.pose(arm)->position;
@@ -71,7 +73,8 @@ TEST_CASE("torn: a ragdoll that is dragged through what it does not fit into com
       CHECK(report.slowed == 0);
       CHECK(states(gap.world, {gap.beside}) == states(calm.world, {calm.beside}));
     }
-  CHECK(torn >= 3);  // in one it slips through
+  // (at 50 m/s; at 10 nothing is let through since contacts' slow means are bounded)
+  CHECK(torn >= 2);  // in one it slips through
 }
 
 TEST_CASE("torn: what is whole is let through nothing and keeps its spin, however fast") {
