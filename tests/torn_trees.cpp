@@ -73,8 +73,8 @@ TEST_CASE("torn: a ragdoll that is dragged through what it does not fit into com
       CHECK(report.slowed == 0);
       CHECK(states(gap.world, {gap.beside}) == states(calm.world, {calm.beside}));
     }
-  // (at 50 m/s; at 10 nothing is let through since contacts' slow means are bounded)
-  CHECK(torn >= 2);  // in one it slips through
+  // at 50 m/s; at 10 nothing is torn since the slow means of contacts are bounded
+  CHECK(torn >= 2);
 }
 
 TEST_CASE("torn: what is whole is let through nothing and keeps its spin, however fast") {
