@@ -20,8 +20,7 @@
 
 // u_aim: the velocity u that the row is to leave with; closes: 1 or 0; bounces: 1 where it closes fast
 struct Closing { Real t; Real u_aim; Real closes; Real bounces; };
-// `least`: a slower approach is none, also where `always`.
-PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Real e, Mask always, Real least) {
+PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Real e, Mask always) {
   Real h = PC_INFO(h); Real zero = PC_REAL(0.0);
   precise Real half_change = acceleration * h * PC_REAL(0.5); precise Real v = u - half_change;
   precise Real square = v * v - acceleration * s * PC_REAL(2.0);
@@ -35,7 +34,7 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   precise Real most = h * PC_REAL(1.00001);  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
   Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < zero, zero, most));
   Mask now = ahead < most;
-  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < -least)));
+  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < zero)));
   Real bounce = pc_select(fast, e, zero);
   precise Real aim = half_change - acceleration * t - bounce * impact;
   Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); r.bounces = pc_select(fast, r.closes, zero); return r;
@@ -103,7 +102,7 @@ PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   Real nearest = pc_min(pc_min(PC_LD(contact_rows, m, ROW_S), PC_LD(contact_rows, m, ROW_S + 1u)), pc_min(PC_LD(contact_rows, m, ROW_S + 2u), PC_LD(contact_rows, m, ROW_S + 3u)));
   precise Real nearing = -pc_dot(n, relative); precise Real gap = nearest + pc_dot(n, come);
   precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing); Real since = pc_select(pc_impact_always(PC_PASS m), PC_LD(contact_rows, m, ROW_MET), PC_REAL(0.0));
-  precise Real rounding = PC_INFO(rounding) * pc_sqrt(pc_dot(relative, relative)); Mask stays = pc_and(since > PC_REAL(0.0), nearing < rounding);
+  precise Real rounding = PC_INFO(rounding) * PC_REAL(64.0) * pc_sqrt(pc_dot(relative, relative)); Mask stays = pc_and(since > PC_REAL(0.0), nearing < rounding);
   Real until = pc_select(stays, since, pc_min(flight, PC_INFO(h)));
   return pc_madd(come, relative, until);
 }
@@ -174,10 +173,8 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   precise Real g0 = pull_n + b0 * up1 - a0 * up2; precise Real g1 = pull_n + b1 * up1 - a1 * up2;
   precise Real g2 = pull_n + b2 * up1 - a2 * up2; precise Real g3 = pull_n + b3 * up1 - a3 * up2;
   Real m0 = PC_LD(contact_rows, m, ROW_MASS); Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u); Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u); Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
-  // (of two that have met what is left is rounding, and closes anywhere)
-  precise Real left = PC_INFO(rounding) * pc_sqrt(pc_dot(relative, relative)); Real least = pc_select(pc_and(always, PC_LD(contact_rows, m, ROW_MET) > zero), left, zero);
-  Closing c0 = pc_closing(PC_PASS u0, s0, g0, m0, e, always, least); Closing c1 = pc_closing(PC_PASS u1, s1, g1, m1, e, always, least);
-  Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always, least); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always, least);
+  Closing c0 = pc_closing(PC_PASS u0, s0, g0, m0, e, always); Closing c1 = pc_closing(PC_PASS u1, s1, g1, m1, e, always);
+  Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
   Real until = pc_min(pc_min(pc_until(PC_PASS c0), pc_until(PC_PASS c1)), pc_min(pc_until(PC_PASS c2), pc_until(PC_PASS c3)));
@@ -230,7 +227,9 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
   pc_keep_impact(PC_PASS m, 0u, j0, share); pc_keep_impact(PC_PASS m, 1u, j1, share); pc_keep_impact(PC_PASS m, 2u, j2, share); pc_keep_impact(PC_PASS m, 3u, j3, share);
-  PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(hits, always), t, PC_LD(contact_rows, m, ROW_MET)));
+  // (what rounding leaves of an approach closes anywhere)
+  precise Real nearing = -pc_dot(n, relative); precise Real rounding = PC_INFO(rounding) * PC_REAL(64.0) * pc_sqrt(pc_dot(relative, relative)); Real met = PC_LD(contact_rows, m, ROW_MET);
+  Mask anew = pc_or(met < PC_TINY, nearing > rounding); PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, always), anew), t, met));
   Real strike = pc_select(strikes, PC_REAL(1.0), zero);
   pc_set_back(PC_PASS ia, before_a, a, t, hits, strike); pc_set_back(PC_PASS ib, before_b, b, t, hits, strike);
 }
