@@ -68,28 +68,21 @@ template <class Scalar> void Detector::find_twists(const WorldState& s, const Op
 // to, where that is further than half of the thinnest shape.
 void Detector::find_drawn(double dt) {
   const bool drew = std::exchange(draws_, false);
-  if (!links_.empty()) {
-    drawn_.resize(twists_.size());
-    for (std::size_t row = 0; row < twists_.size(); row++) drawn_[row] = twists_[row].speed;
-    const auto join = [this](const std::array<std::uint32_t, 2>& link) {
-      float &a = drawn_[link[0]], &b = drawn_[link[1]];
-      a = b = std::max(a, b);
-    };
-    for (std::size_t i = links_.size(); i-- > 0;) join(links_[i]);  // to the root, and from there to all
-    for (const auto& link : links_) join(link);
-    const float least = 0.5f * thinnest_, step = float(dt);
-    for (std::size_t row = 0; row < twists_.size(); row++) {
-      const float way = drawn_[row] * step;
-      drawn_[row] = way > least && drawn_[row] > twists_[row].speed ? way : 0.0f;
-      draws_ |= drawn_[row] > 0;
-    }
+  drawn_.assign(trees_.size(), 0);
+  fastest_.assign(trees_.size(), 0);
+  for (std::size_t row = 1; row < trees_.size(); row++)
+    fastest_[trees_[row]] = std::max(fastest_[trees_[row]], twists_[row].speed);
+  for (std::size_t row = 1; row < trees_.size(); row++) {
+    const float fastest = fastest_[trees_[row]], way = fastest * float(dt);
+    if (trees_[row] == 0 || fastest <= twists_[row].speed || way <= 0.5f * thinnest_) continue;
+    drawn_[row] = way;
+    draws_ = true;
   }
-  if (drew && !draws_) drawn_.assign(twists_.size(), 0);
   if (!strays_ && !draws_ && !drew) return;
   float* const column = reinterpret_cast<float*>(columns_.data()) + (bound_columns - 1) * bodies_.size();
   for (std::size_t i = 0; i < proxies_.size(); i++) {
     const std::uint32_t row = bodies_[i];
-    column[i] = std::max(strays_ ? went_[row] : 0.0f, draws_ ? drawn_[row] : 0.0f);
+    column[i] = std::max(strays_ ? went_[row] : 0.0f, drawn_.empty() ? 0.0f : drawn_[row]);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -66,25 +67,29 @@ bool some_could_touch(const WorldState& s) {
   return false;
 }
 
-/// Of joints of free trees, the rows of the two bodies. (What hangs on something that never gives way may have nowhere to go, wherever it
-/// is looked for: docs/substeps.md, torn trees.)
-void list_links(const WorldState& s, std::vector<std::array<std::uint32_t, 2>>& links) {
-  links.clear();
-  std::vector<bool> held(s.bodies.size());
-  for (std::uint32_t row = 1; row < s.joints.size(); row++) {
-    const std::uint32_t a = s.body_ids.row(s.joints[row].body_a), b = s.body_ids.row(s.joints[row].body_b);
-    if (s.joints[row].spring) continue;
-    if (s.responds(a) && s.responds(b))
-      links.push_back({a, b});
-    else
-      held[a] = held[b] = true;
-  }
-  const auto pass_on = [&held](const std::array<std::uint32_t, 2>& link) {
-    if (held[link[0]] || held[link[1]]) held[link[0]] = held[link[1]] = true;
+/// By body row the lowest row of its joint tree, whatever the order of the joints; 0 for bodies of none, and where the tree hangs on
+/// something that does not respond. (What never gives way may leave a body nowhere to go, wherever it is looked for: docs/substeps.md,
+/// torn trees.) Empty where there are no joints.
+void list_trees(const WorldState& s, std::vector<std::uint32_t>& trees) {
+  trees.clear();
+  if (s.joints.size() == 1) return;
+  trees.resize(s.bodies.size());
+  std::iota(trees.begin(), trees.end(), 0);
+  const auto root = [&trees](std::uint32_t row) {
+    while (trees[row] != row) row = trees[row] = trees[trees[row]];
+    return row;
   };
-  std::for_each(links.rbegin(), links.rend(), pass_on);
-  std::ranges::for_each(links, pass_on);
-  std::erase_if(links, [&held](const auto& link) { return held[link[0]]; });
+  std::vector<bool> jointed(s.bodies.size());
+  for (std::uint32_t row = 1; row < s.joints.size(); row++) {
+    if (s.joints[row].spring) continue;
+    std::uint32_t ends[] = {s.body_ids.row(s.joints[row].body_a), s.body_ids.row(s.joints[row].body_b)};
+    for (std::uint32_t& end : ends) {
+      jointed[end] = true;
+      end = s.responds(end) ? root(end) : 0;  // what hangs on row 0 is held
+    }
+    trees[std::max(ends[0], ends[1])] = std::min(ends[0], ends[1]);
+  }
+  for (std::uint32_t row = 1; row < trees.size(); row++) trees[row] = jointed[row] ? root(row) : 0;
 }
 
 /// Bodies that hang on joints, by row.
@@ -114,12 +119,12 @@ void Detector::follow_joints(const WorldState& s) {
     if (proxies_[shape].alive) pairs_.touch(shape);
   const std::vector<bool> jointed = jointed_rows(s);
   for (Proxy& proxy : proxies_) proxy.jointed = proxy.alive && jointed[proxy.body];
-  list_links(s, links_);
+  list_trees(s, trees_);
 }
 
 void Detector::rebuild(const WorldState& s) {
   pairs_ = PairCache();
-  list_links(s, links_);
+  list_trees(s, trees_);
   possible_ = some_could_touch(s);
   hints_.clear();
   hinted_ = false;

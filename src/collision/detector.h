@@ -201,12 +201,13 @@ class Detector {
   double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
   std::vector<float> struck_;          // of bodies: when they first meet something in flight; dt: not in this step [s]
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
-  std::vector<float> went_;  // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
-  bool strays_ = false;      // some body has
-  std::vector<std::array<std::uint32_t, 2>> links_;  // rows of the two bodies of each joint that can both move
-  std::vector<float> drawn_;  // of bodies: how far others of their tree may send them in this step; 0: no further
-                              // than they go by themselves [m]
-  bool draws_ = false;        // some are
+  std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
+  bool strays_ = false;               // some body has
+  std::vector<std::uint32_t> trees_;  // by body row: the joint tree that it is free in, or 0
+  std::vector<float> fastest_;        // of trees, by that number: the speed of their fastest body [m/s]
+  std::vector<float> drawn_;          // of bodies: how far others of their tree may send them in this step; 0: no further
+                                      // than they go by themselves [m]
+  bool draws_ = false;                // some are
   PairCache pairs_;
   std::vector<std::uint32_t> near_;  // numbers of pairs
   Marks marks_;                      // of those that may have a manifold; where some shape is round

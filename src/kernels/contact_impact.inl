@@ -94,6 +94,10 @@ PC_FN Mask pc_impact_mine(PC_IO Slot m) {
   return pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(-0.5), pc_or(pc_impact_always(PC_PASS m), bounces));
 }
 
+// An approach up to this is what rounding leaves of one: of the impulses that stop it and of the sweeps that look again, 64 times what counts as
+// rest.
+PC_FN Real pc_noise(PC_IO Vec3 relative) { precise Real r = PC_INFO(rounding) * PC_REAL(64.0) * pc_sqrt(pc_dot(relative, relative)); return r; }
+
 // The way to the arms at impact: when the centres have come as near as the narrowest gap is wide. (Arms that are not those of the
 // way that was really gone would answer otherwise than masses say, and make energy.) Two that have met, and that nothing has brought
 // together again since, are seen at that instant: at an earlier or later one the point of their impact has moved on with one and not with the
@@ -102,7 +106,7 @@ PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   Real nearest = pc_min(pc_min(PC_LD(contact_rows, m, ROW_S), PC_LD(contact_rows, m, ROW_S + 1u)), pc_min(PC_LD(contact_rows, m, ROW_S + 2u), PC_LD(contact_rows, m, ROW_S + 3u)));
   precise Real nearing = -pc_dot(n, relative); precise Real gap = nearest + pc_dot(n, come);
   precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing); Real since = pc_select(pc_impact_always(PC_PASS m), PC_LD(contact_rows, m, ROW_MET), PC_REAL(0.0));
-  precise Real rounding = PC_INFO(rounding) * PC_REAL(64.0) * pc_sqrt(pc_dot(relative, relative)); Mask stays = pc_and(since > PC_REAL(0.0), nearing < rounding);
+  Mask stays = pc_and(since > PC_REAL(0.0), nearing < pc_noise(PC_PASS relative));
   Real until = pc_select(stays, since, pc_min(flight, PC_INFO(h)));
   return pc_madd(come, relative, until);
 }
@@ -228,8 +232,8 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
   pc_keep_impact(PC_PASS m, 0u, j0, share); pc_keep_impact(PC_PASS m, 1u, j1, share); pc_keep_impact(PC_PASS m, 2u, j2, share); pc_keep_impact(PC_PASS m, 3u, j3, share);
   // (what rounding leaves of an approach closes anywhere)
-  precise Real nearing = -pc_dot(n, relative); precise Real rounding = PC_INFO(rounding) * PC_REAL(64.0) * pc_sqrt(pc_dot(relative, relative)); Real met = PC_LD(contact_rows, m, ROW_MET);
-  Mask anew = pc_or(met < PC_TINY, nearing > rounding); PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, always), anew), t, met));
+  precise Real nearing = -pc_dot(n, relative); Real met = PC_LD(contact_rows, m, ROW_MET);
+  Mask anew = pc_or(met < PC_TINY, nearing > pc_noise(PC_PASS relative)); PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, always), anew), t, met));
   Real strike = pc_select(strikes, PC_REAL(1.0), zero);
   pc_set_back(PC_PASS ia, before_a, a, t, hits, strike); pc_set_back(PC_PASS ib, before_b, b, t, hits, strike);
 }
