@@ -2,6 +2,7 @@
 // that what a comparison shows is the engine and not the translation. A peer that is missing says so.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -323,5 +324,28 @@ TEST_CASE("peers: what no engine can hold is refused, and what it holds differen
     const auto peer = peers::make(variant.name, world, world.bodies());
     REQUIRE_FALSE(peer);
     CHECK(peer.error().code == ErrorCode::unavailable);
+  });
+}
+
+TEST_CASE("peers: MuJoCo's joints have the damping of the world's, and those without say so") {
+  World world;
+  REQUIRE(world.set_gravity({}));
+  BodyDef def;
+  def.mass = 2;
+  def.moments = Vec3{0.1, 0.1, 0.1};
+  def.angular_velocity = {0, 0, 3};
+  const BodyId body = must(world.create_body(def));
+  JointDef joint;
+  joint.a = world.ground();
+  joint.b = body;
+  joint.spring.damping = 0.2;  // the spin falls by exp(-2) in a second
+  REQUIRE(world.create_joint(joint));
+  for_each_peer([&](const peers::Variant& variant) {
+    const auto peer = make(variant, world);
+    run(*peer, 1000, 1e-3);
+    const bool damped = variant.name.starts_with("mujoco");
+    CHECK(length(peer->angular_velocity(0)) == Approx(damped ? 3 * std::exp(-2.0) : 3).epsilon(0.01));
+    const auto& said = peer->untranslated();
+    CHECK(std::ranges::any_of(said, [](const std::string& s) { return s.find("damping") != std::string::npos; }) != damped);
   });
 }
