@@ -1,6 +1,6 @@
 // Pins what hard blows do to bodies of joint trees: one that stands is not sent through the floor by what falls on it from its own tree,
 // though it did not move itself (it was not looked for there, and a shin sank by its thickness), and one that lies wedged between two walls
-// that overlap it is not pushed ever harder (its ragdoll's energy grew by half of what the whole heap had).
+// that overlap it is not pushed ever harder (its ragdoll's energy grew by half of what the whole heap had), nor held there by friction.
 #include <algorithm>
 
 #include "support_world.h"
@@ -73,5 +73,21 @@ TEST_CASE("what is wedged between two walls is not pushed ever harder") {
     CHECK(late <= 1.01 * early);
     CHECK(late <= 100);  // what a wall holds of a mean of 1 kg at constants::mean_impulse_speed, and what its overlap pushes
     CHECK(world.kinetic_energy() < 1);
+  }
+}
+
+TEST_CASE("what is wedged between two walls is not held by their friction") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World world({precision});
+    const BodyId left =
+        must(world.create_body(fixed_box({-0.52, 0, 0}, {0.5, 0.2, 0.2})));  // 4 cm apart; the ball is 10 cm thick
+    const BodyId right = must(world.create_body(fixed_box({0.52, 0, 0}, {0.5, 0.2, 0.2})));
+    const Pair tree = pinned(world, {0, 0, 0}, 5);
+    for (const BodyId wall : {left, right}) must(world.set_collide(wall, tree.upper, false));
+    Stepper stepper;
+    run(world, stepper, 60);
+    const double height = must(world.pose(tree.lower)).position.y;
+    MESSAGE("after a second at " << height << " m");
+    CHECK(height < -2);
   }
 }

@@ -131,6 +131,8 @@ inline constexpr double row_mass_most = 100;
 /// A contact with a joint tree that holds nothing is left alone in a sub-step while its points would have to be brought together by this and the
 /// speeds of its bodies besides [m/s].
 inline constexpr double idle_speed = 0.5;
+/// Contacts keep how they reach into a joint tree, from sub-step to sub-step of a step, until its bodies may have turned by this [rad].
+inline constexpr double kept_turn = 0.005;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

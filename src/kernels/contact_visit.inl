@@ -52,6 +52,17 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real ke
   return pc_row_after(impulse, pc_row_change(PC_PASS vn, s, mass, impulse, kept), PC_REAL(1.0));
 }
 
+#ifdef PC_MEAN
+// Share of its friction that a contact has, by its overlap: all up to a quarter of the shorter arm, none from half of it on. What a blow has driven
+// in between two bodies that push it against each other would be held there by friction for good (docs/joint-trees.md).
+PC_FN Real pc_grip(PC_IO Slot m, Real apart) {
+  Vec3 a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 b = pc_ld3_rows(PC_PASS m, ROW_ARM_B); Real depth = pc_max(-apart, PC_REAL(0.0));
+  precise Real quarter = pc_min(pc_dot(a, a), pc_dot(b, b)) * PC_REAL(0.0625); precise Real square = depth * depth; Mask deep = square > quarter;
+  if (!PC_ANY(deep)) return PC_REAL(1.0);  // lint: allow (the same in lanes that are not)
+  precise Real left = PC_REAL(4.0) - pc_div(square, pc_max(quarter, PC_TINY)); precise Real share = left * PC_REAL(0.33333334);
+  return pc_select(deep, pc_clamp(share, PC_REAL(0.0), PC_REAL(1.0)), PC_REAL(1.0));
+}
+#endif
 // Accumulated impulses of the four points and of friction.
 struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
 struct Gaps { Real s0; Real s1; Real s2; Real s3; };  // separations of now
@@ -91,7 +102,11 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real share = mass * preload * pc_inverse_or_zero(coming); precise Real loose = PC_REAL(1.0) - pc_min(share, PC_REAL(1.0));
 #endif
   Mask waits = pc_and(load < PC_TINY, PC_INFO(load_ahead) > PC_REAL(0.0));
-  Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0))); Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
+  Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
+#ifdef PC_MEAN
+  precise Real gripped = ahead * pc_grip(PC_PASS m, apart); ahead = gripped;
+#endif
+  Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
   // normal rows

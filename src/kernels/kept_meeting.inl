@@ -8,6 +8,11 @@ PC_FN void pc_keep_meeting(PC_IO Way w, Slot m, Meeting now) {
   PC_ST(contact_reach, s, 9u, pc_max(pc_free_mass(pc_in_tree(PC_PASS w, m, 0u), now.a), pc_free_mass(pc_in_tree(PC_PASS w, m, 1u), now.b)));
   pc_st3_reach(PC_PASS q, 0u, now.arms.a); pc_st3_reach(PC_PASS q, 3u, now.arms.b);
 }
+// The arms by which rows were made that are kept where `same`, those of now elsewhere.
+PC_FN Arms pc_arms_of_reach(PC_IO Way w, Slot m, Arms now, Mask same) {
+  Slot q = PC_NODE(m, w.reach + 1u); Arms r = now; r.a = pc_select3(same, pc_ld3_reach(PC_PASS q, 6u), now.a); r.b = pc_select3(same, pc_ld3_reach(PC_PASS q, 9u), now.b);
+  pc_st3_reach(PC_PASS q, 6u, r.a); pc_st3_reach(PC_PASS q, 9u, r.b); return r;
+}
 PC_FN BodyState pc_unmoved() {
   Real zero = PC_REAL(0.0); BodyState b; b.v = pc_zero3(); b.l = b.v; b.inverse_mass = zero; b.phase = zero; b.response = zero; b.unlike = zero; b.inertia = pc_diagonal(zero); return b;
 }

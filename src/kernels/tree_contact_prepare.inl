@@ -70,6 +70,13 @@ PC_FN void pc_bound_masses(PC_IO Slot m, Mask these, BodyState a, BodyState b) {
   for (uint i = 0u; i < 3u; i++) { precise Real block = PC_LD(contact_rows, m, ROW_TT + i) * less; PC_ST(contact_rows, m, ROW_TT + i, block); }
 }
 
+// Whether a contact that was not idle `before` reaches into trees that have handed on nothing since (tree_respond), and meets nothing else that moves.
+PC_FN Mask pc_reaches_same(PC_IO Way w, Slot m, Meeting now, Real before) {
+  Quad a = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN)), 7u); Quad b = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN + 1u)), 7u);
+  Real free = pc_max(pc_free_mass(pc_in_tree(PC_PASS w, m, 0u), now.a), pc_free_mass(pc_in_tree(PC_PASS w, m, 1u), now.b));
+  return pc_and(before > PC_REAL(0.0), pc_max(free, pc_max(a.s, b.s)) < PC_TINY);
+}
+
 // The most that a slow mean holds: what would give the lighter body that speed. A body that lies wedged between two others, each of which pushes
 // it towards the other, has no place to go; with means that hold whatever was pushed before, the two push ever harder.
 PC_FN Real pc_mean_most(PC_IO Meeting now) { precise Real light = now.a.inverse_mass + now.b.inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_INFO(mean_most); return most; }
@@ -83,14 +90,18 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Real mean = PC_LD(contact_impulses, m, IMPULSE_MEAN + i); precise Real next = mean + (PC_LD(contact_impulses, m, i) - mean) * PC_INFO(mean_share);
     PC_ST(contact_impulses, m, IMPULSE_MEAN + i, pc_min(next, most));
   }
-  Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); PC_ST(contact_rows, m, ROW_SCALE, scale);
+  Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); Real before = PC_LD(contact_rows, m, ROW_SCALE); PC_ST(contact_rows, m, ROW_SCALE, scale);
   if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)
-  pc_keep_meeting(PC_PASS w, m, now); bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
+  pc_keep_meeting(PC_PASS w, m, now);
+  // what reaches as it did in the sub-step before keeps its rows; beside lanes that do not they are made once more, from the same numbers
+  Mask same = pc_reaches_same(PC_PASS w, m, now, before); Mask anew = pc_select(same, none, scale) > none; now.arms = pc_arms_of_reach(PC_PASS w, m, now.arms, same);
+  if (!PC_ANY(anew)) return;  // lint: allow (rows are kept)
+  bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
   pc_fill_reach(PC_PASS w, m, turns, now.arms, n, t1, t2);
   Responses r = pc_tree_responses(PC_PASS w, m, turns, pc_outside_responses(PC_PASS w, m, now, n, t1, t2));
   Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
   Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
-  r.these = scale > none; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
+  r.these = anew; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
   pc_bound_masses(PC_PASS m, r.these, now.a, now.b);
 }
 #undef PC_SOME_ROWS

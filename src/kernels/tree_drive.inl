@@ -4,6 +4,8 @@
 #include "tree_drive_rows.inl"
 
 PC_FN Mask pc_has_drive(PC_IO Slot n) { return PC_LD(tree_drive_rows, n, DRIVE_IS) > PC_REAL(0.5); }
+// Whether it is a motor or has stiffness: does more than damp.
+PC_FN Mask pc_drive_moves(PC_IO Slot n) { Real kind = PC_LD(tree_drive_rows, n, DRIVE_IS); return pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5)); }
 
 // A joint with a motor or a spring, not in its first sub-step: what it turns would be slowed by a floor for pins of unknown stiffness.
 PC_FN Mask pc_drive_lasts(PC_IO Slot n) { return pc_and(pc_has_drive(PC_PASS n), PC_LD(tree_drive_rows, n, DRIVE_FRESH) < PC_REAL(0.5)); }
@@ -12,8 +14,10 @@ PC_FN Mask pc_drive_lasts(PC_IO Slot n) { return pc_and(pc_has_drive(PC_PASS n),
 PC_FN void pc_drive_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_drive(PC_PASS n))) return;  // lint: allow (nothing reads them otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-  for (uint i = 0u; i < 3u; i++) PC_ST(tree_drive_rows, n, DRIVE_RATE + i, pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + i * 3u), turn));
-  PC_ST(tree_drive_rows, n, MOTOR_ON, PC_REAL(2.0));
+  pc_st3_drive(PC_PASS n, DRIVE_RATE, turn); PC_ST(tree_drive_rows, n, MOTOR_ON, PC_REAL(2.0)); Mask moves = pc_drive_moves(PC_PASS n);
+  if (!PC_ANY(moves)) return;  // lint: allow (the world's axes)
+  Vec3 along = Vec3(pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 3u), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 6u), turn));
+  pc_st3_drive(PC_PASS n, DRIVE_RATE, pc_select3(moves, along, turn));
 }
 
 // The motor: adds its stiffness where it holds, and answers its impulse at the prediction. `answer`: of both sides about its axis.
@@ -27,9 +31,18 @@ PC_FN Real pc_motor_push(PC_IO Slot n, Vec3 axis, Sym3 loose, Real answer) {
   PC_ST(tree_drive_rows, n, MOTOR_ON, state); PC_ST(tree_drive_rows, n, MOTOR_STIFFNESS, stiffness);
   precise Real pull = stiffness * beyond - state * most; return pull;
 }
-// D with motor and spring in it. Afterwards DRIVE_PUSH is the couple that they lack at the prediction.
-PC_FN Sym3 pc_with_drives(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
-  Sym3 above = pc_sym_inverse(pc_lds_tree(PC_PASS up, TREE_BODY)); Sym3 freedom = bare; Vec3 push = pc_zero3(); Mask driven = pc_has_drive(PC_PASS n); Real zero = PC_REAL(0.0);
+// D with a damper in it, the same about any axis: with the softest of them for what the sub-step resolves (drive_terms.inl). `push`: the couple that it
+// lacks at the prediction.
+struct Driven { Sym3 freedom; Vec3 push; };
+PC_FN Driven pc_with_damper(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
+  Vec3 inverse = pc_ld3_tree(PC_PASS up, TREE_MOMENTS); precise Real above = (inverse.x + inverse.y + inverse.z) * PC_LD(tree_rows, up, TREE_TOTAL);
+  precise Real answer = loose.xx + loose.yy + loose.zz + pc_select(PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0), above, PC_REAL(0.0)); Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
+  DriveRow r = pc_drive_row(PC_INFO(h), PC_LD(tree_drive_rows, n, DRIVE_KICK), zero, PC_LD(tree_drive_rows, n, DRIVE_DAMPING), zero, one, answer);
+  Driven d; d.freedom = pc_sym_add(bare, pc_diagonal(r.gamma)); d.push = pc_madd(pc_scale(pc_ld3_drive(PC_PASS n, DRIVE_RATE), r.gamma), pc_ld3_drive(PC_PASS n, DRIVE_LAST), r.push); return d;
+}
+// With motor and spring.
+PC_FN Driven pc_with_motor(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose, Mask driven) {
+  Sym3 above = pc_sym_inverse(pc_lds_tree(PC_PASS up, TREE_BODY)); Sym3 freedom = bare; Vec3 push = pc_zero3(); Real zero = PC_REAL(0.0);
   Real h = PC_INFO(h); Real kick = PC_LD(tree_drive_rows, n, DRIVE_KICK); Real stiffness = PC_LD(tree_drive_rows, n, DRIVE_STIFFNESS); Real damping = PC_LD(tree_drive_rows, n, DRIVE_DAMPING);
   for (uint i = 0u; i < 3u; i++) {
     Vec3 axis = pc_ld3_drive(PC_PASS n, DRIVE_AXIS + i * 3u);
@@ -42,13 +55,23 @@ PC_FN Sym3 pc_with_drives(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
       freedom = pc_sym_outer(freedom, axis, pc_select(driven, PC_LD(tree_drive_rows, n, MOTOR_STIFFNESS), zero));
     }
   }
-  pc_st3_drive(PC_PASS n, DRIVE_PUSH, pc_select3(driven, push, pc_zero3())); return freedom;
+  Driven d; d.freedom = freedom; d.push = push; return d;
+}
+// D with what drives the joint in it. Afterwards DRIVE_PUSH is the couple that it lacks at the prediction.
+PC_FN Sym3 pc_with_drives(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
+  Mask driven = pc_has_drive(PC_PASS n); Mask moves = pc_drive_moves(PC_PASS n); Driven d = pc_with_damper(PC_PASS n, up, bare, loose);
+  d.freedom = pc_sym_select(driven, d.freedom, bare); d.push = pc_select3(driven, d.push, pc_zero3());
+  if (PC_ANY(moves)) {  // lint: allow (others keep what they have)
+    Driven motor = pc_with_motor(PC_PASS n, up, bare, loose, moves);
+    d.freedom = pc_sym_select(moves, motor.freedom, d.freedom); d.push = pc_select3(moves, motor.push, d.push);
+  }
+  pc_st3_drive(PC_PASS n, DRIVE_PUSH, d.push); return d.freedom;
 }
 
 // After a sweep: a motor that would need more than its torque gets that; in the first round one that is past its speed holds it. 1
 // where any changed.
 PC_FN Real pc_drive_revise(PC_IO Slot n, Slot up, Real may_hold) {
-  Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0); Mask driven = pc_has_drive(PC_PASS n);
+  Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0); Mask driven = pc_drive_moves(PC_PASS n);
   if (!PC_ANY(driven)) return zero;  // lint: allow (nothing changes otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   Real most = PC_LD(tree_drive_rows, n, MOTOR_MOST); Real on = PC_LD(tree_drive_rows, n, MOTOR_ON);

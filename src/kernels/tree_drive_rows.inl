@@ -1,6 +1,6 @@
 // What the tree solve keeps of a motor and a spring of the joint to the parent, of each node as tree_rows does (tree_drive.inl); only where a tree
 // has any.
-const uint DRIVE_IS = 0u;   // 1 where there is one
+const uint DRIVE_IS = 0u;   // 1 where there is one, 2 where it damps and does nothing else: its axes are then the world's
 const uint DRIVE_KICK = 1u;  // time over which it acts
 const uint DRIVE_FRESH = 2u; // 1 where the body's velocity was just set
 const uint MOTOR_ON = 3u;    // 0: it holds its speed; 1 and -1: it gives its torque; 2: not known yet

@@ -43,9 +43,10 @@ const uint TREE_REBOUND = 165u; // where limits throw back, of the three rows: r
 const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
 const uint TREE_RIGID = TREE_SLACK;    // inverse inertia about the centre, 6
-// from tree_respond on, in places that are free by then: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
-const uint TREE_FACTOR = TREE_INERTIA;
-const uint TREE_ROOT_FACTOR = TREE_A;  // 21
+const uint TREE_TURNED = TREE_SPRING;  // angle by which its bodies may have turned since what contacts see of it was made (tree_respond.inl)
+// what contacts see, from tree_respond on: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
+const uint TREE_FACTOR = 168u;       // 6
+const uint TREE_ROOT_FACTOR = TREE_D;  // 21; a root has no joint
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
 PC_FN Six pc_ld6_tree(PC_IO Slot n, uint f) { return pc_six(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u)); }

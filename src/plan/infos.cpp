@@ -65,9 +65,11 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   const double epsilon = std::numeric_limits<Scalar>::epsilon();
-  biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most), constants::loop_roundings * epsilon));
+  biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
+                                     constants::loop_roundings * epsilon));
   biased.cross_share = Scalar(constants::cross_share);
   biased.row_mass_most = Scalar(constants::row_mass_most);
+  biased.kept_turn = Scalar(constants::kept_turn);
   biased.idle_speed = Scalar(constants::idle_speed);
   biased.limit_stiffness = Scalar(joint.mass_scale / joint.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
@@ -91,6 +93,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
     info.h_change = Scalar(1 - after / before);
     info.h_before = Scalar(before);
     info.impulse_ratio = Scalar(after / before);
+    info.kept_turn = 0;
   };
   change(Phase::first, from.last_substep > 0 ? from.last_substep : from.h, h);
   change(Phase::last, h, from.h);

@@ -187,8 +187,7 @@ void leave_out(const PlanSignature& s, OwnKernels::Ordered own, StepPlan& plan) 
   if (!s.touches)
     out("events of contacts", s.contact_events ? "nothing touches in this step" : "the settings do not ask for them");
   if (!s.body_events) out("events of bodies", "the settings do not ask for them");
-  if (std::ranges::all_of(own, [](const auto& k) { return k->of_library(); }))
-    out("kernels of the host's own", "none was added");
+  if (std::ranges::all_of(own, [](const auto& k) { return k->of_library(); })) out("kernels of the host's own", "none was added");
 }
 
 /// The kernels that move bodies between impulses.
@@ -274,7 +273,8 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
   solve_free_joints(b, s, Phase::biased, k);
   if (s.solves_trees()) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
-  if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
+  // (joints that close loops are stiff: they go by the trees of now)
+  if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, k == 0 || s.tree_joints ? Phase::first : Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
   if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);

@@ -39,6 +39,11 @@ constexpr BufferSchema buffer_schemas[] = {
 };
 static_assert(std::size(buffer_schemas) == buffer_count);
 
+#define PC_ROWS(domain, buffer, reals) \
+  static_assert(reals % 4 == 0, #buffer ": GL keeps rows in whole quads (prelude.glsl, PC_AT)");
+#include "kernels/kernels.inl"
+#undef PC_ROWS
+
 constexpr PropertySchema property_schemas[] = {
 #define PC_TABLE(table, doc)
 #define PC_BUFFER(table, buffer, quads, doc)
