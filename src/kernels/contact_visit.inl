@@ -14,7 +14,7 @@
 PC_FN Real pc_mean_held(PC_IO Slot m, uint i, Real mass_scale) { precise Real r = PC_LD(contact_impulses, m, IMPULSE_MEAN + i) * mass_scale; return r; }
 PC_FN Real pc_let_go(Real impulse, Real held) { precise Real r = impulse - held; return r; }
 #define pc_kept(i) pc_mean_held(PC_PASS m, i, mass_scale)
-#define PC_PRELOAD
+#define PC_PRELOAD , Mask both_move
 #else
 PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loose; return r; }
 #define pc_kept(i) loose
@@ -53,8 +53,8 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real ke
 }
 
 #ifdef PC_MEAN
-// Share of its friction that a contact has, by its overlap: all up to a quarter of the shorter arm, none from half of it on. What a blow has driven
-// in between two bodies that push it against each other would be held there by friction for good (docs/joint-trees.md).
+// Share of its friction that a contact between bodies that move has, unless one tree joins them, by its overlap: all up to a quarter of the shorter arm, none from half of it on.
+// What a blow has driven in between two bodies that push it against each other would be held there by friction for good (docs/joint-trees.md).
 PC_FN Real pc_grip(PC_IO Slot m, Real apart) {
   Vec3 a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 b = pc_ld3_rows(PC_PASS m, ROW_ARM_B); Real depth = pc_max(-apart, PC_REAL(0.0));
   precise Real quarter = pc_min(pc_dot(a, a), pc_dot(b, b)) * PC_REAL(0.0625); precise Real square = depth * depth; Mask deep = square > quarter;
@@ -104,7 +104,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Mask waits = pc_and(load < PC_TINY, PC_INFO(load_ahead) > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
 #ifdef PC_MEAN
-  precise Real gripped = ahead * pc_grip(PC_PASS m, apart); ahead = gripped;
+  precise Real gripped = ahead * pc_select(both_move, pc_grip(PC_PASS m, apart), PC_REAL(1.0)); ahead = gripped;
 #endif
   Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;

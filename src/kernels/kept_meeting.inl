@@ -6,8 +6,11 @@ PC_FN void pc_keep_meeting(PC_IO Way w, Slot m, Meeting now) {
   Slot s = PC_NODE(m, w.reach); Slot q = PC_NODE(m, w.reach + 1u); Twist v = now.twist;
   pc_st3_reach(PC_PASS s, 0u, Vec3(v.v1, v.v2, v.vn)); pc_st3_reach(PC_PASS s, 3u, Vec3(v.w1, v.w2, v.wn)); pc_st3_reach(PC_PASS s, 6u, Vec3(now.shift.n, now.shift.turn1, now.shift.turn2));
   PC_ST(contact_reach, s, 9u, pc_max(pc_free_mass(pc_in_tree(PC_PASS w, m, 0u), now.a), pc_free_mass(pc_in_tree(PC_PASS w, m, 1u), now.b)));
+  PC_ST(contact_reach, s, 10u, pc_select(pc_some(PC_WAY_EACH(m, pc_entry(w, PATH_COMMON))), PC_REAL(0.0), pc_min(now.a.inverse_mass, now.b.inverse_mass)));
   pc_st3_reach(PC_PASS q, 0u, now.arms.a); pc_st3_reach(PC_PASS q, 3u, now.arms.b);
 }
+// Whether both sides move, and not in one tree.
+PC_FN Mask pc_both_move(PC_IO Way w, Slot m) { return PC_LD(contact_reach, PC_NODE(m, w.reach), 10u) > PC_REAL(0.0); }
 // The arms by which rows were made that are kept where `same`, those of now elsewhere.
 PC_FN Arms pc_arms_of_reach(PC_IO Way w, Slot m, Arms now, Mask same) {
   Slot q = PC_NODE(m, w.reach + 1u); Arms r = now; r.a = pc_select3(same, pc_ld3_reach(PC_PASS q, 6u), now.a); r.b = pc_select3(same, pc_ld3_reach(PC_PASS q, 9u), now.b);

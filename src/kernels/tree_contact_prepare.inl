@@ -73,8 +73,8 @@ PC_FN void pc_bound_masses(PC_IO Slot m, Mask these, BodyState a, BodyState b) {
 // Whether a contact that was not idle `before` reaches into trees that have handed on nothing since (tree_respond), and meets nothing else that moves.
 PC_FN Mask pc_reaches_same(PC_IO Way w, Slot m, Meeting now, Real before) {
   Quad a = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN)), 7u); Quad b = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN + 1u)), 7u);
-  Real free = pc_max(pc_free_mass(pc_in_tree(PC_PASS w, m, 0u), now.a), pc_free_mass(pc_in_tree(PC_PASS w, m, 1u), now.b));
-  return pc_and(before > PC_REAL(0.0), pc_max(free, pc_max(a.s, b.s)) < PC_TINY);
+  Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u); Real free = pc_max(pc_free_mass(tree_a, now.a), pc_free_mass(tree_b, now.b));
+  return pc_and(pc_and(before > PC_REAL(0.0), pc_or(tree_a, tree_b)), pc_max(free, pc_max(a.s, b.s)) < PC_TINY);  // (padding is in none)
 }
 
 // The most that a slow mean holds: what would give the lighter body that speed. A body that lies wedged between two others, each of which pushes

@@ -21,7 +21,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
-  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2);
+  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, pc_both_move(PC_PASS w, m));
 
   Real acts = pc_max(r.touch, pc_max(pc_largest(r.impulse), pc_largest(r.couple)));
   if (!PC_ANY(acts > PC_REAL(0.0))) return;  // lint: allow (nothing changes nothing)

@@ -12,8 +12,9 @@ PC_FN Mask pc_drive_lasts(PC_IO Slot n) { return pc_and(pc_has_drive(PC_PASS n),
 
 // Before the first round: rates at the prediction. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_drive_rates(PC_IO Slot n, Slot up) {
-  if (!PC_ANY(pc_has_drive(PC_PASS n))) return;  // lint: allow (nothing reads them otherwise)
-  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  Mask driven = pc_has_drive(PC_PASS n);
+  if (!PC_ANY(driven)) return;  // lint: allow (nothing reads them otherwise)
+  Vec3 turn = pc_select3(driven, pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)), pc_zero3());
   pc_st3_drive(PC_PASS n, DRIVE_RATE, turn); PC_ST(tree_drive_rows, n, MOTOR_ON, PC_REAL(2.0)); Mask moves = pc_drive_moves(PC_PASS n);
   if (!PC_ANY(moves)) return;  // lint: allow (the world's axes)
   Vec3 along = Vec3(pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 3u), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 6u), turn));
