@@ -32,14 +32,20 @@ PC_FN Real pc_motor_push(PC_IO Slot n, Vec3 axis, Sym3 loose, Real answer) {
   PC_ST(tree_drive_rows, n, MOTOR_ON, state); PC_ST(tree_drive_rows, n, MOTOR_STIFFNESS, stiffness);
   precise Real pull = stiffness * beyond - state * most; return pull;
 }
-// D with a damper in it, the same about any axis: with the softest of them for what the sub-step resolves (drive_terms.inl). `push`: the couple that it
-// lacks at the prediction.
+// The square of a symmetric matrix.
+PC_FN Sym3 pc_sym_square(Sym3 m) {
+  Vec3 x = pc_row0(m); Vec3 y = pc_row1(m); Vec3 z = pc_row2(m); return pc_sym3(pc_dot(x, x), pc_dot(x, y), pc_dot(x, z), pc_dot(y, y), pc_dot(y, z), pc_dot(z, z));
+}
+// D with what only damps in it, all axes at once and so without any of the joint's: drive_terms.inl's sigma as a matrix, y^2 (1 + y^2)^-1 with y = h c / m.
+// Beyond a trace of 300 y is scaled down, or rounding of its square would swamp the 1. `push`: the couple that it lacks at the prediction.
 struct Driven { Sym3 freedom; Vec3 push; };
 PC_FN Driven pc_with_damper(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
-  Vec3 inverse = pc_ld3_tree(PC_PASS up, TREE_MOMENTS); precise Real above = (inverse.x + inverse.y + inverse.z) * PC_LD(tree_rows, up, TREE_TOTAL);
-  precise Real answer = loose.xx + loose.yy + loose.zz + pc_select(PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0), above, PC_REAL(0.0)); Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
-  DriveRow r = pc_drive_row(PC_INFO(h), PC_LD(tree_drive_rows, n, DRIVE_KICK), zero, PC_LD(tree_drive_rows, n, DRIVE_DAMPING), zero, one, answer);
-  Driven d; d.freedom = pc_sym_add(bare, pc_diagonal(r.gamma)); d.push = pc_madd(pc_scale(pc_ld3_drive(PC_PASS n, DRIVE_RATE), r.gamma), pc_ld3_drive(PC_PASS n, DRIVE_LAST), r.push); return d;
+  Sym3 answer = pc_sym_add(loose, pc_sym_inverse(pc_lds_tree(PC_PASS up, TREE_BODY))); Real one = PC_REAL(1.0); Real most = PC_REAL(300.0);
+  precise Real damping = PC_LD(tree_drive_rows, n, DRIVE_DAMPING) * PC_LD(tree_drive_rows, n, DRIVE_KICK); precise Real trace = (answer.xx + answer.yy + answer.zz) * damping;
+  precise Real scale = damping * pc_div(most, pc_max(trace, most)); precise Real half_damping = damping * PC_REAL(0.5);
+  // h c (1 - sigma) / 2
+  Sym3 early = pc_sym_scale(pc_sym_inverse(pc_sym_add(pc_diagonal(one), pc_sym_square(pc_sym_scale(answer, scale)))), half_damping); Sym3 gamma = pc_sym_sub(pc_diagonal(damping), early);
+  Driven d; d.freedom = pc_sym_add(bare, gamma); d.push = pc_add(pc_sym_mul(gamma, pc_ld3_drive(PC_PASS n, DRIVE_RATE)), pc_sym_mul(early, pc_ld3_drive(PC_PASS n, DRIVE_LAST))); return d;
 }
 // With motor and spring.
 PC_FN Driven pc_with_motor(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose, Mask driven) {
