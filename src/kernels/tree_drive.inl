@@ -32,10 +32,6 @@ PC_FN Real pc_motor_push(PC_IO Slot n, Vec3 axis, Sym3 loose, Real answer) {
   PC_ST(tree_drive_rows, n, MOTOR_ON, state); PC_ST(tree_drive_rows, n, MOTOR_STIFFNESS, stiffness);
   precise Real pull = stiffness * beyond - state * most; return pull;
 }
-// The square of a symmetric matrix.
-PC_FN Sym3 pc_sym_square(Sym3 m) {
-  Vec3 x = pc_row0(m); Vec3 y = pc_row1(m); Vec3 z = pc_row2(m); return pc_sym3(pc_dot(x, x), pc_dot(x, y), pc_dot(x, z), pc_dot(y, y), pc_dot(y, z), pc_dot(z, z));
-}
 // D with what only damps in it, all axes at once and so without any of the joint's: drive_terms.inl's sigma as a matrix, y^2 (1 + y^2)^-1 with y = h c / m.
 // Beyond a trace of 300 y is scaled down, or rounding of its square would swamp the 1. `push`: the couple that it lacks at the prediction.
 struct Driven { Sym3 freedom; Vec3 push; };
@@ -43,8 +39,9 @@ PC_FN Driven pc_with_damper(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
   Sym3 answer = pc_sym_add(loose, pc_sym_inverse(pc_lds_tree(PC_PASS up, TREE_BODY))); Real one = PC_REAL(1.0); Real most = PC_REAL(300.0);
   precise Real damping = PC_LD(tree_drive_rows, n, DRIVE_DAMPING) * PC_LD(tree_drive_rows, n, DRIVE_KICK); precise Real trace = (answer.xx + answer.yy + answer.zz) * damping;
   precise Real scale = damping * pc_div(most, pc_max(trace, most)); precise Real half_damping = damping * PC_REAL(0.5);
+  Sym3 y = pc_sym_scale(answer, scale); Vec3 y0 = pc_row0(y); Vec3 y1 = pc_row1(y); Vec3 y2 = pc_row2(y);
   // h c (1 - sigma) / 2
-  Sym3 early = pc_sym_scale(pc_sym_inverse(pc_sym_add(pc_diagonal(one), pc_sym_square(pc_sym_scale(answer, scale)))), half_damping); Sym3 gamma = pc_sym_sub(pc_diagonal(damping), early);
+  Sym3 early = pc_sym_scale(pc_sym_inverse(pc_sym_add(pc_diagonal(one), pc_products(y0, y1, y2, y0, y1, y2))), half_damping); Sym3 gamma = pc_sym_sub(pc_diagonal(damping), early);
   Driven d; d.freedom = pc_sym_add(bare, gamma); d.push = pc_add(pc_sym_mul(gamma, pc_ld3_drive(PC_PASS n, DRIVE_RATE)), pc_sym_mul(early, pc_ld3_drive(PC_PASS n, DRIVE_LAST))); return d;
 }
 // With motor and spring.
