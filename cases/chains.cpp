@@ -40,7 +40,7 @@ void at_rest(Trial& trial, int links, double ratio) {
 /// From one crossing of the plumb line to the next but one.
 void first_mode(Trial& trial, int links, double ratio) {
   Mode mode = slowest_mode(links, ratio);
-  for (double& angle : mode.angles) angle *= 0.01;
+  for (double& angle : mode.angles) angle *= 1e-3;  // small: a pendulum's period grows by angle^2 / 16
   Simulated& run = hang(trial, mode.angles, ratio);
   std::vector<double> crossings;
   double before = run.pose(links - 1).position.x;
@@ -140,6 +140,7 @@ void add_chains(std::vector<Case>& cases) {
                                   .substeps = {4},
                                   .more_steps = longer,
                                   .more_substeps = fewer,
+                                  .floor = links * std::numeric_limits<double>::epsilon(),  // places of the last links are rounded
                                   .lost_at = 1});
       const bool quick = links == 10 || (links == 50 && ratio <= 100);  // the others run with the step of their bound alone
       hanging.variants.push_back({.name = std::string(name) + ", mode",
@@ -148,7 +149,8 @@ void add_chains(std::vector<Case>& cases) {
                                   .substeps = {4},
                                   .more_steps = quick ? longer : std::vector<double>(),
                                   .more_substeps = quick ? fewer : std::vector<std::uint32_t>(),
-                                  .lost_at = 1});
+                                  .floor = 1e-7,      // of a period, for what the angles are
+                                  .lost_at = 0.16});  // a radian
     }
 
   Case& swing = cases.emplace_back(Case{"B2", "chain let go from level", {}});
@@ -184,6 +186,7 @@ void add_chains(std::vector<Case>& cases) {
                                 .substeps = {4},
                                 .more_steps = longer,
                                 .more_substeps = fewer,
+                                .floor = links * std::numeric_limits<double>::epsilon(),
                                 .lost_at = 1});
     }
 
@@ -196,6 +199,7 @@ void add_chains(std::vector<Case>& cases) {
                      .substeps = {4},
                      .more_steps = {1.0 / 30},
                      .more_substeps = fewer,
+                     .floor = 40 * std::numeric_limits<double>::epsilon(),  // places are rounded
                      .lost_at = 1},
                     {.name = "40 links, 1:672",
                      .run = [](Trial& t) { ball_and_chain(t, 40, 8, 672); },
@@ -203,6 +207,7 @@ void add_chains(std::vector<Case>& cases) {
                      .substeps = {4},
                      .more_steps = {1.0 / 30},
                      .more_substeps = fewer,
+                     .floor = 48 * std::numeric_limits<double>::epsilon(),
                      .lost_at = 1}}});
 }
 

@@ -9,6 +9,7 @@
 #include "tree_momentum.inl"
 #include "tree_predict.inl"
 #include "tree_joint_kept.inl"
+#include "tree_gap.inl"
 
 // Of a limit that is met and throws back, how far its rate lacks of that at which it is to be left; else 0.
 PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
@@ -30,11 +31,6 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
 PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
   precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
-}
-// 1 where a gap of a node's pin is more than a share, given as its square, of the body's arm. (That of its parent may be long: an anchor's.)
-PC_FN Real pc_gap_over(PC_IO Slot n, Vec3 gap, Real share_squared) {
-  Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); precise Real most = pc_dot(rc, rc) * share_squared;
-  return pc_select(pc_dot(gap, gap) > most, PC_REAL(1.0), PC_REAL(0.0));
 }
 // 1 where a limit that throws back is left too slowly, by more than 1e-5 of its rate.
 PC_FN Real pc_rebound_lacks(PC_IO Slot n, Slot up) {

@@ -34,8 +34,15 @@ PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angl
   PC_ST(tree_rows, n, TREE_ON + row, pc_select(locked, one, pc_select(pc_and(exists, pressed > zero), one, zero)));
 }
 
+// A hinge that a body turns about comes to its limit at an instant that pivot_turn finds: no row acts before it is there.
+PC_FN void pc_keep_for_the_turn(PC_IO Slot n, Mask is_angles) {
+  Mask locked = pc_and(PC_LD(tree_rows, n, TREE_KIND + 1u) > PC_REAL(1.5), PC_LD(tree_rows, n, TREE_KIND + 2u) > PC_REAL(1.5));
+  Mask on_its_way = pc_and(PC_LD(tree_rows, n, TREE_KIND) < PC_REAL(1.5), PC_LD(tree_rows, n, TREE_SLACK) > PC_INFO(rounding)); Mask waits = pc_and(pc_and(is_angles, locked), on_its_way);
+  PC_ST(tree_rows, n, TREE_KIND, pc_select(waits, PC_REAL(0.0), PC_LD(tree_rows, n, TREE_KIND))); PC_ST(tree_rows, n, TREE_ON, pc_select(waits, PC_REAL(0.0), PC_LD(tree_rows, n, TREE_ON)));
+}
+
 // The three angle rows of a joint; a joint without angles has three that never act.
-PC_FN void pc_tree_angles(PC_IO Slot n, uint b, Quaternion qc, Quaternion qp, Quad axes_c, Quad axes_p, Quad head, Quad lower, Quad upper, Vec3 remembered) {
+PC_FN void pc_tree_angles(PC_IO Slot n, uint b, uint pivot, Quaternion qc, Quaternion qp, Quad axes_c, Quad axes_p, Quad head, Quad lower, Quad upper, Vec3 remembered) {
   Mask any = head.s > PC_REAL(0.5); Mask is_cone = pc_and(any, head.s < PC_REAL(1.5)); Mask is_angles = head.s > PC_REAL(1.5);
   Mask throws = pc_and(any, upper.s > PC_REAL(0.0));
   PC_ST(tree_rows, n, TREE_HAS_ROWS, pc_select(throws, PC_REAL(2.0), pc_select(any, PC_REAL(1.0), PC_REAL(0.0))));
@@ -51,6 +58,7 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, Quaternion qc, Quaternion qp, Qu
   pc_tree_angle(PC_PASS n, 0u, a.roll_axis, flip, a.value.x, lower.v.x, upper.v.x, any, remembered.x);
   pc_tree_angle(PC_PASS n, 1u, a.second_axis, flip, a.value.y, lower.v.y, upper.v.y, any, remembered.y);
   pc_tree_angle(PC_PASS n, 2u, a.third_axis, flip, a.value.z, lower.v.z, upper.v.z, is_angles, remembered.z);
+  if (pivot == 1u) pc_keep_for_the_turn(PC_PASS n, is_angles);
   if (!PC_ANY(throws)) return;  // lint: allow (not read otherwise)
   // what leans on a limit already does not meet it
   for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_REAL(0.0), upper.s));
@@ -68,7 +76,7 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Vec3 apart = pc_add(pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION), pc_ld3_tree(PC_PASS up, TREE_POSITION)), pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION + 3u), pc_ld3_tree(PC_PASS up, TREE_POSITION + 3u)));
   pc_st3_tree(PC_PASS n, TREE_RC, rc); pc_st3_tree(PC_PASS n, TREE_RP, rp); pc_st3_tree(PC_PASS n, TREE_GAP, pc_add(apart, pc_sub(rc, rp)));
   pc_st3_tree(PC_PASS n, TREE_PLACE, apart);
-  pc_tree_angles(PC_PASS n, b, qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
+  pc_tree_angles(PC_PASS n, b, pc_is_pivot(PC_PASS t), qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
   Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));
 
   precise Vec3 f = pin.v * flip * PC_INFO(impulse_ratio) * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL));

@@ -1,12 +1,14 @@
-// After the bodies have moved: takes back the velocities that closed the gaps. Poses keep what they moved, velocities
+// After the bodies have moved: closes what is left of gaps, and takes back the velocities that closed the gaps. Poses keep what they moved, velocities
 // never held it. Both momenta are kept at the places of now.
 #include "tree_rows.inl"
 #include "tree_store.inl"
 #include "tree_whole.inl"
 #include "tree_momentum.inl"
+#include "tree_close.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Real fastest = PC_REAL(0.0);
+  pc_tree_close(PC_PASS m, t);
   Index first = PC_ENDS(tree_ends, root, 0u); Quad place = PC_GATHER(pose, first, 0u); Quad low = PC_GATHER(pose, first, 2u);
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);

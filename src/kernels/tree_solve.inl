@@ -33,8 +33,8 @@ PC_FN void pc_tree_rebounds(PC_IO Slot n, Slot up) {
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     precise Real approach = -pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn); precise Real away = approach * PC_LD(tree_rows, n, TREE_REBOUND + i);
-    Mask meets = pc_and(approach > PC_INFO(restitution_threshold), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(1.5));
-    PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(meets, away, PC_REAL(0.0)));
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Mask meets = pc_and(approach > PC_INFO(restitution_threshold), kind < PC_REAL(1.5));
+    Real rate = pc_select(meets, away, PC_REAL(0.0)); PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(kind < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_REBOUND + i), rate));  // (pivot_turn's)
   }
 }
 // After a sweep: rows that pull leave, and in the first round those enter that it violates. 1 where any did.
