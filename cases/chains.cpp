@@ -134,14 +134,15 @@ void add_chains(std::vector<Case>& cases) {
     for (double ratio : {1.0, 100.0, 1e4, 1e6}) {
       char name[64];
       std::snprintf(name, sizeof name, "%d links, 1:%g", links, ratio);
-      hanging.variants.push_back({.name = name,
-                                  .run = [=](Trial& t) { at_rest(t, links, ratio); },
-                                  .steps = step,
-                                  .substeps = {4},
-                                  .more_steps = longer,
-                                  .more_substeps = fewer,
-                                  .floor = links * std::numeric_limits<double>::epsilon(),  // places of the last links are rounded
-                                  .lost_at = 1});
+      hanging.variants.push_back(
+          {.name = name,
+           .run = [=](Trial& t) { at_rest(t, links, ratio); },
+           .steps = step,
+           .substeps = {4},
+           .more_steps = longer,
+           .more_substeps = fewer,
+           .floor = links * std::numeric_limits<double>::epsilon(),  // places of the last links are rounded
+           .lost_at = 1});
       const bool quick = links == 10 || (links == 50 && ratio <= 100);  // the others run with the step of their bound alone
       hanging.variants.push_back({.name = std::string(name) + ", mode",
                                   .run = [=](Trial& t) { first_mode(t, links, ratio); },

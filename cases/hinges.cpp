@@ -291,8 +291,9 @@ void add_hinges(std::vector<Case>& cases) {
     doors.variants.push_back(
         {.name = "b, drag" + end, .run = run(Motor::drag, driven), .coarse = true, .second_order = "angle [rad]", .lost_at = 1});
   }
-  cases.push_back(
-      {"A19", "angle limit as a stop", {{.name = "from 90 deg", .run = stop_at_limit, .coarse = true, .substeps = {1, 4}, .lost_at = 0.25}}});
+  cases.push_back({"A19",
+                   "angle limit as a stop",
+                   {{.name = "from 90 deg", .run = stop_at_limit, .coarse = true, .substeps = {1, 4}, .lost_at = 0.25}}});
   for (const auto& [name, e, degrees] : {std::tuple{"rebound, e = 0.5", 0.5, 49.494649672581}, {"rebound, e = 1", 1.0, 90.0}})
     cases.back().variants.push_back({.name = name,
                                      .run = [e = e, height = degrees * pi / 180](Trial& t) { thrown_back(t, e, height); },

@@ -8,7 +8,7 @@
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Real fastest = PC_REAL(0.0);
-  pc_tree_close(PC_PASS m, t);
+  Vec3 gained = pc_tree_close(PC_PASS m, t);
   Index first = PC_ENDS(tree_ends, root, 0u); Quad place = PC_GATHER(pose, first, 0u); Quad low = PC_GATHER(pose, first, 2u);
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
@@ -17,8 +17,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     fastest = pc_max(fastest, pc_largest(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED)));
     pc_st3_tree(PC_PASS n, TREE_X, pc_negate(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED))); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_negate(pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
   }
-  PC_MOST(fastest);
+  fastest = pc_max(fastest, pc_largest(gained)); PC_MOST(fastest);
   pc_tree_whole(PC_PASS m, t);
   if (!PC_ANY(fastest > PC_REAL(0.0))) return;  // lint: allow (a push of nothing changes nothing)
-  pc_tree_add_changes(PC_PASS m, t, pc_zero3(), pc_zero3());
+  pc_tree_add_changes(PC_PASS m, t, pc_zero3(), pc_negate(gained));
 }

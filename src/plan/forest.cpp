@@ -36,9 +36,17 @@ void Forest::build(std::span<const JointLink> links, std::span<const double> mas
     }
 
   closing_.clear();
+  std::vector<char> closes(masses.size(), 0);  // by body row: a joint of it closes a loop
   for (std::uint32_t i = 0; i < links_.size(); i++)
-    if (!used_[i]) closing_.push_back(links_[i].row);
+    if (!used_[i]) {
+      closing_.push_back(links_[i].row);
+      closes[links_[i].a] = closes[links_[i].b] = 1;
+    }
   std::ranges::sort(closing_);
+  if (closing_.empty()) return;
+  for (std::size_t i = 0; i < trees(); i++)
+    for (std::uint32_t k = first_[i]; k < first_[i + 1]; k++)
+      if (closes[nodes_[k].body] && masses_[nodes_[k].body] > 0) nodes_[first_[i]].parent = 1;
 }
 
 void Forest::grow_hanging() {

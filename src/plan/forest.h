@@ -21,7 +21,7 @@ struct JointLink {
 
 struct TreeNode {
   std::uint32_t body, joint;  // rows; of the root the joint is 0
-  std::uint32_t parent;       // position in the tree, before this node's
+  std::uint32_t parent;       // position in the tree, before this node's; of the root 1 where some joint closes a loop with its tree
   bool flipped;               // the joint's body a is the child; of a root: set_pivot
 };
 
