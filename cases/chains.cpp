@@ -127,7 +127,7 @@ void ball_and_chain(Trial& trial, int links, double radius, double load) {
 }  // namespace
 
 void add_chains(std::vector<Case>& cases) {
-  const std::vector<double> step{1.0 / 240}, longer{1.0 / 60};
+  const std::vector<double> step{1.0 / 240}, longer{1.0 / 60}, also{1.0 / 60, 1.0 / 960};
   const std::vector<std::uint32_t> fewer{1, 2};  // sub-steps
   Case& hanging = cases.emplace_back(Case{"B1", "hanging chain, its last link 1 to 1e6 times as heavy", {}});
   for (int links : {10, 50, 200})
@@ -144,14 +144,18 @@ void add_chains(std::vector<Case>& cases) {
            .floor = links * std::numeric_limits<double>::epsilon(),  // places of the last links are rounded
            .lost_at = 1});
       const bool quick = links == 10 || (links == 50 && ratio <= 100);  // the others run with the step of their bound alone
-      hanging.variants.push_back({.name = std::string(name) + ", mode",
-                                  .run = [=](Trial& t) { first_mode(t, links, ratio); },
-                                  .steps = step,
-                                  .substeps = {4},
-                                  .more_steps = quick ? longer : std::vector<double>(),
-                                  .more_substeps = quick ? fewer : std::vector<std::uint32_t>(),
-                                  .floor = 1e-7,      // of a period, for what the angles are
-                                  .lost_at = 0.16});  // a radian
+      for (std::uint32_t order : {2, 4}) {
+        if (order == 4 && links != 10) continue;
+        hanging.variants.push_back({.name = name + std::string(order == 4 ? ", mode, order 4" : ", mode"),
+                                    .run = [=](Trial& t) { first_mode(t, links, ratio); },
+                                    .steps = step,
+                                    .substeps = {4},
+                                    .more_steps = links == 10 ? also : quick ? longer : std::vector<double>(),
+                                    .more_substeps = quick ? fewer : std::vector<std::uint32_t>(),
+                                    .order = order,
+                                    .floor = 1e-7,      // of a period, for what the angles are
+                                    .lost_at = 0.16});  // a radian
+      }
     }
 
   Case& swing = cases.emplace_back(Case{"B2", "chain let go from level", {}});
