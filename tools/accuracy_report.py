@@ -115,7 +115,7 @@ PEERS = {"Bullet": "#4d4d4d", "ODE": "#8c564b", "MuJoCo": "#9467bd", "RaiSim": "
 
 
 def colour_of_peer(name):
-    return next((colour for peer, colour in PEERS.items() if name.startswith(peer)), "#7f7f7f")
+    return next((colour for peer, colour in PEERS.items() if name.lower().startswith(peer.lower())), "#7f7f7f")
 
 
 def draw_series(axes, rows, **style):
@@ -143,7 +143,7 @@ def draw_variant(axes, variant, rows, published):
         draw_series(axes, series, color=COLOURS[precision], marker=marker, linestyle="-" if substeps == 1 else "--",
                     label=f"pcphys {curve}, n = {substeps}")
     for (peer,), series in group([r for r in rows if r["peer"]], "peer").items():
-        draw_series(axes, series, color=colour_of_peer(peer), marker="x", linestyle=":", label=peer)
+        draw_series(axes, series, color=colour_of_peer(peer), marker="+" if "-" in peer else "x", linestyle=":", label=peer)
     for (peer,), series in group([p for p in published if p["variant"] == variant and p["metric"] == metric], "peer").items():
         draw_series(axes, series, color=colour_of_peer(peer), marker="*", linestyle="none", label=f"{peer}, published")
     for row in own:
