@@ -46,6 +46,7 @@ TEST_CASE("forest: a free tree has its heaviest body as its root, of equal ones 
   CHECK(bodies(f, 0) == List{3, 2, 4, 1, 5});
   CHECK(parents(f, 0) == List{0, 0, 0, 1, 2});
   CHECK(f.tree(0)[1].flipped);
+  CHECK_FALSE(f.has_loop(0));
   CHECK_FALSE(f.tree(0)[2].flipped);
   // ids, not rows
   const List ids{0, 1, 2, 9, 3, 4};
@@ -65,6 +66,8 @@ TEST_CASE("forest: a loop leaves one joint over") {
     CHECK(bodies(f, 0) == List{0, left, bar});
     CHECK(bodies(f, 1) == List{0, right});
     CHECK(closing(f) == List{3});
+    CHECK(f.has_loop(0));
+    CHECK(f.has_loop(1));
   }
   SUBCASE("a ring of six") {
     Graph g;

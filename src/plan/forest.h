@@ -21,8 +21,8 @@ struct JointLink {
 
 struct TreeNode {
   std::uint32_t body, joint;  // rows; of the root the joint is 0
-  std::uint32_t parent;       // position in the tree, before this node's; of the root 1 where some joint closes a loop with its tree
-  bool flipped;               // the joint's body a is the child; of a root: set_pivot
+  std::uint32_t parent;  // position in the tree, before this node's; of the root 1 where some joint closes a loop with its tree
+  bool flipped;          // the joint's body a is the child; of a root: set_pivot
 };
 
 class Forest {
@@ -37,6 +37,8 @@ class Forest {
   std::span<const TreeNode> tree(std::size_t i) const { return std::span(nodes_).subspan(first_[i], first_[i + 1] - first_[i]); }
   /// Marks a tree's root: its one other body turns about their joint.
   void set_pivot(std::size_t tree) { nodes_[first_[tree]].flipped = true; }
+  /// Whether a joint that stands in no tree holds a body of this one: its root's mark in `parent`.
+  bool has_loop(std::size_t tree) const { return nodes_[first_[tree]].parent == 1; }
   /// Rows of the joints that stand in no tree, ascending.
   std::span<const std::uint32_t> closing() const { return closing_; }
 

@@ -56,15 +56,10 @@ bool is_locked_otherwise(const AngleFreedom& f) {
 }  // namespace
 
 std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state, const SolvedJoints& joints) {
-  std::vector<char> closes(state.bodies.size(), 0);  // by body row: a joint of it closes a loop
-  for (const std::uint32_t row : forest.closing()) {
-    closes[state.body_ids.row(state.joints[row].body_a)] = 1;
-    closes[state.body_ids.row(state.joints[row].body_b)] = 1;
-  }
   std::vector<Pivot> pivots;
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
-    if (tree.size() != 2 || !state.stands(tree[0].body) || closes[tree[1].body]) continue;
+    if (tree.size() != 2 || !state.stands(tree[0].body) || forest.has_loop(i)) continue;
     const std::uint32_t joint = tree[1].joint;
     const AngleFreedom& freedom = joints.def(state, joint).freedom;
     if (state.joints[joint].driven() || is_locked_otherwise(freedom)) continue;
