@@ -18,4 +18,7 @@ int run_cases(const CaseOptions& options, const char* command, const std::string
 /// Scenes in pcphys and in the peers that were found, in turns.
 int compare(const CompareOptions& options, const RunOptions& run_options);
 
+/// Random scenes, judged by what holds in all of them.
+int wild(const WildOptions& options);
+
 }  // namespace pcphys::command

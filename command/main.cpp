@@ -65,6 +65,10 @@ int main(int argc, char** argv) {
   add_run_options(*compare_command, run_options);
   add_output_options(*compare_command, run_options);
 
+  WildOptions wild_options;
+  CLI::App* wild_command = app.add_subcommand("wild", "random scenes, and what holds in all of them");
+  add_wild_options(*wild_command, wild_options);
+
   const auto is_first_word = [&](CLI::App* command) { return command->check_name(argv[1]); };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first_word).empty())
     return usage_error("There is no sub-command '" + std::string(argv[1]) + "'.");
@@ -82,5 +86,6 @@ int main(int argc, char** argv) {
   if (*accuracy_command) return run_cases(case_options, "accuracy", "A");
   if (*stability_command) return run_cases(case_options, "stability", "BC");
   if (*compare_command) return compare(compare_options, run_options);
+  if (*wild_command) return wild(wild_options);
   return usage_error("A sub-command is missing.");
 }

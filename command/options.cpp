@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <sstream>
 #include <thread>
@@ -65,6 +66,21 @@ Result<std::vector<std::string>> peer_names(const std::string& list) {
       return Error{ErrorCode::unknown_name,
                    "There is no peer '" + name + "'; give all, none, or some of " + known + " with commas between."};
     names.push_back(name);
+  }
+  return names;
+}
+
+Result<std::vector<std::string>> found_peers(const std::string& list) {
+  auto names = peer_names(list);
+  if (!names) return names.error();
+  for (const peers::Variant& variant : peers::variants()) {
+    const auto name = std::find(names->begin(), names->end(), variant.name);
+    if (variant.found || name == names->end()) continue;
+    const std::string sentence = std::string(variant.engine) + " was not found when pcphys was built; install " +
+                                 std::string(variant.package) + " and configure again.";
+    if (list != "all") return Error{ErrorCode::unavailable, sentence};
+    std::cerr << "pcphys: without " << variant.name << ": " << sentence << "\n";
+    names->erase(name);
   }
   return names;
 }

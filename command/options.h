@@ -52,6 +52,17 @@ struct CompareOptions {
   double budget = 20;  // of stepping, for each peer and scene [s]
 };
 
+/// Of `wild`.
+struct WildOptions {
+  std::vector<std::string> families;
+  std::optional<long long> seed, count;
+  std::optional<double> budget;  // of all [s]
+  std::string precision = "float", backend = "cpu", lanes = "auto", peers = "none";
+  long long threads = 1, bits = 16, bits_gl = 0;
+  bool list = false, shrink = false;
+  std::string shrink_to, json, csv;
+};
+
 /// The options in the library's own terms.
 struct Setup {
   std::string scene;
@@ -69,6 +80,7 @@ void add_run_options(CLI::App& app, RunOptions& options);
 void add_output_options(CLI::App& app, RunOptions& options);
 void add_case_options(CLI::App& app, CaseOptions& options);
 void add_compare_options(CLI::App& app, CompareOptions& options);
+void add_wild_options(CLI::App& app, WildOptions& options);
 
 // Errors: bad_argument with a sentence that names the option and what it accepts.
 Status check_range(const char* option, long long value, long long low, long long high);
@@ -76,6 +88,9 @@ Status check_choice(const char* option, const std::string& value, std::initializ
 Status check_budget(double seconds);
 /// Names of peers with commas between; all or none. Those that were not found are among them. Errors: unknown_name.
 Result<std::vector<std::string>> peer_names(const std::string& list);
+/// Those of the list that were found. With "all" the others are named on standard error; asked for by name, one that was not found is an
+/// error.
+Result<std::vector<std::string>> found_peers(const std::string& list);
 /// "0.01" or "1/60" [s].
 Result<double> time_step(const std::string& text);
 

@@ -27,7 +27,9 @@ JointAngles angles(Quat frame_a, Quat frame_b) {
 
 double outside(double value, double lower, double upper) { return std::max({0.0, lower - value, value - upper}); }
 
-LimitExcess excess(const JointDef& joint, Quat qa, Quat qb) {
+}  // namespace
+
+LimitExcess limit_excess(const JointDef& joint, Quat qa, Quat qb) {
   const AngleFreedom& freedom = joint.freedom;
   if (freedom.kind == AngleFreedom::Kind::free) return {};
   const JointAngles is = angles(qa * joint.frame_a.orientation, qb * joint.frame_b.orientation);
@@ -39,6 +41,8 @@ LimitExcess excess(const JointDef& joint, Quat qa, Quat qb) {
                     outside(is.yaw, freedom.lower.z, freedom.upper.z)}),
           0};
 }
+
+namespace {
 
 /// The scene's joints with the poses of their bodies.
 template <class Action> void for_each_joint(const Scene& scene, const World& world, std::span<const Pose> poses, Action action) {
@@ -99,7 +103,7 @@ Separation joint_separation(const Scene& scene, const World& world, std::span<co
 LimitExcess limit_excess(const Scene& scene, const World& world, std::span<const Pose> poses) {
   LimitExcess worst;
   for_each_joint(scene, world, poses, [&](const JointDef& joint, const Pose& a, const Pose& b) {
-    const LimitExcess here = excess(joint, a.orientation, b.orientation);
+    const LimitExcess here = limit_excess(joint, a.orientation, b.orientation);
     worst = {std::max(worst.any, here.any), std::max(worst.cone, here.cone)};
   });
   return worst;

@@ -49,6 +49,8 @@ struct LimitExcess {
   double cone = 0;  // cones alone
 };
 LimitExcess limit_excess(const Scene& scene, const World& world, std::span<const Pose> poses);
+/// Of one joint, of bodies that are turned so.
+LimitExcess limit_excess(const JointDef& joint, Quat a, Quat b);
 /// Which bodies went over the rim of the open-lidded box: others threw them out, no wall let them through.
 class RimWatch {
  public:

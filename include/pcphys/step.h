@@ -17,6 +17,8 @@
 
 namespace pcphys {
 
+class ContactTrace;
+
 enum class NarrowPhase : std::uint8_t { native, fcl };
 
 /// How steps are made. All of it may change between two steps; results do not depend on where a stage runs.
@@ -138,6 +140,10 @@ class Stepper {
   /// What the buffers of this world, the host's own properties among them, and of its last step take, those that take any, with the
   /// device's copies.
   std::vector<BufferUse> memory(const World& world) const;
+
+  /// For tests and `pcphys wild`: told what contacts do in each sub-step (src/step/contact_trace.h), where all stages are on the CPU;
+  /// null: nobody is.
+  void set_trace(ContactTrace* trace);
 
   /// "cpu, 8 lanes", or the GL renderer's name; empty when no stage runs there.
   std::string device(Place place) const;

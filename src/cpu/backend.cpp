@@ -74,6 +74,7 @@ class CpuBackend final : public Backend {
     buffers_[std::size_t(buffer)] = rows.data();
     return {};
   }
+  const void* scratch(Buffer buffer) const override { return scratch_[std::size_t(buffer)].data(); }
   std::size_t held_bytes(Buffer buffer) const override {
     return std::size_t(buffer) < scratch_.size() ? scratch_[std::size_t(buffer)].capacity() : 0;
   }

@@ -52,6 +52,8 @@ class Backend {
   /// Scratch of the solver: `slots` rows of a PC_ROWS buffer, a multiple of the lanes. Never transferred.
   virtual Status reserve(Buffer buffer, std::size_t slots) = 0;
 
+  /// Scratch that the host can read in place, `width` slots side by side; null where it cannot.
+  virtual const void* scratch(Buffer buffer) const { return (void)buffer, nullptr; }
   /// What the backend has itself for a buffer.
   virtual std::size_t held_bytes(Buffer buffer) const { return (void)buffer, std::size_t{0}; }
 

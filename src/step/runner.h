@@ -11,6 +11,7 @@
 #include "step/memory_uses.h"
 #include "step/rollback.h"
 #include "step/schedule.h"
+#include "step/tracer.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -59,6 +60,11 @@ class Runner final : Keeper {
   std::string device(Place place) const;
   /// After `prepare`.
   const Workers& workers() const { return *workers_; }
+  /// Told what contacts do, from the next step on; null: nobody is. It outlives the runner, or is taken back.
+  void trace(ContactTrace* trace) {
+    tracer_.told = trace;
+    bound_ = {};
+  }
 
  private:
   struct Copy {
@@ -93,6 +99,7 @@ class Runner final : Keeper {
     const PlanEntry* entry;  // the first of them
     std::uint32_t first = 0, count = 0;
     bool last = false;  // of a stage that is clocked
+    bool ends = false;  // a sub-step
   };
 
   void fetch(Buffer buffer) override;
@@ -111,6 +118,7 @@ class Runner final : Keeper {
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
   Status kernels(const Call& call, WorldState& state);
+  void trace_substep(const PlanEntry& entry, const WorldState& state, const Schedule& schedule, const void* infos);
   Status keep_left(WorldState& state);
   Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
   bool keeps(Buffer buffer) const;
@@ -134,6 +142,7 @@ class Runner final : Keeper {
   bool gl_ = false;             // takes part
   bool left_ = false;           // see `left`
   bool watched_ = false;
+  Tracer tracer_;
 };
 
 }  // namespace pcphys

@@ -149,6 +149,8 @@ std::vector<BufferUse> Stepper::memory(const World& world) const {
   return uses.take();
 }
 
+void Stepper::set_trace(ContactTrace* trace) { inside_->runner.trace(trace); }
+
 std::string Stepper::device(Place place) const { return inside_->runner.device(place); }
 
 }  // namespace pcphys

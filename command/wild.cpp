@@ -1,0 +1,194 @@
+// pcphys wild: random scenes, judged by what holds in all of them.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+#include "commands.h"
+#include "pcphys/device.h"
+#include "wild/shrink.h"
+#include "wild_report.h"
+
+namespace pcphys::command {
+namespace {
+
+/// Of all families, where neither a time nor a number of scenes is asked for [s].
+constexpr double usual_budget = 60;
+
+Error bad(const std::string& sentence) { return {ErrorCode::bad_argument, sentence}; }
+
+Status check_numbers(const WildOptions& options) {
+  constexpr long long many = 1'000'000'000'000;
+  if (options.seed)
+    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max() - many); !status) return status;
+  if (options.count)
+    if (auto status = check_range("count", *options.count, 1, many); !status) return status;
+  if (auto status = check_range("threads", options.threads, 0, 256); !status) return status;
+  if (auto status = check_range("bits", options.bits, 0, many); !status) return status;
+  if (auto status = check_range("bits-gl", options.bits_gl, 0, many); !status) return status;
+  if (options.budget && !(*options.budget > 0 && std::isfinite(*options.budget)))
+    return bad("--budget is " + std::to_string(*options.budget) + "; give seconds above 0.");
+  return {};
+}
+
+Status check_gl(const wild::RunOptions& run) {
+  if (run.play.place == Place::cpu && run.gl_every == 0) return {};
+  const GlReport report = probe_gl(-1);
+  if (report.usable) return {};
+  return Error{ErrorCode::unavailable, report.problem};
+}
+
+Status set_play(const WildOptions& options, wild::RunOptions& run) {
+  if (auto status = check_choice("precision", options.precision, {"float", "double", "both"}); !status) return status;
+  if (auto status = check_choice("backend", options.backend, {"cpu", "gl"}); !status) return status;
+  if (auto status = check_choice("lanes", options.lanes, {"auto", "1", "4", "8"}); !status) return status;
+  run.precisions.clear();
+  if (options.precision != "double") run.precisions.push_back(Precision::f32);
+  if (options.precision != "float") run.precisions.push_back(Precision::f64);
+  run.play.place = options.backend == "gl" ? Place::gl : Place::cpu;
+  run.play.lanes = options.lanes == "auto" ? 0 : std::uint32_t(options.lanes[0] - '0');
+  run.play.threads = std::uint32_t(options.threads);
+  if (run.play.lanes == 8 && options.precision != "float")
+    return bad("--lanes 8 is for --precision float; double has 1 and 4 lanes.");
+  return {};
+}
+
+/// One scene of each family, of which every measure is told.
+bool single(const WildOptions& options) { return options.seed && !options.count && !options.budget; }
+
+Status check_families(const WildOptions& options) {
+  std::string known;
+  for (const wild::Family& family : wild::families()) known += (known.empty() ? "" : ", ") + std::string(family.name);
+  for (const std::string& name : options.families) {
+    const auto is_it = [&](const wild::Family& family) { return family.name == name; };
+    if (std::none_of(wild::families().begin(), wild::families().end(), is_it))
+      return Error{ErrorCode::unknown_name, "There is no family '" + name + "'; choose of " + known + "."};
+  }
+  return {};
+}
+
+Result<wild::RunOptions> resolve(const WildOptions& options) {
+  wild::RunOptions run;
+  if (auto status = check_families(options); !status) return status.error();
+  if (auto status = check_numbers(options); !status) return status.error();
+  if (auto status = set_play(options, run); !status) return status.error();
+  auto peers = found_peers(options.peers);
+  if (!peers) return peers.error();
+  run.families = options.families;
+  run.peers = std::move(*peers);
+  if (options.seed) run.first_seed = std::uint64_t(*options.seed);
+  if (options.count) run.count = std::uint64_t(*options.count);
+  if (options.budget) run.budget = *options.budget;
+  run.bits_every = std::uint64_t(options.bits);
+  run.gl_every = std::uint64_t(options.bits_gl);
+  if (single(options)) {
+    run.count = 1;
+    run.bits_every = 1;  // what broke in a run must break here, whatever share of its seeds was replayed
+    run.gl_every = options.bits_gl > 0 ? 1 : 0;
+  } else if (!options.count && !options.budget) {
+    run.budget = usual_budget;
+  }
+  if (auto status = check_gl(run); !status) return status.error();
+  return run;
+}
+
+int list_families() {
+  for (const wild::Family& family : wild::families())
+    std::printf("%-10s %s\n", std::string(family.name).c_str(), std::string(family.description).c_str());
+  return exit_ok;
+}
+
+/// With `stop`, the first scene that breaks ends the run.
+Result<std::vector<wild::Summary>> play(const wild::RunOptions& run, bool stop) {
+  const std::uint64_t families = run.families.empty() ? wild::families().size() : run.families.size();
+  const bool by_time = run.budget > 0;
+  Progress progress("wild", by_time ? std::uint64_t(std::ceil(run.budget)) : families * run.count, by_time ? "second" : "scene");
+  return wild::run(run, [&](const wild::RunState& state) {
+    progress.show(by_time ? std::clamp<std::uint64_t>(std::uint64_t(state.seconds), 1, std::uint64_t(std::ceil(run.budget)))
+                          : state.scenes);
+    return !(stop && state.broken > 0);
+  });
+}
+
+const wild::Summary* first_broken(std::span<const wild::Summary> summaries) {
+  for (const wild::Summary& summary : summaries)
+    if (summary.engine == "pcphys" && !summary.listed.empty()) return &summary;
+  return nullptr;
+}
+
+Status shrink_first(const wild::Summary& summary, const wild::RunOptions& run, OutputFile& file) {
+  const wild::Broken& broken = summary.listed.front();
+  const auto scene = wild::draw(summary.family, broken.seed);
+  if (!scene) return scene.error();
+  wild::PlayOptions play = run.play;
+  play.precision = summary.precision == "double" ? Precision::f64 : Precision::f32;
+  const std::size_t calls = scene->calls.size();
+  Progress progress("wild: shrinking " + summary.family + " " + std::to_string(broken.seed), calls, "call");
+  const wild::Scene smallest =
+      wild::shrink(*scene, play, broken.measure, [&](std::size_t left, std::uint64_t) {
+        progress.show(std::clamp<std::size_t>(calls - left, 1, calls));
+        return true;
+      });
+  wild::Verdict verdict = wild::judge(smallest, play);
+  if (broken.measure == wild::Measure::bits) wild::judge_bits(smallest, play, false, verdict);
+  return file.write(wild::as_program(smallest, play, verdict));
+}
+
+}  // namespace
+
+void add_wild_options(CLI::App& app, WildOptions& options) {
+  app.add_option("FAMILY", options.families, "families of scenes; all when none is given");
+  app.add_flag("--list", options.list, "list the families");
+  app.add_option("--seed", options.seed, "play this one scene and print every measure; with --count or --budget the first one");
+  app.add_option("--count", options.count, "scenes of each family");
+  app.add_option("--budget", options.budget, "seconds for all families together (default: 60, without --seed and --count)");
+  app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
+  app.add_option("--backend", options.backend, "cpu or gl, for all stages")->capture_default_str();
+  app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
+  app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
+  app.add_option("--peers", options.peers, "the same scenes in other engines: all, none, or names with commas between")
+      ->capture_default_str();
+  app.add_option("--bits", options.bits, "replay every so many seeds in other ways that must give the same bits; 0: none")
+      ->capture_default_str();
+  app.add_option("--bits-gl", options.bits_gl, "replay every so many seeds on OpenGL too; 0: none")->capture_default_str();
+  app.add_flag("--shrink", options.shrink,
+               "stop at the first scene that breaks, and print the smallest one that still does as a C++ program");
+  app.add_option("--shrink-to", options.shrink_to, "write that program to this file, and the rest to standard output");
+  app.add_option("--json", options.json, "write the result to this file; - is standard output");
+  app.add_option("--csv", options.csv, "write a row a family and measure to this file");
+}
+
+int wild(const WildOptions& options) {
+  if (options.list) return list_families();
+  const auto run = resolve(options);
+  if (!run) return fail(run.error());
+  auto files = ResultFiles::open(options.json, options.csv);
+  if (!files) return fail(files.error());
+  const bool shrinks = options.shrink || !options.shrink_to.empty();
+  auto program = OutputFile::open(shrinks && options.shrink_to.empty() ? "-" : options.shrink_to);
+  if (!program) return fail(program.error());
+  if (program->standard_output() && (files->json.standard_output() || files->csv.standard_output()))
+    return fail(bad("--shrink prints nothing but a program; give --json and --csv a file, or the program with --shrink-to FILE."));
+
+  const auto summaries = play(*run, shrinks);
+  if (!summaries) return fail(summaries.error());
+  if (files->printed() && !program->standard_output()) {
+    if (single(options))
+      for (const wild::Summary& summary : *summaries) print_scene(summary, run->first_seed);
+    else
+      print_run(*summaries, *run);
+    std::fflush(stdout);
+  }
+  if (auto status = files->write(to_json(*summaries, *run), to_csv(*summaries)); !status) return fail(status.error());
+  const wild::Summary* broken = first_broken(*summaries);
+  if (!broken) {
+    if (shrinks) std::cerr << "pcphys: nothing broke, so there is nothing to shrink.\n";
+    return exit_ok;
+  }
+  if (shrinks)
+    if (auto status = shrink_first(*broken, *run, *program); !status) return fail(status.error());
+  return exit_failed;
+}
+
+}  // namespace pcphys::command

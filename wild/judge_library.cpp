@@ -1,0 +1,220 @@
+// The judge over the library itself, and replays that must have the same bits.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "collision/narrow.h"
+#include "wild/distance.h"
+#include "wild/judge.h"
+#include "wild/phantoms.h"
+#include "wild/play.h"
+#include "wild/shapes.h"
+
+namespace pcphys::wild {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// The trace's own time does not count as the step's.
+class TimedPhantoms final : public ContactTrace {
+ public:
+  Phantoms phantoms;
+  Clock::duration spent{};
+
+  void begin(const WorldState& state) override {
+    const auto start = Clock::now();
+    phantoms.begin(state);
+    spent += Clock::now() - start;
+  }
+  void substep(const WorldState& state, double h, std::span<const TracedContact> contacts) override {
+    const auto start = Clock::now();
+    phantoms.substep(state, h, contacts);
+    spent += Clock::now() - start;
+  }
+};
+
+/// Sub-steps of bodies, of their joints and of points of contact, and pairs that were looked at, for each body that moves.
+double counted_work(const StepReport& r, const StepSettings& settings, double bodies) {
+  const double rows = double(r.joints) + double(r.points), base = settings.substeps, most = r.substeps;
+  const double refined = bodies > 0 ? double(r.refined) / bodies : 0;
+  const double once = double(r.pairs) + (bodies + rows) * (base + (most - base) * refined);
+  return (1 + double(r.repeats)) * once / std::max(bodies, 1.0);
+}
+
+/// How deep two shapes overlap; 0 where they do not [m].
+double depth(const Placed& a, const Placed& b) {
+  const auto view = [&](const Placed& p) {
+    const Vec3 at = p.pose.position - a.pose.position;
+    const Quat q = p.pose.orientation;
+    ShapeView<double> v{p.shape->kind, {p.shape->size.x, p.shape->size.y, p.shape->size.z}, {at.x, at.y, at.z}, {q.x, q.y, q.z, q.w}};
+    if (p.shape->kind != ShapeKind::hull) return v;
+    v.size[0] = p.shape->convex.radius();
+    v.size[1] = p.shape->convex.inner_radius();
+    v.hull = p.shape->convex.data();
+    return v;
+  };
+  std::uint32_t hint = 0;
+  Manifold<double> m;
+  narrow(view(a), view(b), 0, hint, m);
+  double deepest = 0;
+  for (std::uint32_t i = 0; i < m.count; i++) deepest = std::max(deepest, -m.points[i].separation);
+  return deepest;
+}
+
+class LibraryWatcher final : public Watcher {
+ public:
+  LibraryWatcher(const Scene& scene, const PlayOptions& options) : judge(scene, options.precision) {}
+  Judge judge;
+  TimedPhantoms trace;
+
+  void before_call(const Player& player, const Call& call) override {
+    if (begun_ && !std::holds_alternative<Steps>(call)) before_ = eye_.look(player);
+  }
+  void after_call(const Player& player, const Call& call, const Status& status) override {
+    eye_.follow(call);
+    if (std::holds_alternative<Steps>(call)) {
+      if (begun_) return;
+      begun_ = true;
+      before_ = eye_.look(player);
+      judge.begin(before_);
+      for (std::size_t i = 0; i < before_.bodies.size(); i++) allow_overlaps(player, int(i), false);
+      return;
+    }
+    if (!begun_ || !status) return;
+    const Observation& after = eye_.look(player);
+    judge.changed(before_, after);
+    before_ = after;
+    if (const SetPose* moved = std::get_if<SetPose>(&call)) allow_overlaps(player, moved->body, true);
+    if (const MakeBody* made = std::get_if<MakeBody>(&call)) allow_overlaps(player, made->body, true);
+    if (std::holds_alternative<Destroy>(call) || std::holds_alternative<SetFilter>(call) || std::holds_alternative<SetCollide>(call))
+      for (std::size_t i = 0; i < after.bodies.size(); i++) allow_overlaps(player, int(i), false);
+  }
+  bool after_step(const Player& player, double dt, const StepReport& report) override {
+    const Observation& after = eye_.look(player);
+    StepFacts facts;
+    facts.dt = dt;
+    const bool traced = player.options().place == Place::cpu;
+    if (traced) {
+      facts.contact_work = trace.phantoms.driven_work();
+      facts.contact_impulses = trace.phantoms.impulses();
+      facts.phantom = trace.phantoms.widest();
+    }
+    double bodies = 0;
+    for (const SeenBody& b : after.bodies) bodies += b.there && b.kind == BodyKind::dynamic;
+    facts.work = counted_work(report, player.settings(), bodies);
+    facts.frozen = report.frozen.size();
+    judge.stepped(before_, after, facts);
+    before_ = after;
+    return true;
+  }
+  void end(const Player& player) {
+    const Observation& seen = eye_.look(player);
+    judge.ended(seen, deepest_share(player));
+  }
+
+ private:
+  /// A body that overlaps others by the host's doing may be pushed out at push_speed, and lifted. With `others` what it was put into counts
+  /// too.
+  void allow_overlaps(const Player& player, int number, bool others) {
+    const Observation& seen = eye_.seen();
+    const SeenBody& body = seen.body(number);
+    if (!body.there) return;
+    for (std::size_t i = 0; i < seen.bodies.size(); i++) {
+      const SeenBody& other = seen.bodies[i];
+      if (int(i) == number || !other.there || (body.kind != BodyKind::dynamic && other.kind != BodyKind::dynamic)) continue;
+      double deepest = 0;
+      for (const ShapeDef& x : eye_.shapes(number))
+        for (const ShapeDef& y : eye_.shapes(int(i))) {
+          const Placed a = placed(x, body.pose), b = placed(y, other.pose);
+          if (distance(a, b) == 0) deepest = std::max(deepest, depth(a, b));
+        }
+      if (deepest == 0) continue;
+      if (body.kind == BodyKind::dynamic) allow(player, body, deepest);
+      if (others && other.kind == BodyKind::dynamic) allow(player, other, deepest);
+    }
+  }
+  void allow(const Player& player, const SeenBody& body, double deepest) {
+    const double push = player.settings().push_speed;
+    judge.allow_overlap(body.mass.mass * (length(eye_.seen().gravity) * deepest + 0.5 * push * push));
+  }
+  /// Of the contacts of the last step.
+  double deepest_share(const Player& player) const {
+    const World& world = player.world();
+    double deepest = 0;
+    for (const Contact& c : world.contacts()) {
+      double smaller = 1e30;
+      for (const BodyId id : {c.a, c.b}) {
+        const auto shapes = world.shapes(id);
+        if (!shapes) continue;
+        for (const ShapeDef& s : *shapes)
+          if (s.kind != ShapeKind::plane) smaller = std::min(smaller, 2 * outer_radius(s));
+      }
+      for (const Contact::Point& p : c.points) deepest = std::max(deepest, -p.separation / smaller);
+    }
+    return deepest;
+  }
+
+  Eye eye_;
+  Observation before_;
+  bool begun_ = false;
+};
+
+std::uint64_t played_hash(const Scene& scene, const PlayOptions& options) {
+  Player player(scene, options);
+  if (Status ok = player.play(); !ok) return 0;
+  return player.own_hash();
+}
+
+/// Objects that are made between steps have other ids where unrelated islands took some.
+bool makes_while_it_runs(const Scene& scene) {
+  bool stepped = false;
+  for (const Call& call : scene.calls) {
+    stepped |= std::holds_alternative<Steps>(call);
+    const bool makes = std::holds_alternative<MakeBody>(call) || std::holds_alternative<MakeRagdoll>(call) ||
+                       std::holds_alternative<MakeJoint>(call) || std::holds_alternative<MakeSpring>(call) ||
+                       std::holds_alternative<Destroy>(call) || std::holds_alternative<Restore>(call);
+    if (stepped && makes) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Verdict judge(const Scene& scene, const PlayOptions& options) {
+  Player player(scene, options);
+  LibraryWatcher watcher(scene, options);
+  if (options.place == Place::cpu) player.set_trace(&watcher.trace);
+  const Status played = player.play(&watcher);
+  if (!played) watcher.judge.verdict().failure = played.error().message;
+  watcher.end(player);
+  player.set_trace(nullptr);
+  Verdict verdict = watcher.judge.verdict();
+  verdict.seconds = player.seconds() - std::chrono::duration<double>(watcher.trace.spent).count();
+  return verdict;
+}
+
+void judge_bits(const Scene& scene, const PlayOptions& options, bool gl, Verdict& verdict) {
+  PlayOptions plain = options;
+  plain.lanes = 1;
+  const std::uint64_t expected = played_hash(scene, plain);
+  double other = 0;
+  const auto compare = [&](auto change) {
+    PlayOptions changed = options;
+    change(changed);
+    other += played_hash(scene, changed) != expected;
+  };
+  const bool f64 = options.precision == Precision::f64;
+  compare([](PlayOptions& o) { o.lanes = 4; });
+  if (!f64) compare([](PlayOptions& o) { o.lanes = 8; });
+  compare([](PlayOptions& o) { o.threads = 2; });
+  compare([](PlayOptions& o) { o.restored = true; });
+  if (!makes_while_it_runs(scene)) compare([](PlayOptions& o) { o.unrelated = true; });
+  if (gl) compare([](PlayOptions& o) { o.place = Place::gl; });
+  Finding& f = verdict[Measure::bits];
+  f.measured = true;
+  f.worst = other;
+  f.bound = 0;
+  f.step = verdict.steps;
+}
+
+}  // namespace pcphys::wild
