@@ -21,7 +21,8 @@ Error bad(const std::string& sentence) { return {ErrorCode::bad_argument, senten
 Status check_numbers(const WildOptions& options) {
   constexpr long long many = 1'000'000'000'000;
   if (options.seed)
-    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max() - many); !status) return status;
+    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max() - many); !status)
+      return status;
   if (options.count)
     if (auto status = check_range("count", *options.count, 1, many); !status) return status;
   if (auto status = check_range("threads", options.threads, 0, 256); !status) return status;
@@ -103,10 +104,12 @@ int list_families() {
 Result<std::vector<wild::Summary>> play(const wild::RunOptions& run, bool stop) {
   const std::uint64_t families = run.families.empty() ? wild::families().size() : run.families.size();
   const bool by_time = run.budget > 0;
-  Progress progress("wild", by_time ? std::uint64_t(std::ceil(run.budget)) : families * run.count, by_time ? "second" : "scene");
+  Progress progress("wild", by_time ? std::uint64_t(std::ceil(run.budget)) : families * run.count,
+                    by_time ? "second" : "scene");
   return wild::run(run, [&](const wild::RunState& state) {
-    progress.show(by_time ? std::clamp<std::uint64_t>(std::uint64_t(state.seconds), 1, std::uint64_t(std::ceil(run.budget)))
-                          : state.scenes);
+    progress.show(by_time
+                      ? std::clamp<std::uint64_t>(std::uint64_t(state.seconds), 1, std::uint64_t(std::ceil(run.budget)))
+                      : state.scenes);
     return !(stop && state.broken > 0);
   });
 }
@@ -125,11 +128,10 @@ Status shrink_first(const wild::Summary& summary, const wild::RunOptions& run, O
   play.precision = summary.precision == "double" ? Precision::f64 : Precision::f32;
   const std::size_t calls = scene->calls.size();
   Progress progress("wild: shrinking " + summary.family + " " + std::to_string(broken.seed), calls, "call");
-  const wild::Scene smallest =
-      wild::shrink(*scene, play, broken.measure, [&](std::size_t left, std::uint64_t) {
-        progress.show(std::clamp<std::size_t>(calls - left, 1, calls));
-        return true;
-      });
+  const wild::Scene smallest = wild::shrink(*scene, play, broken.measure, [&](std::size_t left, std::uint64_t) {
+    progress.show(std::clamp<std::size_t>(calls - left, 1, calls));
+    return true;
+  });
   wild::Verdict verdict = wild::judge(smallest, play);
   if (broken.measure == wild::Measure::bits) wild::judge_bits(smallest, play, false, verdict);
   return file.write(wild::as_program(smallest, play, verdict));
@@ -140,18 +142,23 @@ Status shrink_first(const wild::Summary& summary, const wild::RunOptions& run, O
 void add_wild_options(CLI::App& app, WildOptions& options) {
   app.add_option("FAMILY", options.families, "families of scenes; all when none is given");
   app.add_flag("--list", options.list, "list the families");
-  app.add_option("--seed", options.seed, "play this one scene and print every measure; with --count or --budget the first one");
+  app.add_option("--seed", options.seed,
+                 "play this one scene and print every measure; with --count or --budget the first one");
   app.add_option("--count", options.count, "scenes of each family");
-  app.add_option("--budget", options.budget, "seconds for all families together (default: 60, without --seed and --count)");
+  app.add_option("--budget", options.budget,
+                 "seconds for all families together (default: 60, without --seed and --count)");
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--backend", options.backend, "cpu or gl, for all stages")->capture_default_str();
   app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
-  app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
+  app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")
+      ->capture_default_str();
   app.add_option("--peers", options.peers, "the same scenes in other engines: all, none, or names with commas between")
       ->capture_default_str();
-  app.add_option("--bits", options.bits, "replay every so many seeds in other ways that must give the same bits; 0: none")
+  app.add_option("--bits", options.bits,
+                 "replay every so many seeds in other ways that must give the same bits; 0: none")
       ->capture_default_str();
-  app.add_option("--bits-gl", options.bits_gl, "replay every so many seeds on OpenGL too; 0: none")->capture_default_str();
+  app.add_option("--bits-gl", options.bits_gl, "replay every so many seeds on OpenGL too; 0: none")
+      ->capture_default_str();
   app.add_flag("--shrink", options.shrink,
                "stop at the first scene that breaks, and print the smallest one that still does as a C++ program");
   app.add_option("--shrink-to", options.shrink_to, "write that program to this file, and the rest to standard output");
@@ -169,7 +176,8 @@ int wild(const WildOptions& options) {
   auto program = OutputFile::open(shrinks && options.shrink_to.empty() ? "-" : options.shrink_to);
   if (!program) return fail(program.error());
   if (program->standard_output() && (files->json.standard_output() || files->csv.standard_output()))
-    return fail(bad("--shrink prints nothing but a program; give --json and --csv a file, or the program with --shrink-to FILE."));
+    return fail(bad(
+        "--shrink prints nothing but a program; give --json and --csv a file, or the program with --shrink-to FILE."));
 
   const auto summaries = play(*run, shrinks);
   if (!summaries) return fail(summaries.error());

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "peers/peer.h"
 #include "pcphys/version.h"
+#include "peers/peer.h"
 
 namespace pcphys::command {
 namespace {
@@ -63,8 +63,8 @@ void print_families(std::span<const Summary> summaries) {
   }
   for (const Summary& s : summaries)
     if (s.refused > 0)
-      std::printf("%s, %s: %llu scenes not played: %s\n", s.family.c_str(), s.engine.c_str(), (unsigned long long)s.refused,
-                  s.why_refused.c_str());
+      std::printf("%s, %s: %llu scenes not played: %s\n", s.family.c_str(), s.engine.c_str(),
+                  (unsigned long long)s.refused, s.why_refused.c_str());
 }
 
 void print_spreads(std::span<const Summary> summaries) {
@@ -78,8 +78,7 @@ void print_spreads(std::span<const Summary> summaries) {
       std::printf("%-10s %-12s %-6s %-18s %9llu %8llu %10s %10s %10s %10s  %-20s %10s\n", s.family.c_str(),
                   s.engine.c_str(), s.precision.c_str(), with_unit.c_str(), (unsigned long long)spread.runs,
                   (unsigned long long)spread.broken, figure(spread.median).c_str(), figure(spread.p99).c_str(),
-                  figure(spread.p999).c_str(), figure(spread.worst).c_str(), bound_text(spread).c_str(),
-                  seed.c_str());
+                  figure(spread.p999).c_str(), figure(spread.worst).c_str(), bound_text(spread).c_str(), seed.c_str());
     });
 }
 
@@ -208,21 +207,28 @@ Json to_json(std::span<const Summary> summaries, const wild::RunOptions& options
   for (const std::string& name : options.peers)
     for (const peers::Variant& variant : peers::variants())
       if (variant.name == name)
-        peers.push_back({{"name", name}, {"engine", variant.engine}, {"solver", variant.solver}, {"version", variant.version}});
+        peers.push_back(
+            {{"name", name}, {"engine", variant.engine}, {"solver", variant.solver}, {"version", variant.version}});
   for (const Summary& summary : summaries) list.push_back(to_json(summary, options));
-  return {{"version", PCPHYS_VERSION}, {"options", options_json(options)}, {"measures", measures},
-          {"families", families},      {"peers", peers},                   {"summaries", list}};
+  return {{"version", PCPHYS_VERSION},
+          {"options", options_json(options)},
+          {"measures", measures},
+          {"families", families},
+          {"peers", peers},
+          {"summaries", list}};
 }
 
 std::string to_csv(std::span<const Summary> summaries) {
-  std::string table = "engine,family,precision,measure,runs,broken,median,p99,p999,worst,least_bound,largest_bound,seed,step\n";
+  std::string table =
+      "engine,family,precision,measure,runs,broken,median,p99,p999,worst,least_bound,largest_bound,seed,step\n";
   for (const Summary& s : summaries)
     each_measure(s, [&](Measure measure, const Spread& spread) {
       const auto bound = [](const std::optional<double>& value) { return value ? figure(*value) : ""; };
-      table += s.engine + "," + s.family + "," + s.precision + "," + name_of(measure) + "," + std::to_string(spread.runs) +
-               "," + std::to_string(spread.broken) + "," + figure(spread.median) + "," + figure(spread.p99) + "," +
-               figure(spread.p999) + "," + figure(spread.worst) + "," + bound(spread.least_bound) + "," +
-               bound(spread.largest_bound) + "," + std::to_string(spread.seed) + "," + std::to_string(spread.step) + "\n";
+      table += s.engine + "," + s.family + "," + s.precision + "," + name_of(measure) + "," +
+               std::to_string(spread.runs) + "," + std::to_string(spread.broken) + "," + figure(spread.median) + "," +
+               figure(spread.p99) + "," + figure(spread.p999) + "," + figure(spread.worst) + "," +
+               bound(spread.least_bound) + "," + bound(spread.largest_bound) + "," + std::to_string(spread.seed) + "," +
+               std::to_string(spread.step) + "\n";
     });
   return table;
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the tables of docs/wild.md, and its picture where matplotlib is there, from `pcphys wild --json FILE`.
 
-    tools/wild_report.py FILE.json [MORE.json...]
+    tools/wild_report.py FILE.json [MORE.json...]    of a family, engine and precision in several files the last one counts
     tools/wild_report.py --out FOLDER FILE.json      writes FOLDER/wild.md and FOLDER/img/wild.svg instead
     tools/wild_report.py --made "COMMAND" FILE.json  what the page says that made it
 """
@@ -25,7 +25,8 @@ def number(value):
 
 
 def share(part, whole):
-    return f"{number(100 * part / whole)} %" if part and whole else "0"
+    percent = 100 * part / whole if whole else 0
+    return f"{percent:.3g} %" if percent >= 10 else f"{percent:.2g} %"
 
 
 def engine(summary):
@@ -61,7 +62,7 @@ def worst(summary):
     if not found:
         return "-", "-"
     if found["measure"] is None:
-        return f"a step failed: {found['failure']}", found["seed"]
+        return f"a step failed ({found['failure'].split(':')[0]})", found["seed"]
     return f"{found['measure']} {number(found['value'])} ({number(found['bound'])})", found["seed"]
 
 
@@ -69,12 +70,21 @@ def by_family(summaries):
     rows = []
     for s in summaries:
         if not s["runs"]:
-            rows.append([s["family"], engine(s), "-", "", "", f"cannot hold them: {s['why_refused']}", "", ""])
             continue
         what, seed = worst(s)
-        rows.append([s["family"], engine(s), s["runs"], s["broken"], share(s["broken"], s["runs"]), what, seed,
+        rows.append([s["family"], engine(s), s["runs"], s["refused"] or "", s["broken"], share(s["broken"], s["runs"]), what, seed,
                      f"{s['ns_per_body_step']:.0f}"])
-    return table(["family", "engine", "scenes", "broken", "", "worst (bound)", "seed", "ns a body and step"], rows)
+    heads = ["family", "engine", "scenes", "cannot hold", "broken", "", "worst (bound)", "seed", "ns a body and step"]
+    return table(heads, rows) + not_held(summaries)
+
+
+def not_held(summaries):
+    """A line a family that engines can hold nothing of."""
+    engines = {}
+    for s in summaries:
+        if not s["runs"]:
+            engines.setdefault(s["family"], []).append(s["engine"])
+    return [line for family, names in engines.items() for line in ("", f"Of `{family}` nothing is for {', '.join(names)}.")]
 
 
 def what_breaks(summaries, measures):
@@ -206,7 +216,8 @@ def main():
     arguments = parser.parse_args()
     runs = [json.loads(path.read_text()) for path in arguments.files]
     order = [family["name"] for family in runs[0]["families"]]
-    summaries = sorted((s for run in runs for s in run["summaries"]), key=lambda s: order.index(s["family"]))
+    last = {(s["engine"], s["family"], s["precision"]): s for run in runs for s in run["summaries"]}
+    summaries = sorted(last.values(), key=lambda s: (order.index(s["family"]), s["engine"] != "pcphys"))
     arguments.out.mkdir(parents=True, exist_ok=True)
     picture = draw(summaries, arguments.out / "img" / "wild.svg")
     write_page(arguments.out / "wild.md", generated_part(runs, summaries, arguments.made, picture))

@@ -1,4 +1,5 @@
-// A scene as a C++ program against the public API alone: one statement a call, numbers that read back as the same double.
+// A scene as a C++ program against the public API alone: one statement a call, numbers that read back as the same
+// double.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -23,7 +24,8 @@ constexpr std::size_t line_length = 118;
 std::size_t next_break(std::string_view content) {
   for (std::size_t comma = content.find(", "); comma != content.npos; comma = content.find(", ", comma + 1)) {
     const char before = content[comma - 1], after = content[comma + 2];
-    if (before == '}' || before == ')' || (after >= 'A' && after <= 'Z') || after == '.' || after == '{') return comma + 2;
+    if (before == '}' || before == ')' || (after >= 'A' && after <= 'Z') || after == '.' || after == '{')
+      return comma + 2;
   }
   return content.size();
 }
@@ -108,7 +110,9 @@ class Writer {
   void operator()(const SetDrag& c) {
     tell("set_drag(" + body_text(c.body) + ", " + text(c.linear) + ", " + text(c.angular) + ")");
   }
-  void operator()(const SetFilter& c) { tell("set_filter(" + body_text(c.body) + ", " + members(c.filter).str() + ")"); }
+  void operator()(const SetFilter& c) {
+    tell("set_filter(" + body_text(c.body) + ", " + members(c.filter).str() + ")");
+  }
   void operator()(const SetCollide& c) {
     tell("set_collide(" + body_text(c.a) + ", " + body_text(c.b) + ", " + text(c.collide) + ")");
   }
@@ -125,11 +129,10 @@ class Writer {
   void operator()(const SetGravity& c) { tell("set_gravity(Vec3" + text(c.gravity) + ")"); }
   void operator()(const AddForce& c) {
     count(forces_, c.force);
-    say(element("force", c.force) + " = made(world.add_force(" + body_text(c.body) + ", " + wrench_text(c.wrench) + "))");
+    say(element("force", c.force) + " = made(world.add_force(" + body_text(c.body) + ", " + wrench_text(c.wrench) +
+        "))");
   }
-  void operator()(const SetCanSleep& c) {
-    tell("set_can_sleep(" + body_text(c.body) + ", " + text(c.can_sleep) + ")");
-  }
+  void operator()(const SetCanSleep& c) { tell("set_can_sleep(" + body_text(c.body) + ", " + text(c.can_sleep) + ")"); }
   void operator()(const Wake& c) { tell("wake(" + body_text(c.body) + ")"); }
   void operator()(const Configure& c) {
     tells_ = true;
@@ -195,7 +198,8 @@ class Writer {
     const auto made = make_hull(shape.convex.vertices());
     if (!made) return shape.local;
     const Pose frame = made->frame();
-    const bool same = length(frame.position) < 1e-12 * shape.convex.radius() && 1 - std::fabs(frame.orientation.w) < 1e-15;
+    const bool same =
+        length(frame.position) < 1e-12 * shape.convex.radius() && 1 - std::fabs(frame.orientation.w) < 1e-15;
     if (same) return shape.local;
     return {transform(shape.local, frame.position), shape.local.orientation * frame.orientation};
   }
@@ -235,7 +239,8 @@ class Writer {
     return list.str();
   }
 
-  /// A hull that is turned back stands displaced in its body, which then needs the mass and moments that it had by itself.
+  /// A hull that is turned back stands displaced in its body, which then needs the mass and moments that it had by
+  /// itself.
   static std::pair<std::optional<double>, std::optional<Vec3>> mass_of(const BodyDef& def) {
     if (def.kind != BodyKind::dynamic || def.moments || def.shapes.size() != 1) return {def.mass, def.moments};
     const ShapeDef& shape = def.shapes[0];
@@ -345,7 +350,8 @@ std::string head(const Scene& scene, const PlayOptions& options, const Verdict& 
     lines += ", after step " + std::to_string(found.step) + ".\n// (" + std::string(about.name) + ": " +
              std::string(about.meaning) + ")\n";
   }
-  lines += "// The whole scene that this was made of: pcphys wild " + scene.family + " --seed " + std::to_string(scene.seed);
+  lines +=
+      "// The whole scene that this was made of: pcphys wild " + scene.family + " --seed " + std::to_string(scene.seed);
   if (options.precision == Precision::f64) lines += " --precision double";
   return lines + "\n";
 }

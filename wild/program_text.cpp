@@ -85,9 +85,7 @@ Members members(const AngleFreedom& f) {
   return list;
 }
 
-Members members(const Motor& m) {
-  return Members("Motor").add("speed", m.speed, 0.0).add("torque", m.torque, 0.0);
-}
+Members members(const Motor& m) { return Members("Motor").add("speed", m.speed, 0.0).add("torque", m.torque, 0.0); }
 
 Members members(const AngularSpring& s) {
   Members list("AngularSpring");

@@ -43,7 +43,9 @@ class Members {
     return *this;
   }
   /// Of a struct within: nothing where all of it is as by default.
-  Members& put(std::string_view name, const Members& inner) { return inner.list_.empty() ? *this : put(name, inner.str()); }
+  Members& put(std::string_view name, const Members& inner) {
+    return inner.list_.empty() ? *this : put(name, inner.str());
+  }
   bool empty() const { return list_.empty(); }
   std::string str() const { return type_ + "{" + list_ + "}"; }
 

@@ -11,11 +11,10 @@
 namespace pcphys::wild {
 namespace {
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// How far beyond its bound; below 1 it holds. Where nothing at all is allowed, one body lost is as bad as twice the bound.
+/// How far beyond its bound; below 1 it holds. Where nothing at all is allowed, one body lost is as bad as twice the
+/// bound.
 double excess(const Finding& found) {
   if (std::isnan(found.worst)) return std::numeric_limits<double>::infinity();
   return *found.bound > 0 ? found.worst / *found.bound : found.worst > 0 ? 1 + found.worst : 0;
@@ -119,7 +118,8 @@ class FamilyRun {
  public:
   FamilyRun(const RunOptions& options, const std::string& family) : options_(options), family_(family) {
     for (const Precision precision : options.precisions) own_.emplace_back("pcphys", family, name(precision));
-    for (const std::string& peer : options.peers) peers_.emplace_back(peer, family, std::string(find_peer(peer)->precision));
+    for (const std::string& peer : options.peers)
+      peers_.emplace_back(peer, family, std::string(find_peer(peer)->precision));
   }
 
   /// True if it broke on the library.
@@ -156,9 +156,7 @@ class FamilyRun {
   static Result<Verdict> judged_by(const std::string& peer, const Scene& scene) {
     try {
       return judge_peer(scene, peer);
-    } catch (const std::exception& error) {
-      return Error{ErrorCode::unavailable, error.what()};
-    }
+    } catch (const std::exception& error) { return Error{ErrorCode::unavailable, error.what()}; }
   }
 
   const RunOptions& options_;
@@ -195,7 +193,8 @@ Result<std::vector<Summary>> run(const RunOptions& options, const std::function<
   for (std::size_t i = 0; i < names->size() && goes_on; i++) {
     FamilyRun family(options, (*names)[i]);
     const double begun = now(), left = options.budget - (begun - start);
-    const double share = left / double(names->size() - i);
+    // What families before have left over goes to the rest; what one scene took too long is taken from nobody.
+    const double share = std::max(left / double(names->size() - i), options.budget / double(names->size()));
     for (std::uint64_t k = 0; goes_on && (options.count == 0 || k < options.count); k++) {
       if (options.budget > 0 && k > 0 && now() - begun >= share) break;
       const auto broke = family.play(options.first_seed + k);

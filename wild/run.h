@@ -15,7 +15,9 @@ struct RunOptions {
   std::vector<std::string> families;  // none: all
   std::uint64_t first_seed = 1;
   std::uint64_t count = 0;  // scenes of each family; 0: as many as there is time for
-  double budget = 0;        // of all, shared equally by the families that are still to come [s]; 0: no end but `count`
+  /// Of all families, shared equally; a scene is never cut short, so one that takes long adds to it [s]. 0: no end but
+  /// `count`.
+  double budget = 0;
   std::vector<Precision> precisions{Precision::f32};
   PlayOptions play;                // in each of these precisions
   std::vector<std::string> peers;  // of peers::variants, in the precision that each has
@@ -70,8 +72,8 @@ struct RunState {
   std::uint64_t broken;  // so far, of the library's
 };
 
-/// Seeds from the first one on, which are the same in every run. `progress` is told after each scene; false ends the run. Summaries stand
-/// in the order of families, of each the library's first. Errors: unknown_name of a family or peer.
+/// Seeds from the first one on, which are the same in every run. `progress` is told after each scene; false ends the
+/// run. Summaries stand in the order of families, of each the library's first. Errors: unknown_name of a family or peer.
 Result<std::vector<Summary>> run(const RunOptions& options, const std::function<bool(const RunState&)>& progress);
 
 /// "float" or "double".

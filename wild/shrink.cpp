@@ -1,9 +1,9 @@
-// The smallest scene that still breaks, by delta debugging (A. Zeller, R. Hildebrandt, Simplifying and isolating failure-inducing input,
-// 2002) over the calls: fewer steps, fewer calls, a later start, simpler calls.
+// The smallest scene that still breaks, by delta debugging (A. Zeller, R. Hildebrandt, Simplifying and isolating
+// failure-inducing input, 2002) over the calls: fewer steps, fewer calls, a later start, simpler calls.
 //
-// Some faults are told by what should have been: a body that touches nothing keeps its speed, a tower stands, nothing is lost. Taking out
-// what a body stands on makes such a fault out of a right motion. There only islands go that never met the rest, and of a tower what was
-// built last.
+// Some faults are told by what should have been: a body that touches nothing keeps its speed, a tower stands, nothing
+// is lost. Taking out what a body stands on makes such a fault out of a right motion. There only islands go that never
+// met the rest, and of a tower what was built last.
 #include "wild/shrink.h"
 
 #include <algorithm>
@@ -20,7 +20,8 @@ namespace {
 constexpr double no_overlap = 1e-6;
 constexpr int most_rounds = 4;
 
-/// Bodies that move and touch or hold each other in any step are one island; the fixed ones that an island touches are told beside.
+/// Bodies that move and touch or hold each other in any step are one island; the fixed ones that an island touches are
+/// told beside.
 class Islands : public Watcher {
  public:
   void after_call(const Player& player, const Call& call, const Status&) override {
@@ -86,8 +87,7 @@ class Shrinker {
         simplify_calls([](Changes changes) { return changes == Changes::surface; });
       }
     } else {
-      for (int round = 0; round < most_rounds && fewer_calls(); round++) {
-      }
+      for (int round = 0; round < most_rounds && fewer_calls(); round++) {}
       fewer_steps();
       start_later();
       take(with_usual_settings());
@@ -196,7 +196,8 @@ class Shrinker {
     std::set<int> all;
     for (const int body : moving) all.insert(islands.island_of(body));
     for (const int island : all)
-      take(without(best_, makers([&](int body) { return moving.contains(body) && islands.island_of(body) == island; })));
+      take(
+          without(best_, makers([&](int body) { return moving.contains(body) && islands.island_of(body) == island; })));
     if (measure_ == Measure::lost) return;  // a wall that did not hold is part of the fault, though nothing touched it
     Islands left = islands_of_best();
     take(without(best_, makers([&](int body) { return !moving.contains(body) && !left.touched(body); })));
@@ -216,8 +217,8 @@ class Shrinker {
 
   /// Not where the fault builds up over many steps: there a later start would be a broken one.
   void start_later() {
-    constexpr Measure of_one_step[] = {Measure::energy, Measure::momentum, Measure::angular_momentum, Measure::free_speed,
-                                       Measure::phantom};
+    constexpr Measure of_one_step[] = {Measure::energy, Measure::momentum, Measure::angular_momentum,
+                                       Measure::free_speed, Measure::phantom};
     if (std::find(std::begin(of_one_step), std::end(of_one_step), measure_) == std::end(of_one_step)) return;
     const auto first = std::find_if(best_.calls.begin(), best_.calls.end(),
                                     [](const Call& call) { return std::holds_alternative<Steps>(call); });

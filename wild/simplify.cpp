@@ -23,16 +23,22 @@ struct Made {
 };
 
 template <class C>
-concept OfBody = requires(const C c) { c.body; };
+concept OfBody = requires(const C c) {
+  c.body;
+};
 template <class C>
 concept OfTwo = requires(const C c) {
   c.a;
   c.b;
 };
 template <class C>
-concept OfJoint = requires(const C c) { c.joint; };
+concept OfJoint = requires(const C c) {
+  c.joint;
+};
 template <class C>
-concept OfSpring = requires(const C c) { c.spring; };
+concept OfSpring = requires(const C c) {
+  c.spring;
+};
 
 struct Named {
   const OnObject& tell;
@@ -226,7 +232,8 @@ bool plain_material(Call& call) {
   if (!make) return false;
   const Material usual;
   Material& m = make->def.material;
-  const bool friction = change(m.static_friction, usual.static_friction) | change(m.kinetic_friction, usual.kinetic_friction);
+  const bool friction =
+      change(m.static_friction, usual.static_friction) | change(m.kinetic_friction, usual.kinetic_friction);
   const bool levers = change(m.rolling_friction, 0.0) | change(m.torsional_friction, 0.0);
   const bool rules = change(m.friction_rule, usual.friction_rule) | change(m.restitution_rule, usual.restitution_rule);
   return friction | levers | rules | change(m.restitution, usual.restitution);
@@ -278,7 +285,8 @@ template <int digits> bool round_material(Call& call) {
   if (!make) return false;
   Material& m = make->def.material;
   bool changed = change(make->def.density, rounded(make->def.density, digits));
-  for (double* value : {&m.static_friction, &m.kinetic_friction, &m.restitution, &m.rolling_friction, &m.torsional_friction})
+  for (double* value :
+       {&m.static_friction, &m.kinetic_friction, &m.restitution, &m.rolling_friction, &m.torsional_friction})
     changed = changed | change(*value, rounded(*value, digits));
   return changed;
 }
@@ -310,10 +318,12 @@ std::optional<Scene> without_corner(const Scene& scene, std::size_t call, std::s
   if (!make || make->def.shapes.size() != 1 || make->def.moments) return std::nullopt;
   ShapeDef& shape = make->def.shapes[0];
   const std::span<const Vec3> all = shape.convex.vertices();
-  if (shape.kind != ShapeKind::hull || !(shape.local == Pose{}) || all.size() <= 4 || corner >= all.size()) return std::nullopt;
+  if (shape.kind != ShapeKind::hull || !(shape.local == Pose{}) || all.size() <= 4 || corner >= all.size())
+    return std::nullopt;
   bool named = false;
   for (const Call& other : scene.calls)
-    each_named(other, [&](Object object, int number) { named = named || (object == Object::body && number == make->body); });
+    each_named(other,
+               [&](Object object, int number) { named = named || (object == Object::body && number == make->body); });
   if (named) return std::nullopt;
   std::vector<Vec3> corners(all.begin(), all.end());
   corners.erase(corners.begin() + std::ptrdiff_t(corner));

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "collision/narrow.h"
+#include "collision/support_gap.h"
 #include "collision/twist.h"
 #include "collision/view.h"
 
@@ -82,5 +83,50 @@ double meet(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart,
   }
   return t;  // as near as that many looks have brought them; the rest closes as it would have from the start
 }
+
+/// The manifold of time t as seen from the start: gaps open again with the speeds of the points, arms go back by the
+/// first body's share of the way.
+template <class Scalar>
+void back_to_start(const TwistOf<Scalar>& a, const TwistOf<Scalar>& b, const Scalar* apart, double share, double t,
+                   Manifold<Scalar>& m) {
+  Scalar path[3], d[3];
+  for (int k = 0; k < 3; k++) path[k] = Scalar((double(b.v[k]) - double(a.v[k])) * t), d[k] = apart[k] + path[k];
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    ManifoldPoint<Scalar>& point = m.points[i];
+    point.separation += Scalar(double(passing(a, b, m.normal, point.p, d).closing) * t);
+    for (int k = 0; k < 3; k++) point.p[k] -= Scalar(double(path[k]) * share);
+  }
+}
+
+/// From the manifold of now to that of the instant within h [s] at which the shapes come within `near` [m] of each other, which is
+/// returned; below 0 where they do not. Bounded: what so many looks have not told apart from a meeting is one.
+template <class Scalar, class Find>
+double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double h, Find&& find,
+                   Manifold<Scalar>& m) {
+  constexpr int most = 24;
+  double t = 0;
+  ShapeView<Scalar> here = *a.view, there = *b.view;
+  for (int i = 0; i < 3; i++) there.p[i] += apart[i];
+  for (int k = 0; k < most; k++) {
+    const double gap = std::min(double(support_gap(here, there, m.normal)), double(least_separation(m)));
+    if (gap <= near) return t;
+    if (t >= h) return -1;
+    double nearing = double(a.spin) + double(b.spin);
+    for (int i = 0; i < 3; i++) nearing += double(m.normal[i]) * (double(a.twist.v[i]) - double(b.twist.v[i]));
+    if (nearing * (h - t) < gap - near) return -1;
+    t = std::min(h, t + (gap - near / 2) / nearing);
+    here = after(a, t);
+    there = after(b, t);
+    for (int i = 0; i < 3; i++) there.p[i] += apart[i] + Scalar((double(b.twist.v[i]) - double(a.twist.v[i])) * t);
+    Manifold<Scalar> next;
+    find(here, there, next);
+    if (next.count == 0) return -1;
+    m = next;
+  }
+  return t;
+}
+
+/// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand [m].
+inline double near_of(double thick, double far, double epsilon) { return std::max(1e-6 * thick, 16 * epsilon * far); }
 
 }  // namespace pcphys

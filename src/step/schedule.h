@@ -37,6 +37,7 @@ class ColouredSlots {
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
+  std::uint32_t width() const { return width_; }
   /// How many the largest colour has.
   std::uint32_t side_by_side() const { return side_by_side_; }
   std::uint32_t colours() const { return colouring_.colours(); }

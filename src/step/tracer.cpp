@@ -54,7 +54,7 @@ void Tracer::collect(const Schedule& schedule, unsigned octave, const Backend& b
       impacts_[c.contact] = impacts;
       for (std::uint32_t i = 0; i < 2 && rows.friction; i++)
         c.friction[i] = field_of<Scalar>(impulses, impulse_reals, rows.width, slot, impulse_friction + i);
-      if (all > 0 || c.impact > 0) contacts_.push_back(c);
+      if (all > 0 || c.impact > 0 || c.friction[0] != 0 || c.friction[1] != 0) contacts_.push_back(c);
     }
   }
 }
