@@ -65,6 +65,13 @@ class PeerEye {
   std::vector<BodyId> ids_;
 };
 
+/// That an engine computes in, and is judged by.
+Precision precision_of(std::string_view variant) {
+  for (const peers::Variant& v : peers::variants())
+    if (v.name == variant && v.precision == "float") return Precision::f32;
+  return Precision::f64;
+}
+
 /// What the host does between steps, as far as peers can.
 Status apply(const Call& call, PeerEye& eye, peers::Peer& peer) {
   if (const SetVelocity* c = std::get_if<SetVelocity>(&call))
@@ -91,7 +98,7 @@ Result<Verdict> judge_peer(const Scene& scene, std::string_view variant) {
   if (!made) return made.error();
   peers::Peer& peer = **made;
 
-  Judge judge(scene, options.precision);
+  Judge judge(scene, precision_of(variant));
   judge.begin(eye.look(peer));
   double seconds = 0;
   std::uint64_t failures = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "wild/distance.h"
 #include "wild/shapes.h"
@@ -19,12 +20,6 @@ Vec3 spin_of(const WorldState& s, std::uint32_t row, Quat q) {
   if (!s.responds(row)) return l;  // a kinematic body keeps its angular velocity there
   const Vec3 inverse = s.tables.get3(Buffer::mass, row, 4), inner = rotate(conjugate(q), l);
   return rotate(q, {inner.x * inverse.x, inner.y * inverse.y, inner.z * inverse.z});
-}
-
-double sum(const TracedContact& c) {
-  double all = c.impact;
-  for (const double impulse : c.impulse) all += impulse;
-  return all;
 }
 
 const ShapeDef& shape_of(const WorldState& s, std::uint32_t shape) { return s.shapes[shape].def; }
@@ -51,8 +46,17 @@ void Phantoms::read(const WorldState& state, std::vector<Body>& bodies) const {
 
 void Phantoms::begin(const WorldState& state) {
   read(state, before_);
+  struck_.assign(state.contact_rows(), 0);
   widest_ = driven_work_ = impulses_ = 0;
   pushes_ = 0;
+}
+
+/// Along the normal, in this sub-step: of the rows, and what impacts have added.
+double Phantoms::normal_impulse(const TracedContact& c) {
+  double rows = 0, struck = 0;
+  for (const double impulse : c.impulse) rows += impulse;
+  for (const double impulse : c.struck) struck += std::max(impulse, 0.0);
+  return rows + std::max(struck - std::exchange(struck_[c.contact], struck), 0.0);
 }
 
 /// The least distance of the two on their ways to and from their meeting, as a multiple of what is allowed; 0 where they met.
@@ -80,10 +84,10 @@ double Phantoms::gap_of(const WorldState& state, double h, const TracedContact& 
 }
 
 /// Along the normal at most what the driven side's points bring along; friction at most its share of that.
-void Phantoms::add_work(const WorldState& state, const TracedContact& c) {
+void Phantoms::add_work(const WorldState& state, const TracedContact& c, double normal) {
   const auto ends = state.contacts.ends[c.contact];
   const Vec3 arm = state.tables.get3(Buffer::contact, c.contact, 4);
-  const double normal = sum(c), slipping = state.tables.get(Buffer::contact, c.contact, 28) * normal;
+  const double slipping = state.tables.get(Buffer::contact, c.contact, 28) * normal;
   const double friction = std::max(slipping, std::hypot(c.friction[0], c.friction[1]));
   impulses_ += normal + friction;
   for (const std::uint32_t row : ends) {
@@ -98,18 +102,24 @@ void Phantoms::add_work(const WorldState& state, const TracedContact& c) {
 void Phantoms::substep(const WorldState& state, double h, std::span<const TracedContact> contacts) {
   read(state, now_);
   const auto rows_of = [&](const TracedContact& c) { return state.contacts.ends[c.contact]; };
-  for (const TracedContact& c : contacts)
-    for (const std::uint32_t row : rows_of(c)) now_[row].contacts++;
+  normals_.clear();
   for (const TracedContact& c : contacts) {
+    normals_.push_back(normal_impulse(c));
+    if (normals_.back() > 0)
+      for (const std::uint32_t row : rows_of(c)) now_[row].contacts++;
+  }
+  for (std::size_t i = 0; i < contacts.size(); i++) {
+    const TracedContact& c = contacts[i];
+    const double pushed = std::max(normals_[i], std::hypot(c.friction[0], c.friction[1]));
+    if (pushed <= 0) continue;
     pushes_++;
-    add_work(state, c);
+    add_work(state, c, normals_[i]);
     double change = 0, speed = length(state.gravity) * h;
     for (const std::uint32_t row : rows_of(c)) {
-      change = std::max(change, sum(c) * state.tables.get(Buffer::motion, row, 3));
+      change = std::max(change, pushed * state.tables.get(Buffer::motion, row, 3));
       speed = std::max(speed, std::max(length(before_[row].velocity), length(now_[row].velocity)));
     }
-    if (change <= rounding * speed) continue;
-    widest_ = std::max(widest_, gap_of(state, h, c));
+    if (change > rounding * speed) widest_ = std::max(widest_, gap_of(state, h, c));
   }
   std::swap(before_, now_);
 }

@@ -31,10 +31,13 @@ class Phantoms final : public ContactTrace {
     int contacts = 0;  // of this sub-step
   };
   void read(const WorldState& state, std::vector<Body>& bodies) const;
+  double normal_impulse(const TracedContact& contact);
   double gap_of(const WorldState& state, double h, const TracedContact& contact) const;
-  void add_work(const WorldState& state, const TracedContact& contact);
+  void add_work(const WorldState& state, const TracedContact& contact, double normal);
 
   std::vector<Body> before_, now_;  // by row
+  std::vector<double> struck_;      // by contact: in this step so far [N s]
+  std::vector<double> normals_;     // of the traced contacts, in this sub-step [N s]
   double widest_ = 0, driven_work_ = 0, impulses_ = 0;
   std::uint64_t pushes_ = 0;
 };

@@ -13,7 +13,7 @@ Scene shrink(const Scene& scene, const PlayOptions& options, Measure measure,
              const std::function<bool(std::size_t calls, std::uint64_t steps)>& progress);
 
 /// A C++ program of the public API alone that plays the scene and prints energy and the fastest body after each step. Numbers are
-/// exact (hexadecimal where decimal digits are not enough).
+/// the shortest decimals that read back as what they were.
 std::string as_program(const Scene& scene, const PlayOptions& options, const Verdict& verdict);
 
 }  // namespace pcphys::wild

@@ -7,8 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <cstdio>
-#include <cstdlib>
 
 #include "collision/detector.h"
 #include "collision/flights.h"
@@ -139,14 +137,16 @@ void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, 
     const double lever_a = pa.lever_any + pa.lever_across, lever_b = pb.lever_any + pb.lever_across;
     const double moved = first ? 0 : size_of(now.apart, c.then.apart) + size_of(now.turned_a, c.then.turned_a) * lever_a + size_of(now.turned_b, c.then.turned_b) * lever_b;
     const double thick = double(thickness(c.shapes[0], c.shapes[1]));
-    if (c.touches && moved <= constants::manifold_share * thick) {
-      continue;
-    }
     const TwistOf<Scalar> ta = bodies.twist(row_a), tb = bodies.twist(row_b);
     double closing = 0;
     for (int k = 0; k < 3; k++) closing += (double(tb.v[k]) - double(ta.v[k])) * (double(tb.v[k]) - double(ta.v[k]));
     const double spin_a = double(ta.across) * pa.lever_across + double(ta.turn) * pa.lever_any, spin_b = double(tb.across) * pb.lever_across + double(tb.turn) * pb.lever_any;
     const double way = (std::sqrt(closing) + spin_a + spin_b) * h;
+    // how far what answers moves along the other, or turns into it: what is quick is struck, and not held
+    const double share = share_of<Scalar>(s.tables, row_a, row_b);
+    const double shifts = (std::sqrt(closing) * std::min(share, 1 - share) + spin_a + spin_b) * h;
+    const bool quick = shifts > constants::quick_share * thick;
+    if (c.touches && !quick && moved <= constants::manifold_share * thick) continue;
     const auto stand_aside = [&] {
       if (!c.acts) return;
       c.acts = false;
@@ -185,7 +185,6 @@ void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, 
     const double gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
     const double far = std::sqrt(double(apart[0]) * double(apart[0]) + double(apart[1]) * double(apart[1]) + double(apart[2]) * double(apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
-    const double share = share_of<Scalar>(s.tables, row_a, row_b);
     double impact = pa.jointed || pb.jointed ? -1 : 0;
     c.touches = gap <= near;
     c.gap = gap;
@@ -194,10 +193,8 @@ void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, 
         stand_aside();
         continue;
       }
-      const Mover<Scalar> mover_a{&a, ta, float(spin_a), pa.centred}, mover_b{&b, tb, float(spin_b), pb.centred};
-      if (getenv("PCDBG")) std::printf("   look gap %g way %g near %g support %g least %g n %g %g %g\n", gap, way, near, double(support_gap(a, there, m.normal)), double(least_separation(m)), double(m.normal[0]), double(m.normal[1]), double(m.normal[2]));
-      const double t = meet_within(mover_a, mover_b, apart, near, h, look_at, m);
-      if (getenv("PCDBG")) std::printf("   t %g of %g least %g count %u\n", t, h, double(least_separation(m)), m.count);
+      const Mover<Scalar> mover_a{&a, ta, float(spin_a), pa.centred, float(lever_a)}, mover_b{&b, tb, float(spin_b), pb.centred, float(lever_b)};
+      const double t = meet_within(mover_a, mover_b, apart, near, 1e-4 * thick, h, look_at, m);
       if (t < 0) {
         stand_aside();
         continue;
@@ -207,10 +204,11 @@ void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, 
       if (impact == 0) impact = std::max(t, 1e-9 * h);
     } else {
       to_light_side(m, share);
+      if (impact == 0 && quick) impact = 1e-9 * h;
     }
     const std::uint32_t count_before = c.acts ? std::uint32_t(out[3]) : 0;
     std::array<std::uint32_t, 4> from = points_before(m, s.contacts.features[row]);
-    if (!c.acts) from = {};
+    if (!c.acts || impact > 0) from = {};
     else match_nearest(m, out, count_before, from);
     c.acts = true;
     for (int k = 0; k < 3; k++) out[k] = m.normal[k];

@@ -117,10 +117,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_keep_approach(PC_PASS m, 0u, these, of_step, approach0); pc_keep_approach(PC_PASS m, 1u, these, of_step, approach1); pc_keep_approach(PC_PASS m, 2u, these, of_step, approach2); pc_keep_approach(PC_PASS m, 3u, these, of_step, approach3);
 
   // impulses: of the step before, which scale with the sub-step; or those that the rows hold
-  Real ratio = PC_INFO(impulse_ratio); precise Quad told = pc_quad(pushes.v * ratio, pushes.s * ratio); precise Quad told_mean = pc_quad(mean.v * ratio, mean.s * ratio);
+  Real ratio = PC_INFO(impulse_ratio); precise Vec3 told_v = pushes.v * ratio; precise Real told_s = pushes.s * ratio; precise Vec3 mean_v = mean.v * ratio; precise Real mean_s = mean.s * ratio;
   Real h0 = pc_held_by(PC_PASS m, 0u, from.v.x); Real h1 = pc_held_by(PC_PASS m, 0u, from.v.y); Real h2 = pc_held_by(PC_PASS m, 0u, from.v.z); Real h3 = pc_held_by(PC_PASS m, 0u, from.s);
   Real m0 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.x); Real m1 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.y); Real m2 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.z); Real m3 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.s);
-  precise Real l0 = pc_select(of_step, told.v.x, h0) * w0; precise Real l1 = pc_select(of_step, told.v.y, h1) * w1; precise Real l2 = pc_select(of_step, told.v.z, h2) * w2; precise Real l3 = pc_select(of_step, told.s, h3) * w3;
+  precise Real l0 = pc_select(of_step, told_v.x, h0) * w0; precise Real l1 = pc_select(of_step, told_v.y, h1) * w1; precise Real l2 = pc_select(of_step, told_v.z, h2) * w2; precise Real l3 = pc_select(of_step, told_s, h3) * w3;
   pc_st_pushes(PC_PASS m, these, 0u, l0); pc_st_pushes(PC_PASS m, these, 1u, l1); pc_st_pushes(PC_PASS m, these, 2u, l2); pc_st_pushes(PC_PASS m, these, 3u, l3);
 #ifndef PC_FRICTIONLESS
   Quad drag = PC_GATHER(contact, record, 6u); Real old1 = PC_LD(contact_impulses, m, IMPULSE_T); Real old2 = PC_LD(contact_impulses, m, IMPULSE_T + 1u); Real old_twist = PC_LD(contact_impulses, m, IMPULSE_T + 2u);
@@ -131,7 +131,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #endif
   for (uint i = 0u; i < 4u; i++) pc_st_pushes(PC_PASS m, of_step, IMPULSE_LARGEST + i, zero);
   precise Real load = l0 + l1 + l2 + l3; pc_st_pushes(PC_PASS m, these, IMPULSE_BEFORE, load);
-  precise Real n0 = pc_select(of_step, told_mean.v.x, m0); precise Real n1 = pc_select(of_step, told_mean.v.y, m1); precise Real n2 = pc_select(of_step, told_mean.v.z, m2); precise Real n3 = pc_select(of_step, told_mean.s, m3);
+  precise Real n0 = pc_select(of_step, mean_v.x, m0); precise Real n1 = pc_select(of_step, mean_v.y, m1); precise Real n2 = pc_select(of_step, mean_v.z, m2); precise Real n3 = pc_select(of_step, mean_s, m3);
   pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN, n0); pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN + 1u, n1); pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN + 2u, n2); pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN + 3u, n3);
 }
 #undef PC_SOME_ROWS

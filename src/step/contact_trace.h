@@ -8,12 +8,12 @@
 
 namespace pcphys {
 
-/// A manifold that pushed in the sub-step that has just been made.
+/// A manifold of the sub-step that has just been made, whether it pushed or not.
 struct TracedContact {
   std::uint32_t contact = 0;          // row of the table of contacts
   std::array<double, 4> impulse{};   // of the rows, along the normal, by point [N s]
   std::array<double, 2> friction{};  // of the rows, along both tangents [N s]
-  double impact = 0;                 // of impacts at their instant, along the normal, all points [N s]
+  std::array<double, 4> struck{};    // by impacts since the step began, along the normal, by point; below 0: none was [N s]
 };
 
 class ContactTrace {

@@ -392,7 +392,7 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
   if (Status ok = keep_left(state); !ok) return ok;
   if (!gl_)  // else kernel by kernel, as devices follow them
     for (const Buffer buffer : bound_.plan->overwritten) state.tables.touch(buffer);
-  if (tracer_.told) tracer_.begin(state);
+  if (tracer_.told) tracer_.told->begin(state);
   Clock::time_point began;
   if (bound_.timings) began = Clock::now();
   for (const Call& c : calls_) {

@@ -25,11 +25,6 @@ bool ends_substep(const PlanEntry& before, const PlanEntry& next) {
   return stores(next.kernel) || before.octave != next.octave || before.substep != next.substep;
 }
 
-void Tracer::begin(const WorldState& state) {
-  impacts_.assign(state.contact_rows(), 0);
-  told->begin(state);
-}
-
 template <class Scalar>
 void Tracer::collect(const Schedule& schedule, unsigned octave, const Backend& backend, const TracedRows& rows) {
   const void* impulses = backend.scratch(Buffer::contact_impulses);
@@ -43,18 +38,13 @@ void Tracer::collect(const Schedule& schedule, unsigned octave, const Backend& b
       TracedContact c;
       c.contact = order[slot];
       if (c.contact == 0) continue;
-      double impacts = 0, all = 0;
       for (std::uint32_t i = 0; i < 4; i++) {
         c.impulse[i] = field_of<Scalar>(impulses, impulse_reals, rows.width, slot, i);
-        const double struck = field_of<Scalar>(approaches, row_reals, rows.width, slot, row_approach + i);
-        impacts += struck > 0 ? struck : 0;
-        all += c.impulse[i];
+        c.struck[i] = field_of<Scalar>(approaches, row_reals, rows.width, slot, row_approach + i);
       }
-      c.impact = impacts - impacts_[c.contact];
-      impacts_[c.contact] = impacts;
       for (std::uint32_t i = 0; i < 2 && rows.friction; i++)
         c.friction[i] = field_of<Scalar>(impulses, impulse_reals, rows.width, slot, impulse_friction + i);
-      if (all > 0 || c.impact > 0 || c.friction[0] != 0 || c.friction[1] != 0) contacts_.push_back(c);
+      contacts_.push_back(c);
     }
   }
 }

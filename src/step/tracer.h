@@ -22,7 +22,6 @@ class Tracer {
  public:
   ContactTrace* told = nullptr;
 
-  void begin(const WorldState& state);
   /// Of islands of one level (`octave`, a plan entry's); `h`: the length of the sub-step [s].
   void substep(const WorldState& state, const Schedule& schedule, unsigned octave, const Backend& backend, const TracedRows& rows,
                double h);
@@ -32,7 +31,6 @@ class Tracer {
   void collect(const Schedule& schedule, unsigned octave, const Backend& backend, const TracedRows& rows);
 
   std::vector<TracedContact> contacts_;
-  std::vector<double> impacts_;  // by contact: of the step so far [N s]
 };
 
 /// Whether a plan goes on to another sub-step, or to what follows the last one, between these two entries.
