@@ -167,7 +167,11 @@ class Detector {
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
   template <class Scalar> Scratch<Scalar>& scratch();
-  template <class Scalar> void meet_all(WorldState& state, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options);
+  template <class Scalar> struct Meeting;
+  template <class Scalar>
+  void meet_all(WorldState& state, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options);
+  template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
+  template <class Scalar> void drop_inner_edges(WorldState& state, bool first, double h, const Options& options);
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   std::uint64_t joint_changes_ = 0;
@@ -190,7 +194,8 @@ class Detector {
   std::vector<std::uint32_t> bodies_;  // rows, of shapes; whole lanes
   std::uint32_t movers_ = 0;           // bodies that do not stand
   double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
-  std::vector<Standing> standings_;    // of contacts, by row
+  std::vector<Standing> standings_;                   // of contacts, by row
+  std::vector<std::uint32_t> standing_rows_, inner_;  // rows of contacts with what stands, in a sub-step; and those of inner edges
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;               // some body has

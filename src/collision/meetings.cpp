@@ -18,6 +18,10 @@
 namespace pcphys {
 namespace {
 
+/// What lies within this share of a thickness of a surface lies in it: so high may a seam between tiles be. Normals that are turned against
+/// each other by less than this are one [rad].
+constexpr double seam_share = 2e-3, same_normal = 3e-4;
+
 constexpr std::size_t contact_reals = reals_of(Buffer::contact), motion_reals = reals_of(Buffer::motion);
 
 /// What a sub-step reads of bodies.
@@ -119,97 +123,121 @@ float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
 template void Detector::find(const Options&, const Sight<float>&, const ShapeView<float>&, const ShapeView<float>&, std::uint32_t, Manifold<float>&);
 template void Detector::find(const Options&, const Sight<double>&, const ShapeView<double>&, const ShapeView<double>&, std::uint32_t, Manifold<double>&);
 
-template <class Scalar>
-void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options) {
-  const Bodies<Scalar> bodies(s.tables);
-  const Scalar* shape_rows = s.tables.data<Scalar>(Buffer::shape);
-  Scalar* records = s.tables.data<Scalar>(Buffer::contact);
-  records[39] = first ? 2 : 0;  // slots that pad are made of it
-  for (const std::uint32_t row : contacts) {
-    if (row == 0) continue;
-    Standing& c = standings_[row];
-    Scalar* out = records + row * contact_reals;
-    const auto [row_a, row_b] = s.contacts.ends[row];
-    const Proxy &pa = proxies_[c.shapes[0]], &pb = proxies_[c.shapes[1]];
-    const Moved now = bodies.moved(row_a, row_b);
+/// One contact in one sub-step.
+template <class Scalar> struct Detector::Meeting {
+  Detector& d;
+  WorldState& s;
+  const Bodies<Scalar>& bodies;
+  const Options& options;
+  double h;
+  bool first;
+  std::uint32_t row;
+
+  Standing& c = d.standings_[row];
+  Scalar* out = s.tables.data<Scalar>(Buffer::contact) + row * contact_reals;
+  std::uint32_t row_a = s.contacts.ends[row][0], row_b = s.contacts.ends[row][1];
+  const Proxy &pa = d.proxies_[c.shapes[0]], &pb = d.proxies_[c.shapes[1]];
+  double thick = double(d.thickness(c.shapes[0], c.shapes[1]));
+  double share = share_of<Scalar>(s.tables, row_a, row_b);
+  bool jointed = pa.jointed || pb.jointed;
+  Moved now = bodies.moved(row_a, row_b);
+  TwistOf<Scalar> ta = bodies.twist(row_a), tb = bodies.twist(row_b);
+  Scalar apart[3] = {0, 0, 0};
+  Scalar look = 0;
+
+  static double lever(const Proxy& p) { return double(p.lever_any) + double(p.lever_across); }
+  static double spin(const TwistOf<Scalar>& t, const Proxy& p) {
+    return double(t.across) * double(p.lever_across) + double(t.turn) * double(p.lever_any);
+  }
+  double speed() const {
+    double squared = 0;
+    for (int k = 0; k < 3; k++) squared += (double(tb.v[k]) - double(ta.v[k])) * (double(tb.v[k]) - double(ta.v[k]));
+    return std::sqrt(squared);
+  }
+  /// How far the two may have come against each other since they were looked at, at most [m].
+  double moved() const {
+    if (first) return 0;
+    return size_of(now.apart, c.then.apart) + size_of(now.turned_a, c.then.turned_a) * lever(pa) +
+           size_of(now.turned_b, c.then.turned_b) * lever(pb);
+  }
+  /// And how far they may come in the sub-step [m].
+  double way() const { return (speed() + spin(ta, pa) + spin(tb, pb)) * h; }
+  /// What moves fast along what answers too, or turns into it, is struck and not held: nothing of the contact lasts.
+  bool quick() const {
+    const double shifts = (speed() * std::min(share, 1 - share) + spin(ta, pa) + spin(tb, pb)) * h;
+    return shifts > constants::quick_share * thick;
+  }
+
+  void stand_aside() {
+    if (!c.acts) return;
+    c.acts = false;
+    out[3] = 0;
+    out[31] = jointed ? -1 : 0;
+    out[39] = first ? 2 : 1;
+    for (int k = 40; k < 44; k++) out[k] = 0;
+    s.contacts.features[row].fill(0xffffffffu);
+  }
+
+  ShapeView<Scalar> view(const Proxy& p, std::uint32_t shape, std::uint32_t body) const {
+    ShapeView<Scalar> v;
+    const Scalar* at = s.tables.data<Scalar>(Buffer::shape) + (shape + 1) * reals_of(Buffer::shape);
+    place_shape(at, p.kind, p.hull, p.centred, bodies.poses().orientation(body), v);
+    return v;
+  }
+  void look_at(const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& m) const {
+    if (options.narrow == NarrowPhase::fcl)
+      fcl_hook()(x, y, look, m);
+    else
+      narrow(x, y, look, c.hint, m);
+  }
+
+  void find() {
+    const double way = this->way();
+    const bool quick = this->quick();
+    const double moved = this->moved();
     if (!first) out[39] = 0;
-    // how far the two may have come since they were looked at
-    const double lever_a = pa.lever_any + pa.lever_across, lever_b = pb.lever_any + pb.lever_across;
-    const double moved = first ? 0 : size_of(now.apart, c.then.apart) + size_of(now.turned_a, c.then.turned_a) * lever_a + size_of(now.turned_b, c.then.turned_b) * lever_b;
-    const double thick = double(thickness(c.shapes[0], c.shapes[1]));
-    const TwistOf<Scalar> ta = bodies.twist(row_a), tb = bodies.twist(row_b);
-    double closing = 0;
-    for (int k = 0; k < 3; k++) closing += (double(tb.v[k]) - double(ta.v[k])) * (double(tb.v[k]) - double(ta.v[k]));
-    const double spin_a = double(ta.across) * pa.lever_across + double(ta.turn) * pa.lever_any, spin_b = double(tb.across) * pb.lever_across + double(tb.turn) * pb.lever_any;
-    const double way = (std::sqrt(closing) + spin_a + spin_b) * h;
-    // how far what answers moves along the other, or turns into it: what is quick is struck, and not held
-    const double share = share_of<Scalar>(s.tables, row_a, row_b);
-    const double shifts = (std::sqrt(closing) * std::min(share, 1 - share) + spin_a + spin_b) * h;
-    const bool quick = shifts > constants::quick_share * thick;
-    if (c.touches && !quick && moved <= constants::manifold_share * thick) continue;
-    const auto stand_aside = [&] {
-      if (!c.acts) return;
-      c.acts = false;
-      out[3] = 0;
-      out[31] = pa.jointed || pb.jointed ? -1 : 0;
-      out[39] = 1;
-      for (int k = 40; k < 44; k++) out[k] = 0;
-      for (std::uint32_t& f : s.contacts.features[row]) f = 0xffffffffu;
-    };
-    if (!c.touches && c.gap - moved > way) {
-      stand_aside();
-      continue;
-    }
-    ShapeView<Scalar> a, b;
-    place_shape(shape_rows + (c.shapes[0] + 1) * reals_of(Buffer::shape), pa.kind, pa.hull, pa.centred, bodies.poses().orientation(row_a), a);
-    place_shape(shape_rows + (c.shapes[1] + 1) * reals_of(Buffer::shape), pb.kind, pb.hull, pb.centred, bodies.poses().orientation(row_b), b);
-    Scalar apart[3] = {0, 0, 0};
+    if (c.touches && !quick && moved <= constants::manifold_share * thick) return;
+    if (!c.touches && c.gap - moved > way) return stand_aside();
+    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
     ShapeView<Scalar> there = b;
     for (int k = 0; k < 3; k++) there.p[k] += apart[k];
-    const double skin = margin(c.shapes[0], c.shapes[1]);
-    const Scalar look = Scalar(skin + 2 * way);
-    const auto look_at = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& m) {
-      if (options.narrow == NarrowPhase::fcl) fcl_hook()(x, y, look, m);
-      else narrow(x, y, look, c.hint, m);
-    };
+    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way);
     Manifold<Scalar> m;
     look_at(a, there, m);
     c.then = now;
-    if (m.count == 0) {
-      c.touches = false;
-      c.gap = double(look);
-      stand_aside();
-      continue;
-    }
-    const double gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
-    const double far = std::sqrt(double(apart[0]) * double(apart[0]) + double(apart[1]) * double(apart[1]) + double(apart[2]) * double(apart[2]));
+    c.touches = false;
+    c.gap = double(look);
+    if (m.count == 0) return stand_aside();
+    c.gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
+    const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
-    double impact = pa.jointed || pb.jointed ? -1 : 0;
-    c.touches = gap <= near;
-    c.gap = gap;
+    c.touches = c.gap <= near;
+    double t = 0;
     if (!c.touches) {
-      if (gap > way) {
-        stand_aside();
-        continue;
-      }
-      const Mover<Scalar> mover_a{&a, ta, float(spin_a), pa.centred, float(lever_a)}, mover_b{&b, tb, float(spin_b), pb.centred, float(lever_b)};
-      const double t = meet_within(mover_a, mover_b, apart, near, 1e-4 * thick, h, look_at, m);
-      if (t < 0) {
-        stand_aside();
-        continue;
-      }
-      to_light_side(m, share);
-      back_to_start(ta, tb, apart, share, t, m);
-      if (impact == 0) impact = std::max(t, 1e-9 * h);
-    } else {
-      to_light_side(m, share);
-      if (impact == 0 && quick) impact = 1e-9 * h;
+      if (c.gap > way) return stand_aside();
+      const Mover<Scalar> mover_a{&a, ta, float(spin(ta, pa)), pa.centred, float(lever(pa))};
+      const Mover<Scalar> mover_b{&b, tb, float(spin(tb, pb)), pb.centred, float(lever(pb))};
+      const auto find = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
+      t = meet_within(mover_a, mover_b, apart, near, 1e-4 * thick, h, find, m);
+      if (t < 0) return stand_aside();
     }
-    const std::uint32_t count_before = c.acts ? std::uint32_t(out[3]) : 0;
-    std::array<std::uint32_t, 4> from = points_before(m, s.contacts.features[row]);
-    if (!c.acts || impact > 0) from = {};
-    else match_nearest(m, out, count_before, from);
+    c.together = 0;
+    for (std::uint32_t i = 0; i < m.count; i++)
+      if (double(m.points[i].separation) <= seam_share * thick) c.together |= std::uint8_t(1u << i);
+    to_light_side(m, share);
+    if (!c.touches) back_to_start(ta, tb, apart, share, t, m);
+    const bool struck = !jointed && (!c.touches || quick);
+    write(m, jointed ? -1 : struck ? std::max(t, 1e-9 * h) : 0);
+  }
+
+  /// Impacts remember nothing.
+  void write(const Manifold<Scalar>& m, double impact) {
+    std::array<std::uint32_t, 4> from{};
+    if (c.acts && impact <= 0) {
+      from = points_before(m, s.contacts.features[row]);
+      match_nearest(m, out, std::uint32_t(out[3]), from);
+    }
     c.acts = true;
     for (int k = 0; k < 3; k++) out[k] = m.normal[k];
     out[3] = Scalar(m.count);
@@ -220,10 +248,76 @@ void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, 
       s.contacts.features[row][i] = real ? m.points[i].feature : 0xffffffffu;
       out[40 + i] = Scalar(from[i]);
     }
+    if (impact > 0) {
+      std::fill(out + 20, out + 28, Scalar(0));
+      std::fill(out + 32, out + 36, Scalar(0));
+    }
     for (int k = 0; k < 3; k++) out[36 + k] = apart[k];
     out[31] = Scalar(impact);
     out[39] = first ? Scalar(2) : Scalar(1);
   }
+
+  /// Point i where the shapes meet, as seen from a's centre there, in this sub-step.
+  std::array<Scalar, 3> point(std::uint32_t i) const { return {out[4 + 4 * i], out[5 + 4 * i], out[6 + 4 * i]}; }
+};
+
+/// Whether a point that x has lies in what y is with, where the body touches that with another normal.
+template <class Scalar> bool Detector::lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const {
+  if (y.row == x.row || !y.c.acts) return false;
+  Scalar turned = 0;
+  for (int k = 0; k < 3; k++) turned += (x.out[k] - y.out[k]) * (x.out[k] - y.out[k]);
+  if (turned < Scalar(same_normal * same_normal)) return false;
+  const double t = std::max(0.0, double(x.out[31]));
+  ShapeView<Scalar> place = y.view(y.pb, y.c.shapes[1], y.row_b);
+  Scalar apart[3] = {0, 0, 0};
+  x.bodies.poses().shift(y.row_a, y.row_b, apart);
+  ShapeView<Scalar> dot{ShapeKind::sphere, {Scalar(1e-6 * x.thick), 0, 0}, {}, {0, 0, 0, 1}};
+  for (std::uint32_t k = 0; k < 3; k++) {
+    place.p[k] += apart[k];
+    dot.p[k] = x.out[4 + 4 * point + k] + Scalar(double(x.ta.v[k]) * t);
+  }
+  Manifold<Scalar> m;
+  std::uint32_t hint = 0;
+  narrow(dot, place, Scalar(seam_share * x.thick), hint, m);
+  return m.count > 0;
+}
+
+/// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with other normals, the
+/// surface goes on, and there is nothing to hit. `standing_`: rows of contacts with what stands, by the body.
+template <class Scalar> void Detector::drop_inner_edges(WorldState& s, bool first, double h, const Options& options) {
+  const Bodies<Scalar> bodies(s.tables);
+  const auto body_of = [&](std::uint32_t row) { return s.contacts.ends[row][0]; };
+  std::ranges::sort(standing_rows_, {}, [&](std::uint32_t row) { return std::pair(body_of(row), row); });
+  inner_.clear();
+  for (std::size_t begin = 0, end = 0; begin < standing_rows_.size(); begin = end) {
+    for (end = begin; end < standing_rows_.size() && body_of(standing_rows_[end]) == body_of(standing_rows_[begin]);) end++;
+    for (std::size_t i = begin; i < end && end - begin > 1; i++) {
+      const Meeting<Scalar> x{*this, s, bodies, options, h, first, standing_rows_[i]};
+      bool covered = x.c.together != 0;
+      for (std::uint32_t point = 0; point < 4 && covered; point++) {
+        if ((x.c.together >> point & 1) == 0) continue;
+        covered = false;
+        for (std::size_t j = begin; j < end && !covered; j++)
+          covered = lies_in<Scalar>(x, point, Meeting<Scalar>{*this, s, bodies, options, h, first, standing_rows_[j]});
+      }
+      if (covered) inner_.push_back(x.row);
+    }
+  }
+  for (const std::uint32_t row : inner_) Meeting<Scalar>{*this, s, bodies, options, h, first, row}.stand_aside();
+}
+
+template <class Scalar>
+void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options) {
+  const Bodies<Scalar> bodies(s.tables);
+  s.tables.data<Scalar>(Buffer::contact)[39] = first ? 2 : 0;  // slots that pad are made of row 0
+  standing_rows_.clear();
+  for (const std::uint32_t row : contacts) {
+    if (row == 0) continue;
+    Meeting<Scalar> m{*this, s, bodies, options, h, first, row};
+    m.find();
+    if (m.c.acts && s.stands(m.row_b)) standing_rows_.push_back(row);
+  }
+  drop_inner_edges<Scalar>(s, first, h, options);
 }
 
 void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options) {

@@ -15,6 +15,7 @@ struct Standing {
   std::uint32_t hint = 0;            // of the narrow phase
   bool touches = false;              // its shapes did, when they were looked at last
   bool acts = false;                 // its rows do
+  std::uint8_t together = 0;         // bit i: at point i the shapes are together, now or where they meet in the sub-step
   double gap = 0;                    // of shapes that were apart then, at least [m]
   Moved then;                        // when they were looked at
 };
