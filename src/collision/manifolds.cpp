@@ -169,7 +169,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     found.friction |= out[28] > 0 || out[29] > 0;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts |= touch.impact >= 0 && (!standing.touches || out[30] > 0);
+    found.impacts |= touch.impact >= 0;
   };
   if (round_)
     marks_.each(add);

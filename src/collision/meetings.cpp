@@ -164,7 +164,8 @@ template <class Scalar> struct Detector::Meeting {
   double way() const { return (speed() + spin(ta, pa) + spin(tb, pb)) * h; }
   /// What moves fast along what answers too, or turns into it, is struck and not held: nothing of the contact lasts.
   bool quick() const {
-    const double shifts = (speed() * std::min(share, 1 - share) + spin(ta, pa) + spin(tb, pb)) * h;
+    const double turns = (pa.responds ? spin(ta, pa) : 0) + (pb.responds ? spin(tb, pb) : 0);
+    const double shifts = (speed() * std::min(share, 1 - share) + turns) * h;
     return shifts > constants::quick_share * thick;
   }
 
@@ -227,7 +228,8 @@ template <class Scalar> struct Detector::Meeting {
       if (double(m.points[i].separation) <= seam_share * thick) c.together |= std::uint8_t(1u << i);
     to_light_side(m, share);
     if (!c.touches) back_to_start(ta, tb, apart, share, t, m);
-    const bool struck = !jointed && (!c.touches || quick);
+    // (an overlap is for the rows to push out)
+    const bool struck = !jointed && (!c.touches || (quick && c.gap > -constants::manifold_share * thick));
     write(m, jointed ? -1 : struck ? std::max(t, 1e-9 * h) : 0);
   }
 

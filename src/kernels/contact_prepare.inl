@@ -112,7 +112,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #ifndef PC_FRICTIONLESS
   pc_st_new(PC_PASS m, these, ROW_MU_STATIC, material.v.x); pc_st_new(PC_PASS m, these, ROW_MU_KINETIC, material.v.y); pc_st_new(PC_PASS m, these, ROW_RADIUS, radius);
 #endif
-  pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, these, ROW_IMPACT, material.s); pc_st3_new(PC_PASS m, these, ROW_PATH, path);
+  pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, these, ROW_IMPACT, material.s); // (of the whole step: b's way against a until they meet)
+  pc_st3_new(PC_PASS m, these, ROW_PATH, pc_select3(flight > zero, pc_add(gone, path), pc_zero3()));
   pc_st_new(PC_PASS m, these, ROW_SCALE, pc_select(of_step, one, zero));
   pc_keep_approach(PC_PASS m, 0u, these, of_step, approach0); pc_keep_approach(PC_PASS m, 1u, these, of_step, approach1); pc_keep_approach(PC_PASS m, 2u, these, of_step, approach2); pc_keep_approach(PC_PASS m, 3u, these, of_step, approach3);
 
