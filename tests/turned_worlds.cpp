@@ -48,15 +48,17 @@ void add_floor(Turned& t) {
   t.add(floor);
 }
 
+/// Falls on a corner, topples and slides.
 void make_box(Turned& t) {
   add_floor(t);
-  BodyDef box = shaped(ShapeDef::box({0.3, 0.2, 0.5}), {0, 0.2, 0});
-  box.velocity = {1, 0, 0.4};
+  BodyDef box = shaped(ShapeDef::box({0.3, 0.2, 0.5}), {0, 0.42, 0}, axis_angle({0.6, 0, 0.8}, 0.6));
+  box.velocity = {1, -1, 0.4};
   box.angular_velocity = {0, 1, 0};
   t.add(box);
 }
 
-/// Stands on each other askew, so that no two overlaps are equal, which rounding would choose from.
+/// Stands on each other askew, so that no two overlaps are equal, which rounding would choose from. Without cylinders and hulls, whose
+/// closest points are found step by step from a direction of the world's, to 1e-5 of their size.
 void make_pile(Turned& t) {
   add_floor(t);
   t.add(shaped(ShapeDef::box({0.5, 0.2, 0.4}), {0, 0.199, 0}, axis_angle({0, 1, 0}, 0.3)));
@@ -65,7 +67,8 @@ void make_pile(Turned& t) {
   BodyDef thrown = shaped(ShapeDef::sphere(0.15), {-1.2, 0.8, 0.1});
   thrown.velocity = {4, 0, 0};
   t.add(thrown);
-  t.add(shaped(ShapeDef::capsule(0.1, 0.3), {1, 0.4, -0.5}, axis_angle({0, 0, 1}, 0.4)));
+  t.add(shaped(ShapeDef::capsule(0.1, 0.3), {1, 0.25, -0.5}, axis_angle({0, 0, 1}, 1.2)));
+  t.add(shaped(ShapeDef::box({0.2, 0.1, 0.15}), {-1.3, 0.25, -1.1}, axis_angle({0, 0.6, 0.8}, 0.5)));
 }
 
 /// Hangs askew, with branches, and swings.
