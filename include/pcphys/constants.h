@@ -110,6 +110,8 @@ inline constexpr double tree_damping = 0.4;
 inline constexpr double mean_impulse_share = 0.025;
 /// And the mean at most what would give the lighter body this speed [m/s]: what cannot be pushed apart is not pushed ever harder.
 inline constexpr double mean_impulse_speed = 30;
+/// Pins do no work: what a tree's joints have done beyond this share of its kinetic energy is taken out of the motion within it.
+inline constexpr double joint_work = 0.01;
 /// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
 inline constexpr double tree_spin_floor = 6e-5;
 /// Of fourth order a tree has no stiffness in its inertia: (frequency at which the forces of its pins would turn a body, times half the

@@ -73,6 +73,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.idle_speed = Scalar(constants::idle_speed);
   biased.limit_stiffness = Scalar(joint.mass_scale / joint.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
+  biased.joint_work = Scalar(constants::joint_work);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
   biased.restitution_threshold = Scalar(from.restitution_threshold);
