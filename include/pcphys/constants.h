@@ -122,9 +122,8 @@ inline constexpr double largest_smooth_turn = 1;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a
-/// tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least; shorter sub-steps
-/// have more, as much as leaves it the same spring, and `loop_give_most` at most.
-inline constexpr double loop_give = 1e-7, loop_roundings = 800, loop_give_most = 1e-4;
+/// tree holds by itself answers nothing but rounding. A stiffer one makes energy where links are nearly straight.
+inline constexpr double loop_give = 1e-4;
 /// Of what an impulse on one body of a joint tree moves another one, so much counts in the effective masses of a contact between the
 /// two: bodies that can hardly move against each other then have a mass that is finite.
 inline constexpr double cross_share = 0.9;

@@ -59,6 +59,7 @@ PC_FN void pc_tree_apply_bounded(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 giv
   }
   pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
   pc_bound_work(PC_PASS m, t);
+  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);  // of a straight rope the frame is known to a ten-thousandth in single precision
   pc_tree_add(PC_PASS m, t);
 }
 #endif
