@@ -115,6 +115,8 @@ inline constexpr double tree_damping = 0.4;
 inline constexpr double mean_impulse_share = 0.025;
 /// And the mean at most what would give the lighter body this speed [m/s]: what cannot be pushed apart is not pushed ever harder.
 inline constexpr double mean_impulse_speed = 30;
+/// Pins do no work: what a tree's joints have done beyond this share of its kinetic energy is taken out of the motion within it.
+inline constexpr double joint_work = 0.01;
 /// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
 inline constexpr double tree_spin_floor = 6e-5;
 /// Of fourth order a tree has no stiffness in its inertia: (frequency at which the forces of its pins would turn a body, times half the
@@ -125,9 +127,8 @@ inline constexpr double largest_smooth_turn = 1;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a
-/// tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least; shorter sub-steps
-/// have more, as much as leaves it the same spring, and `loop_give_most` at most.
-inline constexpr double loop_give = 1e-7, loop_roundings = 800, loop_give_most = 1e-4;
+/// tree holds by itself answers nothing but rounding. A stiffer one makes energy where links are nearly straight.
+inline constexpr double loop_give = 1e-4;
 /// Of what an impulse on one body of a joint tree moves another one, so much counts in the effective masses of a contact between the
 /// two: bodies that can hardly move against each other then have a mass that is finite.
 inline constexpr double cross_share = 0.9;

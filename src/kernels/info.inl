@@ -36,6 +36,7 @@ PC_INFO_FIELD(row_mass_most, "of a contact's row with a tree, as a multiple of w
 PC_INFO_FIELD(kept_turn, "contacts keep how they reach into a tree until its bodies may have turned by this; 0: they do not [rad]")
 PC_INFO_FIELD(idle_speed, "contacts with trees that hold nothing and have this much room are left alone [m/s]")
 PC_INFO_FIELD(limit_stiffness, "of an angle limit inside a tree, as a multiple of the joint's own inertia")
+PC_INFO_FIELD(joint_work, "most work that a tree's joints may have done, as a share of its kinetic energy")
 PC_INFO_FIELD(spin_floor, "least inertia of a joint's freedom, as a share of its largest")
 PC_INFO_FIELD(tree_damping, "of rotations too fast for the sub-step")
 PC_INFO_FIELD(lock_stiffness, "of a locked angle")
