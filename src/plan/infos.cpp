@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <cstdlib>
 
 #include "pcphys/constants.h"
 
@@ -66,6 +67,10 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   const double epsilon = std::numeric_limits<Scalar>::epsilon();
   biased.loop_give = Scalar(constants::loop_give);
+  biased.net_rounds = constants::net_rounds;
+  biased.net_searches = constants::net_searches;
+  biased.net_slack = Scalar(constants::net_roundings * epsilon);
+  biased.net_accuracy = Scalar(constants::net_roundings * epsilon * constants::net_roundings * epsilon);
   biased.cross_share = Scalar(constants::cross_share);
   biased.row_mass_most = Scalar(constants::row_mass_most);
   biased.kept_turn = Scalar(constants::kept_turn);
