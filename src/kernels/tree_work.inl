@@ -1,9 +1,12 @@
-// What joints do to a tree's energy. Pins do no work; over a sub-step their impulses J do, since the arms turn meanwhile:
+// What joints do to a tree's energy. Pins do no work; over a sub-step their impulses J do, since the arms turn
+// meanwhile:
 //   W = J . (v0 + v1) / 2, v0 and v1 the velocities of the sub-steps before and after,
-// a term of third order in what the arms turn by, whose sum over the sub-steps stays of second order while they are resolved. Where they are
-// not (a whip, a chain that snaps straight, limits that throw back together), it has either sign and any size. So its sum is kept with the tree's
-// first joint, between minus and plus `joint_work` times the tree's kinetic energy (and what gravity makes of rest in a sub-step), and what is beyond is taken out of the motion
-// within the tree: of a free one without its momenta, of one that hangs on something against that. A motion scaled as a whole strains no joint.
+// a term of third order in what the arms turn by, whose sum over the sub-steps stays of second order while they are
+// resolved. Where they are not (a whip, a chain that snaps straight, limits that throw back together), it has either
+// sign and any size. So its sum is kept with the tree's first joint, between minus and plus `joint_work` times the
+// tree's kinetic energy (and what gravity makes of rest in a sub-step), and what is beyond is taken out of the motion
+// within the tree: of a free one without its momenta, of one that hangs on something against that. A motion scaled as
+// a whole strains no joint.
 //
 // All by TREE_TOTAL. After pc_tree_conserve, before the changes are added.
 
