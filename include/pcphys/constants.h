@@ -62,11 +62,6 @@ inline constexpr double settled_load = 1.5, settled_friction = 0.5;
 inline constexpr double least_load = 0.01;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together. They seldom do.
 inline constexpr double settling_pace = 1.5;
-/// A manifold stands until its bodies have moved against each other by this share of the smaller one's thickness.
-inline constexpr double manifold_share = 0.01;
-/// Where bodies that both answer move along each other by more than this share in a sub-step, or turn into each other, their contact is an
-/// impact: nothing of it lasts.
-inline constexpr double quick_share = 0.1;
 /// Contacts are kept up to a gap of this share of the smaller shape's radius (of the sphere that holds it), so that what happens is the
 /// same at any size.
 inline constexpr double margin_share = 0.02;
@@ -115,8 +110,6 @@ inline constexpr double tree_damping = 0.4;
 inline constexpr double mean_impulse_share = 0.025;
 /// And the mean at most what would give the lighter body this speed [m/s]: what cannot be pushed apart is not pushed ever harder.
 inline constexpr double mean_impulse_speed = 30;
-/// Pins do no work: what a tree's joints have done beyond this share of its kinetic energy is taken out of the motion within it.
-inline constexpr double joint_work = 0.01;
 /// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
 inline constexpr double tree_spin_floor = 6e-5;
 /// Of fourth order a tree has no stiffness in its inertia: (frequency at which the forces of its pins would turn a body, times half the
@@ -127,8 +120,9 @@ inline constexpr double largest_smooth_turn = 1;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: what a
-/// tree holds by itself answers nothing but rounding. A stiffer one makes energy where links are nearly straight.
-inline constexpr double loop_give = 1e-4;
+/// tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least; shorter sub-steps
+/// have more, as much as leaves it the same spring, and `loop_give_most` at most.
+inline constexpr double loop_give = 1e-7, loop_roundings = 800, loop_give_most = 1e-4;
 /// Of what an impulse on one body of a joint tree moves another one, so much counts in the effective masses of a contact between the
 /// two: bodies that can hardly move against each other then have a mass that is finite.
 inline constexpr double cross_share = 0.9;
@@ -152,10 +146,6 @@ inline constexpr double gap_roundings = 1;
 /// How often a sub-step looks for impacts, at most, while there are any: what one hands on, the next body hands on again, as
 /// in Newton's cradle.
 inline constexpr unsigned impact_sweeps = 8;
-/// Nets of springs (kernels/net_solve.inl): Newton steps of a sub-step, and most search directions in each.
-inline constexpr unsigned net_rounds = 12, net_searches = 40;
-/// A Newton step's equations are solved to this many roundings.
-inline constexpr double net_roundings = 10;
 /// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet of what
 /// holds it (docs/impulses.md).
 inline constexpr unsigned settling_visits = 8, settling_steps = 16;

@@ -37,7 +37,7 @@ enum class Domain : std::uint8_t;
 struct OwnKernel;
 
 struct PlanEntry {
-  enum class Kind : std::uint8_t { kernel, upload, download, collide };
+  enum class Kind : std::uint8_t { kernel, upload, download };
   Kind kind = Kind::kernel;
   Place place = Place::cpu;
   Kernel kernel{};  // of a kernel

@@ -6,9 +6,7 @@
 #include "tree_store.inl"
 #include "angle_rows.inl"
 #include "tree_sweep.inl"
-#define PC_WORK
 #include "tree_momentum.inl"
-#undef PC_WORK
 #include "tree_predict.inl"
 #include "tree_joint_kept.inl"
 #include "tree_gap.inl"
@@ -73,7 +71,7 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
     pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
     pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k, PC_REAL(1.0))));
   }
-  pc_tree_apply_bounded(PC_PASS m, t, pc_zero3(), pc_zero3());
+  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
 }
 
 // The push that closes gaps of more than 32 epsilon of the arm, of all trees of the block or of none.

@@ -22,8 +22,9 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_tu
   }
 }
 
-// Adds the changes to the bodies' velocities and momenta; and that contacts touched them.
-PC_FN void pc_tree_add(PC_IO Slot m, Tree t) {
+// Adds the changes to the bodies' velocities and momenta, both momenta of a free tree kept; and that contacts touched them.
+PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
+  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
@@ -32,12 +33,6 @@ PC_FN void pc_tree_add(PC_IO Slot m, Tree t) {
     PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 0u, linear);
     PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 1u, angular);
   }
-}
-
-// The same, both momenta of a free tree kept.
-PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
-  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
-  pc_tree_add(PC_PASS m, t);
 }
 
 // Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
@@ -49,17 +44,3 @@ PC_FN void pc_tree_apply(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn)
   }
   pc_tree_add_changes(PC_PASS m, t, given_push, given_turn);
 }
-#ifdef PC_WORK
-#include "tree_work.inl"
-// The same, with the work of the joints within its bounds.
-PC_FN void pc_tree_apply_bounded(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
-  }
-  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
-  pc_bound_work(PC_PASS m, t);
-  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);  // of a straight rope the frame is known to a ten-thousandth in single precision
-  pc_tree_add(PC_PASS m, t);
-}
-#endif

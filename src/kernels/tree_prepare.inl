@@ -81,10 +81,6 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
 
   precise Vec3 f = pin.v * flip * PC_INFO(impulse_ratio) * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL));
   pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(PC_IS(pc_is_pivot(PC_PASS t)), pc_zero3(), f));  // what turns about the pin needs no stiffness of it
-  if (k == 1u) {
-    precise Real account = pin.s * pc_inverse_or_zero(PC_LD(tree_rows, n, TREE_TOTAL));
-    PC_ST(tree_rows, up, TREE_ACCOUNT, account);
-  }
   pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_zero3());  // of a pivot that no tree is solved for
 }
 

@@ -39,9 +39,6 @@ const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
 const uint TREE_PIVOT = 155u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
 const uint TREE_REBOUND = 165u; // where limits throw back, of the three rows: restitution, then the rate at which the row is to be left; 0 none
-// of a root, which has no joint (tree_work.inl)
-const uint TREE_ACCOUNT = TREE_GAP;      // work that the tree's joints have done and that is not taken out yet
-const uint TREE_DRIVEN = TREE_GAP + 1u;  // 1 where some joint has a motor or a spring, which may do work
 // of a free root, whose joint has no rows: the tree as one rigid body (tree_whole.inl)
 const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass

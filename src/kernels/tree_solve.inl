@@ -10,9 +10,7 @@
 #endif
 #include "tree_factor.inl"
 #include "tree_sweep.inl"
-#define PC_WORK
 #include "tree_momentum.inl"
-#undef PC_WORK
 #include "tree_predict.inl"
 
 // Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
@@ -102,12 +100,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     pc_tree_rates(PC_PASS n, up); pc_tree_rebounds(PC_PASS n, up);
   }
-  Real driven = PC_REAL(0.0);
-#ifdef PC_DRIVES
-  PC_NODES(k, 1u, t) driven = pc_max(driven, pc_select(pc_drive_moves(PC_PASS PC_NODE(m, t.first + k)), PC_REAL(1.0), PC_REAL(0.0)));
-  PC_MOST(driven);
-#endif
-  PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_DRIVEN, driven);
 #ifdef PC_DRIVES
   PC_NODES(k, 1u, t) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #endif
@@ -131,5 +123,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     }
   }
   PC_NODES(k, 1u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
-  pc_tree_apply_bounded(PC_PASS m, t, push, turn);
+  pc_tree_apply(PC_PASS m, t, push, turn);
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <cstdlib>
 
 #include "pcphys/constants.h"
 
@@ -66,18 +65,14 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   const double epsilon = std::numeric_limits<Scalar>::epsilon();
-  biased.loop_give = Scalar(constants::loop_give);
-  biased.net_rounds = constants::net_rounds;
-  biased.net_searches = constants::net_searches;
-  biased.net_slack = Scalar(constants::net_roundings * epsilon);
-  biased.net_accuracy = Scalar(constants::net_roundings * epsilon * constants::net_roundings * epsilon);
+  biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
+                                     constants::loop_roundings * epsilon));
   biased.cross_share = Scalar(constants::cross_share);
   biased.row_mass_most = Scalar(constants::row_mass_most);
   biased.kept_turn = Scalar(constants::kept_turn);
   biased.idle_speed = Scalar(constants::idle_speed);
   biased.limit_stiffness = Scalar(joint.mass_scale / joint.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
-  biased.joint_work = Scalar(constants::joint_work);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
   biased.restitution_threshold = Scalar(from.restitution_threshold);

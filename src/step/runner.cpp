@@ -19,7 +19,6 @@ Timer timer_of(Stage stage) {
   return timers[std::size_t(stage)];
 }
 Timer timer_of(const PlanEntry& entry) {
-  if (entry.kind == PlanEntry::Kind::collide) return Timer::narrow;
   if (entry.kind == PlanEntry::Kind::upload) return Timer::upload;
   if (entry.kind == PlanEntry::Kind::download) return Timer::download;
   return timer_of(stage(entry));
@@ -340,23 +339,14 @@ void Runner::trace_substep(const PlanEntry& entry, const WorldState& state, cons
   rows.width = lanes(Place::cpu, Domain::contact, schedule);
   rows.f64 = state.tables.precision() == Precision::f64;
   rows.friction = std::ranges::none_of(bound_.plan->bindings, [](const auto& b) { return b.buffer == Buffer::frictionless_rows; });
-  tracer_.substep(state, schedule, entry.octave, *at(Place::cpu).backend, rows, substep_of(entry, infos, state.tables.precision()));
-}
-
-double Runner::substep_of(const PlanEntry& entry, const void* infos, Precision precision) const {
   const std::size_t index = info_index(entry);
-  if (precision == Precision::f64) return static_cast<const InfoOf<double>*>(infos)[index].h;
-  return double(static_cast<const InfoOf<float>*>(infos)[index].h);
+  const double h = rows.f64 ? static_cast<const InfoOf<double>*>(infos)[index].h
+                            : double(static_cast<const InfoOf<float>*>(infos)[index].h);
+  tracer_.substep(state, schedule, entry.octave, *at(Place::cpu).backend, rows, h);
 }
 
-Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
+Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report) {
   const PlanEntry& entry = *call.entry;
-  if (entry.kind == PlanEntry::Kind::collide) {
-    if (!collider_) return {};  // the table holds what was found
-    collider_->collide(state, entry.octave, entry.substep == 0, substep_of(entry, infos, state.tables.precision()));
-    if (gl_) state.tables.touch(Buffer::contact);
-    return {};
-  }
   if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state);
   if (entry.kind == PlanEntry::Kind::download) return transfer(entry, state, report);
   return upload(entry.buffer, state, schedule, report);
@@ -378,9 +368,8 @@ Status Runner::keep_left(WorldState& state) {
   return {};
 }
 
-Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider) {
+Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
   left_ = false;
-  collider_ = collider;
   if (!fetched_) return std::exchange(fetched_, Status{});
   if (state.tables.kept())  // by this device or another stepper's
     for (const PlanBinding& b : bound_.plan->bindings)
@@ -396,7 +385,7 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
   Clock::time_point began;
   if (bound_.timings) began = Clock::now();
   for (const Call& c : calls_) {
-    if (Status ok = call(c, state, schedule, infos, report); !ok) return ok;
+    if (Status ok = call(c, state, schedule, report); !ok) return ok;
     if (c.ends) trace_substep(*c.entry, state, schedule, infos);
     if (!c.last) continue;
     if (gl_)

@@ -16,14 +16,6 @@
 
 namespace pcphys {
 
-/// The narrow phase of a sub-step.
-class Collider {
- public:
-  virtual ~Collider() = default;
-  /// Of islands of one level, in a sub-step of h [s]; `first`: of the step.
-  virtual void collide(WorldState& state, unsigned octave, bool first, double h) = 0;
-};
-
 class Runner final : Keeper {
  public:
   Runner() = default;
@@ -38,7 +30,7 @@ class Runner final : Keeper {
   /// the last step, that step's bindings stand. The plan stays where it is until another one is bound.
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
   /// Runs the plan that was bound.
-  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider = nullptr);
+  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
   /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others is an error
   /// (check_written).
   void watch(bool kernels) { watched_ = kernels; }
@@ -124,8 +116,7 @@ class Runner final : Keeper {
   void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
-  Status call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
-  double substep_of(const PlanEntry& entry, const void* infos, Precision precision) const;
+  Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
   Status kernels(const Call& call, WorldState& state);
   void trace_substep(const PlanEntry& entry, const WorldState& state, const Schedule& schedule, const void* infos);
   Status keep_left(WorldState& state);
@@ -152,7 +143,6 @@ class Runner final : Keeper {
   bool left_ = false;           // see `left`
   bool watched_ = false;
   Tracer tracer_;
-  Collider* collider_ = nullptr;  // of the step
 };
 
 }  // namespace pcphys
