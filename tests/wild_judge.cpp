@@ -1,0 +1,120 @@
+// Pins: what random scenes are judged with. Distances agree with closed forms, energy that is made is seen and what drives put in is
+// not, a family and a seed are one scene, and every call of a scene but a host's is one that the library takes.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+#include "wild/balance.h"
+#include "wild/distance.h"
+#include "wild/play.h"
+#include "wild/scene.h"
+#include "wild/shapes.h"
+#include "wild/verdict.h"
+
+using namespace pcphys;
+using namespace pcphys::wild;
+
+TEST_SUITE_BEGIN("wild_judge");
+
+TEST_CASE("distance: closed forms of round shapes, boxes and planes") {
+  Dice dice("distance", 1);
+  for (int i = 0; i < 200; i++) {
+    const ShapeDef ball = ShapeDef::sphere(dice.between(0.1, 1)), other = ShapeDef::sphere(dice.between(0.1, 1));
+    const Vec3 towards = dice.direction();
+    const double apart = dice.between(0, 3);
+    const Pose a{{1, 2, 3}, dice.orientation()}, b{Vec3{1, 2, 3} + towards * apart, dice.orientation()};
+    const double expected = std::fmax(0.0, apart - ball.size.x - other.size.x);
+    CHECK(distance(placed(ball, a), placed(other, b)) == doctest::Approx(expected).epsilon(1e-9));
+
+    // A box seen along one of its own axes from beyond its face.
+    const ShapeDef box = ShapeDef::box({0.5, 0.3, 0.2});
+    const Vec3 along = rotate(a.orientation, {1, 0, 0});
+    const Pose beyond{a.position + along * (0.5 + ball.size.x + apart), dice.orientation()};
+    CHECK(distance(placed(box, a), placed(ball, beyond)) == doctest::Approx(apart).epsilon(1e-8));
+    const ShapeDef plane = ShapeDef::plane();
+    CHECK(distance(placed(plane, {}), placed(ball, b)) == doctest::Approx(std::fmax(0.0, b.position.y - ball.size.x)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("distance: hulls and cylinders are apart by what their extents say along the line of their nearest points") {
+  Dice dice("distance", 2);
+  for (int i = 0; i < 200; i++) {
+    const ShapeDef a = random_shape(dice, 0.5), b = random_shape(dice, 0.5);
+    const Quat turned = dice.orientation(), other = dice.orientation();
+    const Vec3 n = dice.direction();
+    const double gap = dice.between(0.01, 1);
+    // Two support planes with a gap between them: no distance is less than that.
+    const double between = extent_along(a, turned, n) + gap + extent_along(b, other, -n);
+    const double found = distance(placed(a, {{}, turned}), placed(b, {n * between, other}));
+    CHECK(found >= gap * (1 - 1e-9));
+  }
+}
+
+TEST_CASE("least distance: bodies that pass, and bodies that meet on their way") {
+  const ShapeDef ball = ShapeDef::sphere(0.5);
+  const Moving still{&ball, {}, {}, {}};
+  const Moving passing{&ball, {{-3, 1.25, 0}, {}}, {10, 0, 0}, {0, 40, 0}}, meeting{&ball, {{-3, 0.5, 0}, {}}, {10, 0, 0}, {}};
+  CHECK(least_distance(still, passing, 0.6, 1e-4) == doctest::Approx(0.25).epsilon(1e-2));
+  CHECK(least_distance(still, meeting, 0.6, 1e-4) <= 1e-4);
+  CHECK(least_distance(still, meeting, 0.1, 1e-4) > 0.5);
+}
+
+namespace {
+
+Observation one_body(double speed, double height) {
+  Observation seen;
+  seen.gravity = {0, -10, 0};
+  SeenBody body;
+  body.there = true;
+  body.kind = BodyKind::dynamic;
+  body.mass = {2, {1e-6, 1e-6, 1e-6}};
+  body.velocity = {0, speed, 0};
+  body.pose.position = {0, height, 0};
+  seen.bodies = {body};
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE("balance: a fall makes nothing, a kick does, and what the host or a drive puts in is no rise") {
+  Balance fall, kick, driven, host;
+  for (Balance* b : {&fall, &kick, &driven, &host}) b->begin(one_body(0, 5));
+  fall.stepped(one_body(-10, 0), 0);
+  CHECK(fall.rise() < 1e-12);
+  kick.stepped(one_body(-10, 0), 0);
+  kick.stepped(one_body(11, 0), 0);  // 121 J in place of 100
+  CHECK(kick.rise() == doctest::Approx(0.21 / 2).epsilon(0.01));
+  driven.stepped(one_body(-11, 0), 21);
+  CHECK(driven.rise() < 1e-12);
+  host.changed(one_body(0, 5), one_body(8, 5));
+  host.stepped(one_body(8, 5), 0);
+  CHECK(host.rise() < 1e-12);
+}
+
+TEST_CASE("a family and a seed are one scene, and the library takes its calls") {
+  struct Refusals final : Watcher {
+    std::string first;
+    void after_call(const Player&, const Call&, const Status& status) override {
+      if (!status && first.empty()) first = status.error().message;
+    }
+    bool after_step(const Player&, double, const StepReport&) override { return false; }
+  };
+  for (const Family& family : families())
+    for (std::uint64_t seed = 1; seed <= 20; seed++) {
+      const auto scene = draw(family.name, seed), again = draw(family.name, seed);
+      REQUIRE(scene);
+      REQUIRE(again);
+      CHECK(scene->calls.size() == again->calls.size());
+      Player player(*scene, {}), other(*again, {});
+      Refusals refusals;
+      CHECK(player.play(&refusals));
+      CHECK(other.play(&refusals));
+      INFO(family.name << ", seed " << seed << ": " << refusals.first);
+      CHECK(refusals.first.empty());
+      CHECK(player.own_hash() == other.own_hash());
+    }
+  CHECK(!draw("meadow", 1));
+}
+
+TEST_SUITE_END();
