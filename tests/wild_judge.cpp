@@ -1,5 +1,6 @@
-// Pins: what random scenes are judged with. Distances agree with closed forms, energy that is made is seen and what drives put in is
-// not, a family and a seed are one scene, and every call of a scene but a host's is one that the library takes.
+// Pins: what random scenes are judged with. Distances agree with closed forms, energy that is made is seen and what
+// drives put in is not, a family and a seed are one scene, and every call of a scene but a host's is one that the
+// library takes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -33,7 +34,8 @@ TEST_CASE("distance: closed forms of round shapes, boxes and planes") {
     const Pose beyond{a.position + along * (0.5 + ball.size.x + apart), dice.orientation()};
     CHECK(distance(placed(box, a), placed(ball, beyond)) == doctest::Approx(apart).epsilon(1e-8));
     const ShapeDef plane = ShapeDef::plane();
-    CHECK(distance(placed(plane, {}), placed(ball, b)) == doctest::Approx(std::fmax(0.0, b.position.y - ball.size.x)).epsilon(1e-9));
+    const double above = std::fmax(0.0, b.position.y - ball.size.x);
+    CHECK(distance(placed(plane, {}), placed(ball, b)) == doctest::Approx(above).epsilon(1e-9));
   }
 }
 
@@ -54,7 +56,8 @@ TEST_CASE("distance: hulls and cylinders are apart by what their extents say alo
 TEST_CASE("least distance: bodies that pass, and bodies that meet on their way") {
   const ShapeDef ball = ShapeDef::sphere(0.5);
   const Moving still{&ball, {}, {}, {}};
-  const Moving passing{&ball, {{-3, 1.25, 0}, {}}, {10, 0, 0}, {0, 40, 0}}, meeting{&ball, {{-3, 0.5, 0}, {}}, {10, 0, 0}, {}};
+  const Moving passing{&ball, {{-3, 1.25, 0}, {}}, {10, 0, 0}, {0, 40, 0}};
+  const Moving meeting{&ball, {{-3, 0.5, 0}, {}}, {10, 0, 0}, {}};
   CHECK(least_distance(still, passing, 0.6, 1e-4) == doctest::Approx(0.25).epsilon(1e-2));
   CHECK(least_distance(still, meeting, 0.6, 1e-4) <= 1e-4);
   CHECK(least_distance(still, meeting, 0.1, 1e-4) > 0.5);

@@ -36,7 +36,8 @@ double fastest_anchor(const Observation& seen) {
   return fastest;
 }
 
-/// Of angles that a turning kinematic body forces on its neighbour: its couple is the rest's change of angular momentum.
+/// Of angles that a turning kinematic body forces on its neighbour: its couple is the rest's change of angular
+/// momentum.
 double fastest_turn(const Observation& seen) {
   double fastest = 0;
   for (const SeenJoint& j : seen.joints)

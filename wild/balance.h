@@ -14,8 +14,9 @@ class Balance {
   /// Undoing overlaps that the host made may add so much more [J].
   void allow(double energy) { allowed_ += energy; }
 
-  /// The largest rise beyond the lowest so far and what drives put in, as a share of the scale that there was before it: the most kinetic
-  /// and spring energy, the largest change of potential energy, what drives and the host put in, and what lifts each body by its own size.
+  /// The largest rise beyond the lowest so far and what drives put in, as a share of the scale that there was before
+  /// it: the most kinetic and spring energy, the largest change of potential energy, what drives and the host put in,
+  /// and what lifts each body by its own size.
   double rise() const { return rise_; }
 
  private:
@@ -25,8 +26,8 @@ class Balance {
   double lowest_ = 0, rise_ = 0, motion_ = 0, fall_ = 0, lift_ = 0;
 };
 
-/// What motors, constant forces and, by the momentum that they exchange, kinematic bodies may have put in within a step through joints and
-/// springs; at most [J].
+/// What motors, constant forces and, by the momentum that they exchange, kinematic bodies may have put in within a step
+/// through joints and springs; at most [J].
 double driven_work(const Observation& before, const Observation& after, double contact_impulses, double dt);
 
 /// Exactly, of one kinematic body that meets one dynamic body by contacts alone.

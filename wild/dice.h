@@ -10,7 +10,8 @@
 
 namespace pcphys::wild {
 
-/// SplitMix64 (G. Steele, D. Lea, C. Flood, 2014). A family's scenes are unrelated to those of another with the same seed.
+/// SplitMix64 (G. Steele, D. Lea, C. Flood, 2014). A family's scenes are unrelated to those of another with the same
+/// seed.
 class Dice {
  public:
   Dice(std::string_view family, std::uint64_t seed) : state_(14695981039346656037ull) {

@@ -10,13 +10,16 @@ namespace pcphys::wild {
 namespace {
 
 /// What is round about a shape: the rest is a point, a segment or a body with corners.
-double roundness(const ShapeDef& s) { return s.kind == ShapeKind::sphere || s.kind == ShapeKind::capsule ? s.size.x : 0; }
+double roundness(const ShapeDef& s) {
+  return s.kind == ShapeKind::sphere || s.kind == ShapeKind::capsule ? s.size.x : 0;
+}
 
 /// The point of the shape's core that is furthest along a direction of the shape's own axes.
 Vec3 support_inside(const ShapeDef& s, Vec3 d) {
   switch (s.kind) {
     case ShapeKind::capsule: return {0, std::copysign(s.size.y, d.y), 0};
-    case ShapeKind::box: return {std::copysign(s.size.x, d.x), std::copysign(s.size.y, d.y), std::copysign(s.size.z, d.z)};
+    case ShapeKind::box:
+      return {std::copysign(s.size.x, d.x), std::copysign(s.size.y, d.y), std::copysign(s.size.z, d.z)};
     case ShapeKind::cylinder: {
       const double across = std::hypot(d.x, d.z), scale = across > 0 ? s.size.x / across : 0;
       return {d.x * scale, std::copysign(s.size.y, d.y), d.z * scale};
@@ -89,7 +92,8 @@ class Simplex {
     const double squared = dot(n, n);
     if (squared <= 0) return;
     const Vec3 p = n * (dot(a, n) / squared);
-    const bool within = dot(cross(b - a, p - a), n) > 0 && dot(cross(c - b, p - b), n) > 0 && dot(cross(a - c, p - c), n) > 0;
+    const bool within =
+        dot(cross(b - a, p - a), n) > 0 && dot(cross(c - b, p - b), n) > 0 && dot(cross(a - c, p - c), n) > 0;
     if (within) offer(p, i, j, k);
   }
   /// Whether the origin is in the tetrahedron: on the inner side of each face.
@@ -153,8 +157,8 @@ double least_distance(const Moving& a, const Moving& b, double seconds, double n
   const auto outer = [](const Moving& m) {
     return m.shape->kind == ShapeKind::plane ? 0 : length(m.shape->local.position) + outer_radius(*m.shape);
   };
-  const double fastest = length(a.velocity - b.velocity) + length(a.angular_velocity) * outer(a) +
-                         length(b.angular_velocity) * outer(b);
+  const double fastest =
+      length(a.velocity - b.velocity) + length(a.angular_velocity) * outer(a) + length(b.angular_velocity) * outer(b);
   double least = std::numeric_limits<double>::infinity();
   double t = 0;
   for (int i = 0; i < 200; i++) {

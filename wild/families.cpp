@@ -26,7 +26,8 @@ Result<Scene> draw(std::string_view family, std::uint64_t seed) {
   if (found == std::end(all)) {
     std::string names;
     for (const Family& f : all) names += (names.empty() ? "" : ", ") + std::string(f.name);
-    return Error{ErrorCode::unknown_name, "There is no family '" + std::string(family) + "'; choose one of " + names + "."};
+    return Error{ErrorCode::unknown_name,
+                 "There is no family '" + std::string(family) + "'; choose one of " + names + "."};
   }
   Builder b(family, seed);
   found->draw(b);

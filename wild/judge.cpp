@@ -7,22 +7,23 @@
 namespace pcphys::wild {
 namespace {
 
-constexpr double f32_rounding = 1e-5, f64_rounding = 1e-11;     // of momentum and of speed
-constexpr double encounter_f32 = 1e-5, encounter_f64 = 1e-9;    // energy of a single encounter
-constexpr double energy_share = 1e-3;                           // of everything else
-constexpr double widest_gap_allowed = 1e-4;                     // of joints [m]
-constexpr double excess_allowed = std::numbers::pi / 180;       // of limits [rad]
-constexpr double overlap_allowed = 0.02;                        // at rest, of the smaller shape
+constexpr double f32_rounding = 1e-5, f64_rounding = 1e-11;   // of momentum and of speed
+constexpr double encounter_f32 = 1e-5, encounter_f64 = 1e-9;  // energy of a single encounter
+constexpr double energy_share = 1e-3;                         // of everything else
+constexpr double widest_gap_allowed = 1e-4;                   // of joints [m]
+constexpr double excess_allowed = std::numbers::pi / 180;     // of limits [rad]
+constexpr double overlap_allowed = 0.02;                      // at rest, of the smaller shape
 constexpr double glide_lost = 1e-3;
 constexpr double work_allowed = 20;
-constexpr double slow = 0.05;                                   // what is at rest [m/s]
+constexpr double slow = 0.05;  // what is at rest [m/s]
 
 constexpr MeasureInfo infos[] = {
     {"energy", "1", "energy made within steps beyond what drives put in, over the scene's scale"},
     {"momentum", "1", "change of the momentum of what is free, over the sum of magnitudes"},
     {"angular_momentum", "1", "change of the angular momentum of what is free, over the sum of magnitudes"},
     {"free_speed", "1", "change of the motion of what touches nothing, over its speed"},
-    {"phantom", "1", "gap over which a contact pushed, over the larger of a thousandth of the smaller shape and 0.1 mm"},
+    {"phantom", "1",
+     "gap over which a contact pushed, over the larger of a thousandth of the smaller shape and 0.1 mm"},
     {"overlap", "1", "overlap at rest, over the smaller shape's size"},
     {"joint_gap", "m", "widest gap of a joint"},
     {"limit_excess", "rad", "most that a joint is beyond its limits"},

@@ -11,9 +11,9 @@ namespace pcphys::wild {
 struct StepFacts {
   double dt = 0;
   double contact_work = 0, contact_impulses = 0;  // Phantoms
-  std::optional<double> phantom;                  // widest gap over which a contact pushed, as a multiple of what is allowed
-  std::optional<double> work;                     // counted
-  std::size_t frozen = 0;                         // bodies that the engine gave up in this step
+  std::optional<double> phantom;  // widest gap over which a contact pushed, as a multiple of what is allowed
+  std::optional<double> work;     // counted
+  std::size_t frozen = 0;         // bodies that the engine gave up in this step
 };
 
 class Judge {
@@ -43,9 +43,9 @@ class Judge {
   bool f64_;
   Verdict verdict_;
   Balance balance_;
-  Observation start_;      // before the first step, or since the host last changed something
-  double since_ = 0;       // then [s]
-  bool closed_ = false;    // nothing acts from outside: momentum is conserved
+  Observation start_;    // before the first step, or since the host last changed something
+  double since_ = 0;     // then [s]
+  bool closed_ = false;  // nothing acts from outside: momentum is conserved
   double most_momentum_ = 0, most_angular_momentum_ = 0;
   std::vector<double> works_;
 };

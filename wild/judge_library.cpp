@@ -33,7 +33,8 @@ class TimedPhantoms final : public ContactTrace {
   }
 };
 
-/// Sub-steps of bodies, of their joints and of points of contact, and pairs that were looked at, for each body that moves.
+/// Sub-steps of bodies, of their joints and of points of contact, and pairs that were looked at, for each body that
+/// moves.
 double counted_work(const StepReport& r, const StepSettings& settings, double bodies) {
   const double rows = double(r.joints) + double(r.points), base = settings.substeps, most = r.substeps;
   const double refined = bodies > 0 ? double(r.refined) / bodies : 0;
@@ -46,7 +47,8 @@ double depth(const Placed& a, const Placed& b) {
   const auto view = [&](const Placed& p) {
     const Vec3 at = p.pose.position - a.pose.position;
     const Quat q = p.pose.orientation;
-    ShapeView<double> v{p.shape->kind, {p.shape->size.x, p.shape->size.y, p.shape->size.z}, {at.x, at.y, at.z}, {q.x, q.y, q.z, q.w}};
+    ShapeView<double> v{
+        p.shape->kind, {p.shape->size.x, p.shape->size.y, p.shape->size.z}, {at.x, at.y, at.z}, {q.x, q.y, q.z, q.w}};
     if (p.shape->kind != ShapeKind::hull) return v;
     v.size[0] = p.shape->convex.radius();
     v.size[1] = p.shape->convex.inner_radius();
@@ -86,7 +88,8 @@ class LibraryWatcher final : public Watcher {
     before_ = after;
     if (const SetPose* moved = std::get_if<SetPose>(&call)) allow_overlaps(player, moved->body, true);
     if (const MakeBody* made = std::get_if<MakeBody>(&call)) allow_overlaps(player, made->body, true);
-    if (std::holds_alternative<Destroy>(call) || std::holds_alternative<SetFilter>(call) || std::holds_alternative<SetCollide>(call))
+    if (std::holds_alternative<Destroy>(call) || std::holds_alternative<SetFilter>(call) ||
+        std::holds_alternative<SetCollide>(call))
       for (std::size_t i = 0; i < after.bodies.size(); i++) allow_overlaps(player, int(i), false);
   }
   bool after_step(const Player& player, double dt, const StepReport& report) override {
@@ -113,15 +116,16 @@ class LibraryWatcher final : public Watcher {
   }
 
  private:
-  /// A body that overlaps others by the host's doing may be pushed out at push_speed, and lifted. With `others` what it was put into counts
-  /// too.
+  /// A body that overlaps others by the host's doing may be pushed out at push_speed, and lifted. With `others` what it
+  /// was put into counts too.
   void allow_overlaps(const Player& player, int number, bool others) {
     const Observation& seen = eye_.seen();
     const SeenBody& body = seen.body(number);
     if (!body.there) return;
     for (std::size_t i = 0; i < seen.bodies.size(); i++) {
       const SeenBody& other = seen.bodies[i];
-      if (int(i) == number || !other.there || (body.kind != BodyKind::dynamic && other.kind != BodyKind::dynamic)) continue;
+      if (int(i) == number || !other.there || (body.kind != BodyKind::dynamic && other.kind != BodyKind::dynamic))
+        continue;
       double deepest = 0;
       for (const ShapeDef& x : eye_.shapes(number))
         for (const ShapeDef& y : eye_.shapes(int(i))) {

@@ -54,7 +54,8 @@ class PeerEye {
       b.mass = peer.mass_properties(i);
       const Vec3 momentum = b.velocity * b.mass.mass;
       seen.momentum = seen.momentum + momentum;
-      seen.angular_momentum = seen.angular_momentum + cross(b.pose.position, momentum) + angular_momentum_about_centre(b);
+      seen.angular_momentum =
+          seen.angular_momentum + cross(b.pose.position, momentum) + angular_momentum_about_centre(b);
     }
     return seen;
   }

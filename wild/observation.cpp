@@ -92,7 +92,8 @@ double largest_excess(const Observation& seen) {
   double largest = 0;
   for (const SeenJoint& j : seen.joints)
     if (j.there)
-      largest = std::max(largest, scenes::limit_excess(j.def, seen.body(j.a).pose.orientation, seen.body(j.b).pose.orientation).any);
+      largest = std::max(
+          largest, scenes::limit_excess(j.def, seen.body(j.a).pose.orientation, seen.body(j.b).pose.orientation).any);
   return largest;
 }
 
@@ -120,7 +121,9 @@ struct Eye::Follow {
   void operator()(const MakeRagdoll& c) const {
     for (std::size_t i = 0; i < c.def.bones.size(); i++) {
       eye.make(c.first_body + int(i), {c.def.bones[i].shape}, c.def.material, 0);
-      if (i > 0) grown(eye.seen_.joints, c.first_joint + int(i) - 1) = {false, c.first_body + c.def.bones[i].parent, c.first_body + int(i), {}};
+      if (i > 0)
+        grown(eye.seen_.joints, c.first_joint + int(i) - 1) = {
+            false, c.first_body + c.def.bones[i].parent, c.first_body + int(i), {}};
     }
   }
   void operator()(const MakeJoint& c) const { grown(eye.seen_.joints, c.joint) = {false, c.a, c.b, c.def}; }

@@ -49,7 +49,9 @@ Vec3 angular_momentum_about_centre(const SeenBody& body);
 double kinetic_energy(const Observation& seen);
 double potential_energy(const Observation& seen);
 double spring_energy(const Observation& seen);
-inline double energy(const Observation& seen) { return kinetic_energy(seen) + potential_energy(seen) + spring_energy(seen); }
+inline double energy(const Observation& seen) {
+  return kinetic_energy(seen) + potential_energy(seen) + spring_energy(seen);
+}
 
 /// The widest gap of a joint [m], and the most that one is beyond its limits [rad].
 double widest_gap(const Observation& seen);

@@ -59,21 +59,28 @@ double Phantoms::normal_impulse(const TracedContact& c) {
   return rows + std::max(struck - std::exchange(struck_[c.contact], struck), 0.0);
 }
 
-/// The least distance of the two on their ways to and from their meeting, as a multiple of what is allowed; 0 where they met.
+/// The least distance of the two on their ways to and from their meeting, as a multiple of what is allowed; 0 where
+/// they met.
 double Phantoms::gap_of(const WorldState& state, double h, const TracedContact& c) const {
   const auto [shape_a, shape_b] = state.contacts.keys[c.contact];
-  const std::uint32_t rows[2] = {state.body_ids.row(state.shapes[shape_a].body), state.body_ids.row(state.shapes[shape_b].body)};
+  const std::uint32_t rows[2] = {state.body_ids.row(state.shapes[shape_a].body),
+                                 state.body_ids.row(state.shapes[shape_b].body)};
   const ShapeDef *a = &shape_of(state, shape_a), *b = &shape_of(state, shape_b);
   const double near = allowed(*a, *b);
   const Body &a0 = before_[rows[0]], &b0 = before_[rows[1]], &a1 = now_[rows[0]], &b1 = now_[rows[1]];
-  double least = std::min(distance(placed(*a, a1.pose), placed(*b, b1.pose)), distance(placed(*a, a0.pose), placed(*b, b0.pose)));
+  double least =
+      std::min(distance(placed(*a, a1.pose), placed(*b, b1.pose)), distance(placed(*a, a0.pose), placed(*b, b0.pose)));
   if (least <= near) return 0;
   const Vec3 fall = state.gravity * h;
-  const auto pulled = [&](const Body& body, std::uint32_t row) { return state.responds(row) ? body.velocity + fall : body.velocity; };
-  const Moving to_a{a, a0.pose, pulled(a0, rows[0]), a0.angular_velocity}, to_b{b, b0.pose, pulled(b0, rows[1]), b0.angular_velocity};
+  const auto pulled = [&](const Body& body, std::uint32_t row) {
+    return state.responds(row) ? body.velocity + fall : body.velocity;
+  };
+  const Moving to_a{a, a0.pose, pulled(a0, rows[0]), a0.angular_velocity},
+      to_b{b, b0.pose, pulled(b0, rows[1]), b0.angular_velocity};
   least = std::min(least, least_distance(to_a, to_b, h, near));
   if (least <= near) return 0;
-  const Moving from_a{a, a1.pose, -a1.velocity, -a1.angular_velocity}, from_b{b, b1.pose, -b1.velocity, -b1.angular_velocity};
+  const Moving from_a{a, a1.pose, -a1.velocity, -a1.angular_velocity},
+      from_b{b, b1.pose, -b1.velocity, -b1.angular_velocity};
   least = std::min(least, least_distance(from_a, from_b, h, near));
   // Who is pushed several times in a sub-step goes ways that neither end of it tells.
   if (a1.contacts > 1 || b1.contacts > 1) {

@@ -1,5 +1,5 @@
-// Impulses of contacts between shapes that were apart in the sub-step in which they acted; and what contacts may have put in where
-// one side is driven. A watcher of the library's trace of contacts.
+// Impulses of contacts between shapes that were apart in the sub-step in which they acted; and what contacts may have
+// put in where one side is driven. A watcher of the library's trace of contacts.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -14,8 +14,8 @@ class Phantoms final : public ContactTrace {
   void begin(const WorldState& state) override;
   void substep(const WorldState& state, double h, std::span<const TracedContact> contacts) override;
 
-  /// Of the step: the widest gap over which a contact pushed, as a multiple of what is allowed: a thousandth of the smaller shape, or
-  /// 0.1 mm.
+  /// Of the step: the widest gap over which a contact pushed, as a multiple of what is allowed: a thousandth of the
+  /// smaller shape, or 0.1 mm.
   double widest() const { return widest_; }
   /// What kinematic bodies may have put in through contacts, at most [J].
   double driven_work() const { return driven_work_; }

@@ -54,7 +54,8 @@ struct Player::Apply {
   }
   Status operator()(const MakeRagdoll& c) const {
     const auto made = p.world_.create_ragdoll(c.def, c.pose, c.velocity);
-    for (std::size_t i = 0; i < c.def.bones.size(); i++) put(p.bodies_, c.first_body + int(i), made ? made->bones[i] : BodyId{});
+    for (std::size_t i = 0; i < c.def.bones.size(); i++)
+      put(p.bodies_, c.first_body + int(i), made ? made->bones[i] : BodyId{});
     for (std::size_t i = 0; i + 1 < c.def.bones.size(); i++)
       put(p.joints_, c.first_joint + int(i), made ? made->joints[i] : JointId{});
     return to_status(made);
@@ -104,7 +105,10 @@ struct Player::Apply {
 };
 
 Player::Player(const Scene& scene, const PlayOptions& options)
-    : scene_(scene), options_(options), world_(with_precision(scene.world, options.precision)), settings_(placed(scene.settings)) {
+    : scene_(scene),
+      options_(options),
+      world_(with_precision(scene.world, options.precision)),
+      settings_(placed(scene.settings)) {
   stepper_.emplace(settings_);
 }
 
@@ -116,8 +120,8 @@ StepSettings Player::placed(StepSettings settings) const {
   return settings;
 }
 
-/// After the scene's own first objects, so that ids of these are the same with it and without. What is made later has other ids, and
-/// colours follow ids: scenes that make bodies between steps are not compared in this way.
+/// After the scene's own first objects, so that ids of these are the same with it and without. What is made later has
+/// other ids, and colours follow ids: scenes that make bodies between steps are not compared in this way.
 void Player::add_unrelated() {
   BodyDef plate, ball;
   plate.kind = BodyKind::fixed;

@@ -73,7 +73,8 @@ struct RunState {
 };
 
 /// Seeds from the first one on, which are the same in every run. `progress` is told after each scene; false ends the
-/// run. Summaries stand in the order of families, of each the library's first. Errors: unknown_name of a family or peer.
+/// run. Summaries stand in the order of families, of each the library's first. Errors: unknown_name of a family or
+/// peer.
 Result<std::vector<Summary>> run(const RunOptions& options, const std::function<bool(const RunState&)>& progress);
 
 /// "float" or "double".

@@ -1,5 +1,5 @@
-// A wild scene: random, and legal. It is a list of calls of the public API, so that it can be played on any backend, built in
-// another engine, made smaller while it still breaks, and printed as a program.
+// A wild scene: random, and legal. It is a list of calls of the public API, so that it can be played on any backend,
+// built in another engine, made smaller while it still breaks, and printed as a program.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -16,8 +16,8 @@
 
 namespace pcphys::wild {
 
-/// Bodies, joints, springs and forces have the number that the call which makes them gives them. Numbers are never used twice, and
-/// stay when other calls are taken out.
+/// Bodies, joints, springs and forces have the number that the call which makes them gives them. Numbers are never used
+/// twice, and stay when other calls are taken out.
 inline constexpr int ground = -1;
 
 struct MakeBody {
@@ -111,9 +111,9 @@ struct Steps {
   double dt;
 };
 
-using Call = std::variant<MakeBody, MakeJoint, MakeSpring, MakeRagdoll, Destroy, SetPose, SetVelocity, SetMass, SetMaterial,
-                          SetDrag, SetFilter, SetCollide, SetMotor, SetJointSpring, SetSpring, SetGravity, AddForce, SetCanSleep,
-                          Wake, Configure, Save, Restore, Steps>;
+using Call = std::variant<MakeBody, MakeJoint, MakeSpring, MakeRagdoll, Destroy, SetPose, SetVelocity, SetMass,
+                          SetMaterial, SetDrag, SetFilter, SetCollide, SetMotor, SetJointSpring, SetSpring, SetGravity,
+                          AddForce, SetCanSleep, Wake, Configure, Save, Restore, Steps>;
 
 /// What a scene is judged by, besides what holds in all of them.
 struct Rules {

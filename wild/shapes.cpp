@@ -7,7 +7,8 @@ namespace pcphys::wild {
 namespace {
 
 constexpr double thinnest = 0.05;  // of the outer radius
-constexpr ShapeKind kinds[] = {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box, ShapeKind::cylinder, ShapeKind::hull};
+constexpr ShapeKind kinds[] = {ShapeKind::sphere, ShapeKind::capsule, ShapeKind::box, ShapeKind::cylinder,
+                               ShapeKind::hull};
 
 /// Three half extents with a space diagonal of `radius`, of any proportions.
 Vec3 random_extents(Dice& dice, double radius) {
@@ -65,7 +66,8 @@ double extent_along(const ShapeDef& shape, Quat orientation, Vec3 direction) {
   const Vec3 d = rotate(conjugate(shape.local.orientation), rotate(conjugate(orientation), direction));
   switch (shape.kind) {
     case ShapeKind::capsule: return shape.size.x + std::fabs(d.y) * shape.size.y;
-    case ShapeKind::box: return std::fabs(d.x) * shape.size.x + std::fabs(d.y) * shape.size.y + std::fabs(d.z) * shape.size.z;
+    case ShapeKind::box:
+      return std::fabs(d.x) * shape.size.x + std::fabs(d.y) * shape.size.y + std::fabs(d.z) * shape.size.z;
     case ShapeKind::cylinder: return std::hypot(d.x, d.z) * shape.size.x + std::fabs(d.y) * shape.size.y;
     case ShapeKind::hull: {
       double most = 0;

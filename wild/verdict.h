@@ -64,12 +64,13 @@ struct Verdict {
 /// Plays the scene on the library and judges it.
 Verdict judge(const Scene& scene, const PlayOptions& options);
 
-/// Plays it again in each other way that must give the same bits: in 1, 4 and 8 lanes, with two threads, with unrelated islands, with
-/// snapshots restored, and, with `gl`, as OpenGL compute; how many differ goes into Measure::bits of `verdict`.
+/// Plays it again in each other way that must give the same bits: in 1, 4 and 8 lanes, with two threads, with unrelated
+/// islands, with snapshots restored, and, with `gl`, as OpenGL compute; how many differ goes into Measure::bits of
+/// `verdict`.
 void judge_bits(const Scene& scene, const PlayOptions& options, bool gl, Verdict& verdict);
 
-/// The same scene and the same judge in another engine (peers::variants). Errors: unknown_name; unavailable where the engine was not
-/// found, or cannot hold the scene.
+/// The same scene and the same judge in another engine (peers::variants). Errors: unknown_name; unavailable where the
+/// engine was not found, or cannot hold the scene.
 Result<Verdict> judge_peer(const Scene& scene, std::string_view peer);
 
 }  // namespace pcphys::wild

@@ -13,7 +13,8 @@ struct TracedContact {
   std::uint32_t contact = 0;          // row of the table of contacts
   std::array<double, 4> impulse{};   // of the rows, along the normal, by point [N s]
   std::array<double, 2> friction{};  // of the rows, along both tangents [N s]
-  std::array<double, 4> struck{};    // by impacts since the step began, along the normal, by point; below 0: none was [N s]
+  /// By impacts since the step began, along the normal, by point; below 0: none was [N s].
+  std::array<double, 4> struck{};
 };
 
 class ContactTrace {

@@ -20,7 +20,8 @@ double field_of(const void* rows, std::size_t reals, std::uint32_t width, std::u
 }  // namespace
 
 bool ends_substep(const PlanEntry& before, const PlanEntry& next) {
-  if (before.kind != PlanEntry::Kind::kernel || next.kind != PlanEntry::Kind::kernel || before.own || next.own) return false;
+  const auto is_kernel = [](const PlanEntry& e) { return e.kind == PlanEntry::Kind::kernel && !e.own; };
+  if (!is_kernel(before) || !is_kernel(next)) return false;
   if (stores(before.kernel)) return false;
   return stores(next.kernel) || before.octave != next.octave || before.substep != next.substep;
 }

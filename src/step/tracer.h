@@ -23,8 +23,8 @@ class Tracer {
   ContactTrace* told = nullptr;
 
   /// Of islands of one level (`octave`, a plan entry's); `h`: the length of the sub-step [s].
-  void substep(const WorldState& state, const Schedule& schedule, unsigned octave, const Backend& backend, const TracedRows& rows,
-               double h);
+  void substep(const WorldState& state, const Schedule& schedule, unsigned octave, const Backend& backend,
+               const TracedRows& rows, double h);
 
  private:
   template <class Scalar>

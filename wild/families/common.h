@@ -186,8 +186,8 @@ struct Bridge {
   }
 };
 
-/// Plays `count` steps, while a kinematic body is given another velocity every now and then. Answers how far it may have
-/// gone.
+/// Plays `count` steps, while a kinematic body is given another velocity every now and then. Answers how far it may
+/// have gone.
 inline double lead(Builder& b, int hand, int count, double dt, double speed, double spin) {
   double way = 0;
   for (int left = count; left > 0;) {

@@ -24,7 +24,8 @@ void draw_encounter(Builder& b) {
   const Vec3 towards = dice.direction();
   // It passes the other's centre at this distance: half of the draws meet, and many graze.
   const double radii = size + other_size, miss = radii * std::sqrt(dice.between(0, 1.1));
-  const double dt = random_dt(dice), gap = dice.chance(0.5) ? dice.between(0, speed * dt) : dice.between(0, 0.5 * radii);
+  const double dt = random_dt(dice),
+               gap = dice.chance(0.5) ? dice.between(0, speed * dt) : dice.between(0, 0.5 * radii);
   flier.pose.position = towards * -(radii + gap) + square_to(dice, towards) * miss;
   flier.velocity = towards * speed;
   flier.angular_velocity = random_spin(dice, speed, size);

@@ -10,7 +10,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// A row or a square of equal tiles with their tops at y = 0, beginning at x = -1 m: bodies of their own, or one compound.
+/// A row or a square of equal tiles with their tops at y = 0, beginning at x = -1 m: bodies of their own, or one
+/// compound.
 struct Tiles {
   double length, width;  // of the whole [m]
   double tile;           // of one [m]
@@ -149,7 +150,8 @@ void draw_stairs(Builder& b) {
   const double dt = set_pace(b), deep = dice.between(0.2, 0.5), high = dice.between(0.1, 0.3);
   const int count = 6 + dice.one_of(14);
   const Material material = random_material(dice);
-  for (int i = 0; i < count; i++) b.add(fixed_box({(i + 0.5) * deep, -0.5 - i * high, 0}, {0.5 * deep, 0.5, 2}, material));
+  for (int i = 0; i < count; i++)
+    b.add(fixed_box({(i + 0.5) * deep, -0.5 - i * high, 0}, {0.5 * deep, 0.5, 2}, material));
   b.add(fixed_box({-3, -0.5, 0}, {3, 0.5, 2}, material));
   b.add(fixed_box({count * deep + 10, -0.5 - count * high, 0}, {10, 0.5, 2}, material));
   throw_bodies(b, 0, count * deep, dt);

@@ -24,7 +24,8 @@ void draw_passing(Builder& b) {
   const double clearance = dice.by_ratio(1e-4, 0.1);
   // A body that spins is as large in all directions as its outer sphere.
   const bool spins = dice.chance(0.4);
-  const double flier_extent = spins ? outer_radius(flier.shapes[0]) : extent_along(flier.shapes[0], flier.pose.orientation, -apart);
+  const double flier_extent =
+      spins ? outer_radius(flier.shapes[0]) : extent_along(flier.shapes[0], flier.pose.orientation, -apart);
   const double height = extent_along(obstacle.shapes[0], obstacle.pose.orientation, apart) + clearance + flier_extent;
   const double speed = dice.by_ratio(0.1, 300), reach = size + other_size, dt = random_dt(dice);
   const double before = dice.between(0.2, 1) * std::max(reach, 2 * speed * dt);

@@ -8,14 +8,15 @@ namespace pcphys::wild {
 namespace {
 
 struct Mix {
-  double smallest, largest;  // radii [m]
+  double smallest, largest;   // radii [m]
   double lightest, heaviest;  // densities [kg/m^3]
   Material material;
 };
 
 Mix random_mix(Dice& dice) {
   const double largest = dice.by_ratio(0.1, 1), lightest = dice.by_ratio(50, 1000);
-  const double sizes = dice.chance(0.3) ? 1 : dice.by_ratio(1, 50), densities = dice.chance(0.5) ? 1 : dice.by_ratio(1, 100);
+  const double sizes = dice.chance(0.3) ? 1 : dice.by_ratio(1, 50),
+               densities = dice.chance(0.5) ? 1 : dice.by_ratio(1, 100);
   return {largest / sizes, largest, lightest, lightest * densities, random_material(dice)};
 }
 

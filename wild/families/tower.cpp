@@ -1,4 +1,5 @@
-// What was built to stand: stacks, walls, slender boxes, loads on small bodies; under steps that change, nudges and couples.
+// What was built to stand: stacks, walls, slender boxes, loads on small bodies; under steps that change, nudges and
+// couples.
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +29,8 @@ Material rough(Dice& dice) {
 void step_on(Builder& b, int count, double dt) {
   const int how = b.dice.one_of(3);
   if (how == 0) return b.steps(count, dt);
-  for (int i = 0; i < count; i++) b.steps(1, how == 1 ? (i % 2 ? 1.0 / 30 : 1.0 / 60) : b.dice.between(1.0 / 144, 1.0 / 30));
+  for (int i = 0; i < count; i++)
+    b.steps(1, how == 1 ? (i % 2 ? 1.0 / 30 : 1.0 / 60) : b.dice.between(1.0 / 144, 1.0 / 30));
 }
 
 /// Boxes of one size on each other, a little off the middle.
@@ -57,7 +59,8 @@ void draw_pyramid(Builder& b) {
   add_floor(b, material);
   const Vec3 half{0.5 * size, 0.5 * size, 0.5 * size};
   for (int i = 0; i < rows; i++)
-    for (int j = 0; j < rows - i; j++) b.add(box_at({(j - 0.5 * (rows - i - 1)) * gap * size, (i + 0.5) * size, 0}, half, 500, material));
+    for (int j = 0; j < rows - i; j++)
+      b.add(box_at({(j - 0.5 * (rows - i - 1)) * gap * size, (i + 0.5) * size, 0}, half, 500, material));
   b.scene.rules.stands_within = topples * size;
   b.scene.rules.rests = true;
   step_on(b, std::clamp(12000 / (rows * rows), 40, 200), dt);
@@ -122,7 +125,8 @@ void draw_seesaw(Builder& b) {
   b.add(box_at({0, radius + thick, 0}, {half, thick, 0.3}, 500, material));
   const double load = dice.between(0.1, 0.2), weight = dice.between(0.15, 0.4);
   b.add(box_at({-0.85 * half, radius + 2 * thick + load, 0}, {load, load, load}, 300, material));
-  b.add(box_at({0.85 * half, radius + 2 * thick + weight + dice.between(0.5, 3), 0}, {weight, weight, weight}, 1500, material));
+  b.add(box_at({0.85 * half, radius + 2 * thick + weight + dice.between(0.5, 3), 0}, {weight, weight, weight}, 1500,
+               material));
   bound(b, {}, half, 15, 2);
   b.steps(120, dt);
 }
@@ -130,7 +134,8 @@ void draw_seesaw(Builder& b) {
 }  // namespace
 
 void draw_tower(Builder& b) {
-  constexpr void (*kinds[])(Builder&) = {draw_stack, draw_pyramid, draw_slender, draw_loaded, draw_dominoes, draw_seesaw};
+  constexpr void (*kinds[])(Builder&) = {draw_stack,  draw_pyramid,  draw_slender,
+                                         draw_loaded, draw_dominoes, draw_seesaw};
   kinds[b.dice.one_of(6)](b);
 }
 
