@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <cstdlib>
 
 #include "pcphys/constants.h"
 
@@ -70,6 +69,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.net_rounds = constants::net_rounds;
   biased.net_searches = constants::net_searches;
   biased.net_slack = Scalar(constants::net_roundings * epsilon);
+  biased.net_bounds = constants::net_bounds;
+  biased.net_made = Scalar(constants::net_made);
   biased.net_accuracy = Scalar(constants::net_roundings * epsilon * constants::net_roundings * epsilon);
   biased.cross_share = Scalar(constants::cross_share);
   biased.row_mass_most = Scalar(constants::row_mass_most);
