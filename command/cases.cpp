@@ -109,21 +109,9 @@ Result<cases::Selection> resolve(const CaseOptions& options, const std::string& 
   return selection;
 }
 
-/// With `all`, those that were not found are named and left out; one that is asked for by name must be there.
 Result<std::vector<std::string>> peers_to_run(const CaseOptions& options) {
   if (auto status = check_budget(options.budget); !status) return status.error();
-  auto names = peer_names(options.peers);
-  if (!names) return names.error();
-  for (const peers::Variant& variant : peers::variants()) {
-    const auto name = std::find(names->begin(), names->end(), variant.name);
-    if (variant.found || name == names->end()) continue;
-    const std::string sentence = std::string(variant.engine) + " was not found when pcphys was built; install " +
-                                 std::string(variant.package) + " and configure again.";
-    if (options.peers != "all") return Error{ErrorCode::unavailable, sentence};
-    std::cerr << "pcphys: without " << variant.name << ": " << sentence << "\n";
-    names->erase(name);
-  }
-  return names;
+  return found_peers(options.peers);
 }
 
 int list_cases(const std::string& groups) {

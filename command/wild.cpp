@@ -58,20 +58,10 @@ Status set_play(const WildOptions& options, wild::RunOptions& run) {
 /// One scene of each family, of which every measure is told.
 bool single(const WildOptions& options) { return options.seed && !options.count && !options.budget; }
 
-Status check_families(const WildOptions& options) {
-  std::string known;
-  for (const wild::Family& family : wild::families()) known += (known.empty() ? "" : ", ") + std::string(family.name);
-  for (const std::string& name : options.families) {
-    const auto is_it = [&](const wild::Family& family) { return family.name == name; };
-    if (std::none_of(wild::families().begin(), wild::families().end(), is_it))
-      return Error{ErrorCode::unknown_name, "There is no family '" + name + "'; choose of " + known + "."};
-  }
-  return {};
-}
-
 Result<wild::RunOptions> resolve(const WildOptions& options) {
   wild::RunOptions run;
-  if (auto status = check_families(options); !status) return status.error();
+  for (const std::string& name : options.families)
+    if (const auto found = wild::find_family(name); !found) return found.error();
   if (auto status = check_numbers(options); !status) return status.error();
   if (auto status = set_play(options, run); !status) return status.error();
   auto peers = found_peers(options.peers);

@@ -159,17 +159,27 @@ Drift drift(const Scene& scene, std::span<const Pose> poses) {
   return result;
 }
 
+Vec3 spin_momentum(const MassProperties& mass, Quat orientation, Vec3 spin) {
+  const Vec3 w = rotate(conjugate(orientation), spin);
+  return rotate(orientation, {mass.moments.x * w.x, mass.moments.y * w.y, mass.moments.z * w.z});
+}
+
+double kinetic_energy(const MassProperties& mass, Quat orientation, Vec3 velocity, Vec3 spin) {
+  const Vec3 w = rotate(conjugate(orientation), spin);
+  const Vec3 inner{mass.moments.x * w.x, mass.moments.y * w.y, mass.moments.z * w.z};
+  return 0.5 * (dot(mass.mass * velocity, velocity) + dot(inner, w));
+}
+
 namespace {
 
 /// Adds what one body has of the sums.
 void add_motion(Metrics& sums, const MassProperties& mass, const Pose& pose, Vec3 velocity, Vec3 spin, Vec3 gravity) {
-  const Vec3 w = rotate(conjugate(pose.orientation), spin);
-  const Vec3 inner{mass.moments.x * w.x, mass.moments.y * w.y, mass.moments.z * w.z};
   const Vec3 momentum = mass.mass * velocity;
-  sums.kinetic += 0.5 * (dot(momentum, velocity) + dot(inner, w));
+  sums.kinetic += kinetic_energy(mass, pose.orientation, velocity, spin);
   sums.potential -= mass.mass * dot(gravity, pose.position);
   sums.momentum = sums.momentum + momentum;
-  sums.angular_momentum = sums.angular_momentum + cross(pose.position, momentum) + rotate(pose.orientation, inner);
+  sums.angular_momentum =
+      sums.angular_momentum + cross(pose.position, momentum) + spin_momentum(mass, pose.orientation, spin);
 }
 
 }  // namespace

@@ -72,6 +72,10 @@ Escapes escapes(const Scene& scene, std::span<const Pose> poses, const RimWatch&
 long nonfinite(const State& state);
 Drift drift(const Scene& scene, std::span<const Pose> poses);
 
+/// Of a rigid body, velocity of its centre, spin in world axes [J]; and its angular momentum about the centre [kg m^2/s].
+double kinetic_energy(const MassProperties& mass, Quat orientation, Vec3 velocity, Vec3 spin);
+Vec3 spin_momentum(const MassProperties& mass, Quat orientation, Vec3 spin);
+
 struct Metrics {
   Penetration penetration;
   Separation separation;

@@ -10,13 +10,7 @@ using namespace pcphys::test;
 
 namespace {
 
-struct Case {
-  const char* arguments;
-  int code;
-  const char* says;  // in the message
-};
-
-const Case cases[] = {
+const Refused cases[] = {
     {"", 2, "A subcommand is required"},
     {"fly", 2, "fly"},
     {"run", 2, "SCENE"},
@@ -93,17 +87,7 @@ const Case cases[] = {
 }  // namespace
 
 TEST_CASE("errors: one line, the right code, nothing on standard output") {
-  for (const Case& c : cases) {
-    CAPTURE(std::string(c.arguments));
-    const Ran ran = command(c.arguments);
-    CAPTURE(ran.error);
-    CHECK(ran.code == c.code);
-    CHECK(ran.out.empty());
-    CHECK(ran.error.starts_with("pcphys: "));
-    CHECK(ran.error.find(c.says) != std::string::npos);
-    CHECK(std::count(ran.error.begin(), ran.error.end(), '\n') == 1);
-    CHECK(ran.error.ends_with("\n"));
-  }
+  check_refused(cases);
 }
 
 TEST_CASE("errors: an unwritable file is noticed before the run, and a failed run leaves no file behind") {

@@ -3,11 +3,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <doctest/doctest.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 namespace pcphys::test {
@@ -48,6 +52,27 @@ inline Ran command(const std::string& arguments) {
       std::string(PCPHYS_COMMAND) + " " + arguments + " >" + folder.file("out") + " 2>" + folder.file("error") + " </dev/null";
   const int status = std::system(line.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder.file("out")), read_file(folder.file("error"))};
+}
+
+struct Refused {
+  const char* arguments;
+  int code;
+  const char* says;  // in the message
+};
+
+/// One line on standard error that says so, the right code, and nothing on standard output.
+inline void check_refused(std::span<const Refused> cases) {
+  for (const Refused& c : cases) {
+    CAPTURE(std::string(c.arguments));
+    const Ran ran = command(c.arguments);
+    CAPTURE(ran.error);
+    CHECK(ran.code == c.code);
+    CHECK(ran.out.empty());
+    CHECK(ran.error.starts_with("pcphys: "));
+    CHECK(ran.error.find(c.says) != std::string::npos);
+    CHECK(std::count(ran.error.begin(), ran.error.end(), '\n') == 1);
+    CHECK(ran.error.ends_with("\n"));
+  }
 }
 
 /// Whether `--backend gl` can work here.

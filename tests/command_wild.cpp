@@ -11,13 +11,7 @@ using namespace pcphys::test;
 
 namespace {
 
-struct Case {
-  const char* arguments;
-  int code;
-  const char* says;  // in the message
-};
-
-const Case cases[] = {
+const Refused cases[] = {
     {"wild meadow", 2, "no family 'meadow'; choose of encounter, "},
     {"wild encounter --seed many", 2, "many"},
     {"wild encounter --seed 1.5", 2, "1.5"},
@@ -52,16 +46,7 @@ const Json& measure(const Json& summary, const std::string& name) {
 }  // namespace
 
 TEST_CASE("wild: errors are one line with the right code, and nothing on standard output") {
-  for (const Case& c : cases) {
-    CAPTURE(std::string(c.arguments));
-    const Ran ran = command(c.arguments);
-    CAPTURE(ran.error);
-    CHECK(ran.code == c.code);
-    CHECK(ran.out.empty());
-    CHECK(ran.error.starts_with("pcphys: "));
-    CHECK(ran.error.find(c.says) != std::string::npos);
-    CHECK(std::count(ran.error.begin(), ran.error.end(), '\n') == 1);
-  }
+  check_refused(cases);
 }
 
 TEST_CASE("wild: every key of the contract") {

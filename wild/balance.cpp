@@ -10,9 +10,6 @@ bool is_driven(const SeenBody& b) {
   return b.there && b.kind == BodyKind::kinematic && (b.velocity != Vec3{} || b.angular_velocity != Vec3{});
 }
 
-/// A length by how its mass is spread [m].
-double size_of(const MassProperties& m) { return std::sqrt((m.moments.x + m.moments.y + m.moments.z) / m.mass); }
-
 /// How fast a point of a kinematic body goes; 0 for others.
 double drive_speed(const Observation& seen, int body, Vec3 point) {
   const SeenBody& b = seen.body(body);
@@ -67,10 +64,12 @@ Sums changes(const Observation& before, const Observation& after) {
 
 void Balance::see_scale(const Observation& seen) {
   motion_ = std::max(motion_, kinetic_energy(seen) + spring_energy(seen));
-  double lift = 0;
-  for (const SeenBody& b : seen.bodies)
-    if (b.there && b.kind == BodyKind::dynamic) lift += b.mass.mass * length(seen.gravity) * size_of(b.mass);
-  lift_ = std::max(lift_, lift);
+  if (rests_) {
+    double lift = 0;
+    for (const SeenBody& b : seen.bodies)
+      if (b.there && b.kind == BodyKind::dynamic) lift += b.mass.mass * length(seen.gravity) * spread(b.mass);
+    lift_ = std::max(lift_, lift);
+  }
   fall_ = std::max(fall_, std::fabs(potential_energy(seen) - start_potential_));
 }
 

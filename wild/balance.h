@@ -6,6 +6,9 @@ namespace pcphys::wild {
 
 class Balance {
  public:
+  /// `rests`: of scenes in which bodies may lie still, whose own scale is then nothing. What lifts each of them by its
+  /// own size belongs to the scale there.
+  explicit Balance(bool rests = true) : rests_(rests) {}
   void begin(const Observation& seen);
   /// The host has changed something between two steps: that is no rise, but counts as put in.
   void changed(const Observation& before, const Observation& after);
@@ -16,10 +19,11 @@ class Balance {
 
   /// The largest rise beyond the lowest so far and what drives put in, as a share of the scale that there was before
   /// it: the most kinetic and spring energy, the largest change of potential energy, what drives and the host put in,
-  /// and what lifts each body by its own size.
+  /// and what `rests` adds.
   double rise() const { return rise_; }
 
  private:
+  bool rests_;
   void see_scale(const Observation& seen);
 
   double start_potential_ = 0, offset_ = 0, put_in_ = 0, allowed_ = 0;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <string>
 
 #include "wild/scene.h"
@@ -21,16 +20,21 @@ constexpr Family all[] = {
 
 std::span<const Family> families() { return all; }
 
-Result<Scene> draw(std::string_view family, std::uint64_t seed) {
-  const auto found = std::find_if(std::begin(all), std::end(all), [&](const Family& f) { return f.name == family; });
-  if (found == std::end(all)) {
-    std::string names;
-    for (const Family& f : all) names += (names.empty() ? "" : ", ") + std::string(f.name);
-    return Error{ErrorCode::unknown_name,
-                 "There is no family '" + std::string(family) + "'; choose one of " + names + "."};
+Result<const Family*> find_family(std::string_view name) {
+  std::string names;
+  for (const Family& f : all) {
+    if (f.name == name) return &f;
+    names += (names.empty() ? "" : ", ") + std::string(f.name);
   }
+  return Error{ErrorCode::unknown_name,
+               "There is no family '" + std::string(name) + "'; choose of " + names + "."};
+}
+
+Result<Scene> draw(std::string_view family, std::uint64_t seed) {
+  const auto found = find_family(family);
+  if (!found) return found.error();
   Builder b(family, seed);
-  found->draw(b);
+  (*found)->draw(b);
   return std::move(b.scene);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace pcphys::wild {
@@ -60,20 +61,21 @@ bool Verdict::broken() const {
   return !failure.empty() || std::any_of(of.begin(), of.end(), [](const Finding& f) { return f.broken(); });
 }
 
+double Finding::excess() const {
+  if (std::isnan(worst)) return std::numeric_limits<double>::infinity();
+  if (*bound > 0) return worst / *bound;
+  return worst > 0 ? 1 + worst : 0;
+}
+
 Measure Verdict::worst() const {
   Measure worst = Measure::count;
-  double furthest = 0;
-  for (std::size_t i = 0; i < measure_count; i++) {
-    if (!of[i].broken()) continue;
-    const double beyond = *of[i].bound > 0 ? of[i].worst / *of[i].bound : 1e300;
-    if (beyond < furthest) continue;
-    furthest = beyond;
-    worst = Measure(i);
-  }
+  for (std::size_t i = 0; i < measure_count; i++)
+    if (of[i].broken() && (worst == Measure::count || of[i].excess() > (*this)[worst].excess())) worst = Measure(i);
   return worst;
 }
 
-Judge::Judge(const Scene& scene, Precision precision) : scene_(scene), f64_(precision == Precision::f64) {}
+Judge::Judge(const Scene& scene, Precision precision)
+    : scene_(scene), f64_(precision == Precision::f64), balance_(!scene.rules.single_encounter) {}
 
 double Judge::energy_bound() const {
   if (!scene_.rules.single_encounter) return energy_share;
@@ -133,7 +135,7 @@ void Judge::judge_untouched(const Observation& seen) {
     const double speed = std::max({length(free), fastest, 1e-30});
     const Vec3 turned = angular_momentum_about_centre(now) - angular_momentum_about_centre(then);
     const MassProperties& m = now.mass;
-    const double lever = std::sqrt((m.moments.x + m.moments.y + m.moments.z) / m.mass);
+    const double lever = spread(m);
     const double spun = length(turned) / (length(angular_momentum_about_centre(then)) + m.mass * speed * lever);
     raise(Measure::free_speed, std::max(length(now.velocity - free) / speed, spun), bound);
   }

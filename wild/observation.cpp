@@ -14,8 +14,6 @@ template <class T> T& grown(std::vector<T>& list, int number) {
   return list[std::size_t(number)];
 }
 
-Vec3 scaled(Vec3 a, Vec3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-
 /// The shortest rotation vector of a unit quaternion.
 Vec3 rotation_vector(Quat q) {
   if (q.w < 0) q = {-q.x, -q.y, -q.z, -q.w};
@@ -48,14 +46,14 @@ const SeenBody& Observation::body(int number) const {
 }
 
 double kinetic_energy(const SeenBody& b) {
-  const Vec3 w = rotate(conjugate(b.pose.orientation), b.angular_velocity);
-  return 0.5 * (b.mass.mass * dot(b.velocity, b.velocity) + dot(scaled(b.mass.moments, w), w));
+  return scenes::kinetic_energy(b.mass, b.pose.orientation, b.velocity, b.angular_velocity);
 }
 
 Vec3 angular_momentum_about_centre(const SeenBody& b) {
-  const Vec3 w = rotate(conjugate(b.pose.orientation), b.angular_velocity);
-  return rotate(b.pose.orientation, scaled(b.mass.moments, w));
+  return scenes::spin_momentum(b.mass, b.pose.orientation, b.angular_velocity);
 }
+
+double spread(const MassProperties& m) { return std::sqrt((m.moments.x + m.moments.y + m.moments.z) / m.mass); }
 
 double kinetic_energy(const Observation& seen) {
   double sum = 0;

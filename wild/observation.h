@@ -45,6 +45,8 @@ struct Observation {
 
 double kinetic_energy(const SeenBody& body);
 Vec3 angular_momentum_about_centre(const SeenBody& body);
+/// A length by how a body's mass is spread [m].
+double spread(const MassProperties& mass);
 /// [J]
 double kinetic_energy(const Observation& seen);
 double potential_energy(const Observation& seen);

@@ -13,13 +13,6 @@ namespace {
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// How far beyond its bound; below 1 it holds. Where nothing at all is allowed, one body lost is as bad as twice the
-/// bound.
-double excess(const Finding& found) {
-  if (std::isnan(found.worst)) return std::numeric_limits<double>::infinity();
-  return *found.bound > 0 ? found.worst / *found.bound : found.worst > 0 ? 1 + found.worst : 0;
-}
-
 /// A family in one engine, while scenes are added.
 class Sum {
  public:
@@ -84,7 +77,7 @@ class Sum {
     if (found.broken()) spread.broken++;
     spread.least_bound = std::min(spread.least_bound.value_or(*found.bound), *found.bound);
     spread.largest_bound = std::max(spread.largest_bound.value_or(*found.bound), *found.bound);
-    const double beyond = excess(found);
+    const double beyond = found.excess();
     if (!summary_.worst || beyond > most_excess_) {
       most_excess_ = beyond;
       summary_.worst = Broken{seed, found.step, measure, found.worst, *found.bound, {}};
@@ -165,18 +158,14 @@ class FamilyRun {
 };
 
 Result<std::vector<std::string>> families_of(const RunOptions& options) {
-  std::vector<std::string> all;
-  std::string known;
-  for (const Family& family : families()) {
-    all.emplace_back(family.name);
-    known += (known.empty() ? "" : ", ") + all.back();
-  }
   for (const std::string& wanted : options.families)
-    if (std::find(all.begin(), all.end(), wanted) == all.end())
-      return Error{ErrorCode::unknown_name, "There is no family '" + wanted + "'; choose of " + known + "."};
+    if (const auto found = find_family(wanted); !found) return found.error();
   for (const std::string& peer : options.peers)
     if (!find_peer(peer)) return Error{ErrorCode::unknown_name, "There is no peer '" + peer + "'."};
-  return options.families.empty() ? all : options.families;
+  if (!options.families.empty()) return options.families;
+  std::vector<std::string> all;
+  for (const Family& family : families()) all.emplace_back(family.name);
+  return all;
 }
 
 }  // namespace

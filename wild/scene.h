@@ -199,6 +199,9 @@ struct Family {
 /// All of them, in the order in which tables show them.
 std::span<const Family> families();
 
+/// Errors: unknown_name, with all names that there are.
+Result<const Family*> find_family(std::string_view name);
+
 /// A function of family and seed alone. Errors: unknown_name.
 Result<Scene> draw(std::string_view family, std::uint64_t seed);
 

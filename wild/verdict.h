@@ -45,6 +45,9 @@ struct Finding {
   std::uint64_t step = 0;  // after which it was worst, from 1
 
   bool broken() const { return bound && !(worst <= *bound); }
+  /// As a multiple of its bound, where there is one; up to 1 it holds. Where nothing at all is allowed one is as bad as
+  /// twice a bound.
+  double excess() const;
 };
 
 struct Verdict {

@@ -261,7 +261,7 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
     const bool kernel = entry.kind == PlanEntry::Kind::kernel;
     const bool clocked = timings && before && (timer_of(*before) != timer_of(entry) || before->place != entry.place);
     if (clocked) calls_.back().last = true;
-    const bool traced = tracer_.told && before && ends_substep(*before, entry);
+    const bool traced = traces() && before && ends_substep(*before, entry);
     if (traced) calls_.back().ends = true;
     const bool joins = kernel && !traced && before && before->kind == PlanEntry::Kind::kernel && before->place == entry.place &&
                        before->again == 0 && entry.again == 0 && !clocked && !plan.flight && !(gl_ && entry.place == Place::cpu);
@@ -334,17 +334,6 @@ Status Runner::run_watched(Place place, std::span<const KernelRun> runs, WorldSt
   return {};
 }
 
-void Runner::trace_substep(const PlanEntry& entry, const WorldState& state, const Schedule& schedule, const void* infos) {
-  TracedRows rows;
-  rows.width = lanes(Place::cpu, Domain::contact, schedule);
-  rows.f64 = state.tables.precision() == Precision::f64;
-  rows.friction = std::ranges::none_of(bound_.plan->bindings, [](const auto& b) { return b.buffer == Buffer::frictionless_rows; });
-  const std::size_t index = info_index(entry);
-  const double h = rows.f64 ? static_cast<const InfoOf<double>*>(infos)[index].h
-                            : double(static_cast<const InfoOf<float>*>(infos)[index].h);
-  tracer_.substep(state, schedule, entry.octave, *at(Place::cpu).backend, rows, h);
-}
-
 Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report) {
   const PlanEntry& entry = *call.entry;
   if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state);
@@ -381,12 +370,12 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
   if (Status ok = keep_left(state); !ok) return ok;
   if (!gl_)  // else kernel by kernel, as devices follow them
     for (const Buffer buffer : bound_.plan->overwritten) state.tables.touch(buffer);
-  if (tracer_.told) tracer_.told->begin(state);
+  if (traces()) tracer_.told->begin(state);
   Clock::time_point began;
   if (bound_.timings) began = Clock::now();
   for (const Call& c : calls_) {
     if (Status ok = call(c, state, schedule, report); !ok) return ok;
-    if (c.ends) trace_substep(*c.entry, state, schedule, infos);
+    if (c.ends) tracer_.substep({state, schedule, *bound_.plan, *c.entry, *at(Place::cpu).backend}, infos, info_index(*c.entry));
     if (!c.last) continue;
     if (gl_)
       if (Status done = at(Place::gl).backend->finish(); !done) return done;

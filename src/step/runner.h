@@ -60,7 +60,7 @@ class Runner final : Keeper {
   std::string device(Place place) const;
   /// After `prepare`.
   const Workers& workers() const { return *workers_; }
-  /// Told what contacts do, from the next step on; null: nobody is. It outlives the runner, or is taken back.
+  /// Told what contacts do, from the next step on, where no stage is on a device; null: nobody is. It outlives the runner, or is taken back.
   void trace(ContactTrace* trace) {
     tracer_.told = trace;
     bound_ = {};
@@ -118,10 +118,10 @@ class Runner final : Keeper {
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
   Status kernels(const Call& call, WorldState& state);
-  void trace_substep(const PlanEntry& entry, const WorldState& state, const Schedule& schedule, const void* infos);
   Status keep_left(WorldState& state);
   Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
   bool keeps(Buffer buffer) const;
+  bool traces() const { return tracer_.told && !gl_; }
   Status transfer(const PlanEntry& entry, WorldState& state, StepReport& report);
 
   Bound bound_;

@@ -37,6 +37,8 @@ class ColouredSlots {
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
   void pack(std::uint32_t width);
 
+  /// Slots side by side, as they were laid out last.
+  std::uint32_t width() const { return width_; }
   /// How many the largest colour has.
   std::uint32_t side_by_side() const { return side_by_side_; }
   std::uint32_t colours() const { return colouring_.colours(); }
@@ -59,6 +61,7 @@ class ColouredSlots {
   std::size_t reach_slots() const { return std::size_t{reach_blocks_} * width_; }
   std::vector<std::uint32_t>& ends() { return slots_.ends; }
   std::vector<std::uint32_t>& order() { return slots_.order; }
+  const std::vector<std::uint32_t>& order() const { return slots_.order; }
   /// Counts the changes of `ends` and `order`.
   std::uint64_t version() const { return version_; }
 

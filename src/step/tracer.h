@@ -1,7 +1,6 @@
 // Reads from the CPU's scratch what contacts did in a sub-step, while somebody looks.
 #pragma once
-#include <array>
-#include <cstdint>
+#include <cstddef>
 #include <vector>
 
 #include "plan/plan.h"
@@ -11,24 +10,24 @@
 
 namespace pcphys {
 
-/// Where the rows of a sub-step's contacts stand.
-struct TracedRows {
-  std::uint32_t width = 1;  // slots side by side
-  bool friction = true;     // rows are those with friction
-  bool f64 = false;
+/// What has just run: the last entry of a sub-step of one level of islands.
+struct TracedRun {
+  const WorldState& state;
+  const Schedule& schedule;
+  const StepPlan& plan;
+  const PlanEntry& entry;
+  const Backend& backend;
 };
 
 class Tracer {
  public:
   ContactTrace* told = nullptr;
 
-  /// Of islands of one level (`octave`, a plan entry's); `h`: the length of the sub-step [s].
-  void substep(const WorldState& state, const Schedule& schedule, unsigned octave, const Backend& backend,
-               const TracedRows& rows, double h);
+  /// `infos`: all info blocks of the step, in the world's precision; `block`: that of the entry.
+  void substep(const TracedRun& run, const void* infos, std::size_t block);
 
  private:
-  template <class Scalar>
-  void collect(const Schedule& schedule, unsigned octave, const Backend& backend, const TracedRows& rows);
+  template <class Scalar> void substep_of(const TracedRun& run, const void* infos, std::size_t block);
 
   std::vector<TracedContact> contacts_;
 };
