@@ -52,9 +52,8 @@ Bytes bytes_of(const PlanEntry& entry, const World& world) {
 }
 
 Json entry_json(const PlanEntry& entry, const World& world) {
-  Json json{{"kind", entry.kind == PlanEntry::Kind::kernel   ? "kernel"
-                     : entry.kind == PlanEntry::Kind::upload ? "upload"
-                                                             : "download"},
+  constexpr const char* kinds[] = {"kernel", "upload", "download", "collide"};
+  Json json{{"kind", kinds[std::size_t(entry.kind)]},
             {"place", name(entry.place)},
             {"substep", entry.substep}};
   if (entry.kind != PlanEntry::Kind::kernel) {

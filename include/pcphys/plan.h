@@ -37,7 +37,7 @@ enum class Domain : std::uint8_t;
 struct OwnKernel;
 
 struct PlanEntry {
-  enum class Kind : std::uint8_t { kernel, upload, download };
+  enum class Kind : std::uint8_t { kernel, upload, download, collide };
   Kind kind = Kind::kernel;
   Place place = Place::cpu;
   Kernel kernel{};  // of a kernel

@@ -16,6 +16,7 @@
 #include "collision/pair_cache.h"
 #include "collision/pair_filter.h"
 #include "collision/pair_lanes.h"
+#include "collision/standing.h"
 #include "collision/twist.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
@@ -51,7 +52,10 @@ class Detector {
   /// Rows of bodies, ascending, that in the contacts to come touch nothing that stands or is driven. They must stay where they are until then.
   void let_through(std::span<const std::uint32_t> bodies) { through_ = bodies; }
   /// Narrow phase: replaces the world's contacts.
-  Status find_contacts(WorldState& state, double dt, const Options& options, Found& found);
+  Status find_contacts(WorldState& state, const Options& options, Found& found);
+  /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by more than a share of
+  /// what they were made for, and of shapes that are apart whether, when and how they meet in it. Rows of contacts, 0 among them: padding.
+  void meet(WorldState& state, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
   /// After the step: whether some body went further than it was looked for, so far that it could be past what stands.
@@ -97,11 +101,8 @@ class Detector {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
     AlignedBytes rows;                      // of shapes: narrow_bounds.inl
     std::vector<Look<Scalar>> looks;        // of shapes
-    AlignedBytes twists;                    // of bodies, for flights in double
     PairLanes<Scalar> lanes;
     AlignedBytes contacts;                // the table of the next step
-    std::vector<Flight<Scalar>> flights;  // in the order of the pairs
-    std::size_t flight = 0;               // the next of them
   };
 
   /// A pair of which a contact comes.
@@ -140,7 +141,7 @@ class Detector {
   void find_drawn(double dt);
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar>
-  Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
   /// Takes over contacts of the last step, from the first row to before the last.
   template <class Scalar>
   void keep(const WorldState& state, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found);
@@ -150,10 +151,10 @@ class Detector {
   template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
   /// The manifold of a marked pair. False where no contact comes of it.
   template <class Scalar>
-  bool touches(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
+  bool touches(const WorldState& state, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                Touch<Scalar>& touch);
-  /// Whether some point is within the margin, or would close within the step as the bodies move now.
-  template <class Scalar> bool closes(const WorldState& state, double dt, Pair shapes, const Manifold<Scalar>& manifold) const;
+  template <class Scalar>
+  Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, Touch<Scalar>& touch) const;
   /// The shapes of a pair in the order of the contact's bodies.
   Pair in_order(std::uint32_t pair) const;
   template <class Scalar> Scalar look_margin(Pair shapes) const;
@@ -165,18 +166,12 @@ class Detector {
   double margin(std::uint32_t a, std::uint32_t b) const { return std::min(margins_[a], margins_[b]); }
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
-  /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
-  template <class Scalar> void look_ahead(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  template <class Scalar>
-  void begin_strikes(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  /// Whether a contact comes of it, once all flights are known.
-  template <class Scalar>
-  bool settle(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch,
-              const Sight<Scalar>& view, Flight<Scalar>& flight);
-  template <class Scalar>
-  void fly(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch, const Sight<Scalar>& view,
-           Flight<Scalar>& flight);
   template <class Scalar> Scratch<Scalar>& scratch();
+  template <class Scalar> struct Meeting;
+  template <class Scalar>
+  void meet_all(WorldState& state, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options);
+  template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
+  template <class Scalar> void drop_inner_edges(WorldState& state, bool first, double h, const Options& options);
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   std::uint64_t joint_changes_ = 0;
@@ -199,7 +194,8 @@ class Detector {
   std::vector<std::uint32_t> bodies_;  // rows, of shapes; whole lanes
   std::uint32_t movers_ = 0;           // bodies that do not stand
   double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
-  std::vector<float> struck_;          // of bodies: when they first meet something in flight; dt: not in this step [s]
+  std::vector<Standing> standings_;                   // of contacts, by row
+  std::vector<std::uint32_t> standing_rows_, inner_;  // rows of contacts with what stands, in a sub-step; and those of inner edges
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;               // some body has

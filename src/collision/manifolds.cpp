@@ -2,48 +2,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include "collision/detector.h"
 #include "collision/flights.h"
+#include "collision/meeting.h"
 #include "collision/view.h"
 
 namespace pcphys {
 namespace {
 
-/// Whether a gap between bodies that move as they do now closes within the step. One between bodies that slide past each other by
-/// more than `extent` before it closes does not: they would meet only if their contact plane had no end.
-template <class Scalar>
-bool gaps_close(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt,
-                double fall, double extent) {
-  const float n[3] = {float(m.normal[0]), float(m.normal[1]), float(m.normal[2])};
-  for (std::uint32_t i = 0; i < m.count; i++) {
-    const double gap = double(m.points[i].separation) - margin;
-    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    const Passing<float> p = passing(a, b, n, r, apart);
-    const double closing = std::max(0.0, double(p.closing));
-    if (gap > fall + closing * dt) continue;
-    const double until = closing * dt > gap ? gap / closing : dt;
-    if (double(p.sliding) * until <= extent) return true;
-  }
-  return false;
-}
-
 /// Whether some contact is of a body that was just placed and settles still after this step has begun.
 bool some_settles(const WorldState& s, std::span<const std::array<std::uint32_t, 2>> ends) {
   return std::ranges::any_of(ends, [&](const auto& e) { return s.settles(e[0]) || s.settles(e[1]); });
-}
-
-/// The largest speed at which a gap closes [m/s].
-template <class Scalar> double fastest(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const Scalar* apart) {
-  float n[3], d[3], most = 0;
-  for (int k = 0; k < 3; k++) n[k] = float(m.normal[k]), d[k] = float(apart[k]);
-  for (std::uint32_t i = 0; i < m.count; i++) {
-    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    most = std::max(most, passing(a, b, n, r, d).closing);
-  }
-  return double(most);
 }
 
 }  // namespace
@@ -65,9 +38,6 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
   PairLanes<Scalar>& lanes = scratch.lanes;
   lanes.begin(pairs_.pairs().size(), near_.size());
   marks_.clear(pairs_.pairs().size());
-  std::size_t flight = 0;
-  scratch.flights.push_back({});  // none comes after it
-  scratch.flights.back().pair = 0xffffffffu;
   const Look<Scalar>* looks = scratch.looks.data();
   const Pair* pairs = pairs_.pairs().data();
   const bool native = options.narrow == NarrowPhase::native;
@@ -76,38 +46,16 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
     if (!looks[a].responds) std::swap(a, b);  // as in_order
     const Look<Scalar>&x = looks[a], &y = looks[b];
     const PairKind kind = pair_kind(x.kind, y.kind);
-    const bool flies = scratch.flights[flight].pair == i;
-    flight += flies;
-    if (!flies && native && kind != PairKind::other)
+    if (native && kind != PairKind::other)
       lanes.add(kind, i, a, b, std::min(x.margin, y.margin) + Scalar(x.reach + y.reach));
     else
       lanes.leave(i), marks_.set(i);
   }
-  scratch.flights.pop_back();
   lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.rows.data()), marks_);
 }
 
 template <class Scalar>
-bool Detector::closes(const WorldState& s, double dt, Pair shapes, const Manifold<Scalar>& manifold) const {
-  const double margin = this->margin(shapes.a, shapes.b);
-  for (std::uint32_t i = 0; i < manifold.count; i++)
-    if (double(manifold.points[i].separation) <= margin) return true;
-  if (manifold.count == 0) return false;
-  const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
-  Scalar d[3] = {0, 0, 0};
-  BodyReader<Scalar>(s.tables).shift(a.body, b.body, d);
-  const float apart[3] = {float(d[0]), float(d[1]), float(d[2])};
-  if (draws_ && a.responds != b.responds) {  // what stands is met by whatever is sent there
-    const double far = margin + double(drawn_[a.responds ? a.body : b.body]);
-    for (std::uint32_t i = 0; i < manifold.count; i++)
-      if (double(manifold.points[i].separation) <= far) return true;
-  }
-  return gaps_close(manifold, twists_[a.body], twists_[b.body], apart, margin, dt, length(s.gravity) * dt * dt,
-                    a.radius + b.radius);
-}
-
-template <class Scalar>
-bool Detector::touches(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
+bool Detector::touches(const WorldState& s, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                        Touch<Scalar>& touch) {
   const Pair shapes = in_order(pair);
   const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
@@ -116,19 +64,29 @@ bool Detector::touches(const WorldState& s, double dt, const Options& options, S
   touch.manifold = round_ ? scratch.lanes.manifold(pair) : nullptr;
   if (!touch.manifold) {
     const Sight<Scalar> view = sight(s, scratch, pair);
-    if (scratch.flight < scratch.flights.size() && scratch.flights[scratch.flight].pair == pair) {
-      Flight<Scalar>& f = scratch.flights[scratch.flight++];
-      touch.manifold = &f.manifold;
-      if (!settle(s, dt, options, scratch, view, f)) return false;
-      touch.impact = f.impact;
-      return true;
-    }
     touch.manifold = &touch.own;
     find(options, view, scratch.shapes[shapes.a], view.there, pair, touch.own);
   }
-  if (!closes(s, dt, shapes, *touch.manifold)) return false;
-  to_light_side(*touch.manifold, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
-  return true;
+  return touch.manifold->count > 0;
+}
+
+/// How a pair stands when the step begins. Rows of shapes that are apart are of no manifold yet.
+template <class Scalar>
+Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair, Touch<Scalar>& touch) const {
+  const Sight<Scalar> view = sight(s, scratch, pair);
+  Manifold<Scalar>& m = *touch.manifold;
+  Standing c;
+  c.shapes[0] = view.shapes[0], c.shapes[1] = view.shapes[1];
+  c.hint = hints_[pair];
+  c.gap = std::min(double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)), double(least_separation(m)));
+  const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
+  c.touches = c.acts = c.gap <= near_of(double(thickness(view.shapes[0], view.shapes[1])), far, double(std::numeric_limits<Scalar>::epsilon()));
+  for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
+  if (c.touches)
+    to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
+  else
+    m.count = 0;
+  return c;
 }
 
 template <class Scalar>
@@ -143,13 +101,14 @@ void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t
   if (scratch.contacts.size() < end) scratch.contacts.resize(end);
   const std::byte* contacts = s.tables.bytes(Buffer::contact).data();
   std::copy(contacts + first * bytes, contacts + last * bytes, scratch.contacts.data() + row * bytes);
+  standings_.resize(row + last - first);
   found.kept += last - first;
   for (; first < last; first++)
     found.kept_points += std::uint32_t(s.tables.data<Scalar>(Buffer::contact)[first * reals_of(Buffer::contact) + 3]);
 }
 
 template <class Scalar>
-Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
+Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   const auto pairs = pairs_.pairs();
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
   const Scalar* before = s.tables.data<Scalar>(Buffer::contact);
@@ -158,15 +117,12 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   next_.keys.resize(1);
   next_.ends.resize(1);
   next_.features.resize(1);
-  const double fall = length(s.gravity) * dt * dt;
   std::uint32_t old = 1;
   hints_.resize(pairs.size());
   found = {};
   found.pairs = std::uint32_t(pairs.size());
   list_near();
-  look_ahead(s, dt, options, scratch);
   if (round_) sort_out(options, scratch);
-  scratch.flight = 0;
   const BodyReader<Scalar> bodies(s.tables);
   Touch<Scalar> touch;
   touched_.clear();
@@ -182,10 +138,11 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     }
   };
   const auto add = [&](std::uint32_t i) {
-    if (!touches(s, dt, options, scratch, i, touch)) return;
+    if (!touches(s, options, scratch, i, touch)) return;
     const auto [a, b] = pairs[i];
     const auto [row_a, row_b] = touch.rows;
-    const Manifold<Scalar>& manifold = *touch.manifold;
+    Manifold<Scalar>& manifold = *touch.manifold;
+    Standing standing = stand<Scalar>(s, scratch, i, touch);
     const ContactKey key{a, b};
     if (kept < before_rows) keep_until(&key);
     const std::size_t row = next_.keys.size();
@@ -199,20 +156,20 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
       for (const std::uint32_t body : touch.rows)
         if (parts_[body] == Part::sleeps) touched_.push_back(body);
     const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
+    standings_.resize(row + 1);
+    standings_[row] = standing;
     write_contact(manifold, of_a, of_b, out, features.data());
     out[31] = Scalar(touch.impact);
+    out[39] = 2;
+    bodies.shift(row_a, row_b, out + 36);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
-    if (old < before_rows && s.contacts.keys[old] == key)
+    if (standing.touches && old < before_rows && s.contacts.keys[old] == key)
       remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out, features.data());
     found.points += manifold.count;
     found.friction |= out[28] > 0 || out[29] > 0;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts = found.impacts || touch.impact > 0;
-    if (found.impacts || touch.impact < 0 || !(out[30] > 0)) return;
-    Scalar apart[3] = {0, 0, 0};
-    bodies.shift(row_a, row_b, apart);
-    found.impacts = fastest(manifold, twists_[row_a], twists_[row_b], apart) + fall / dt >= options.least_bounce;
+    found.impacts |= touch.impact >= 0;
   };
   if (round_)
     marks_.each(add);
@@ -230,7 +187,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   return {};
 }
 
-template Status Detector::narrow_all(WorldState&, double, const Options&, Scratch<float>&, Found&);
-template Status Detector::narrow_all(WorldState&, double, const Options&, Scratch<double>&, Found&);
+template Status Detector::narrow_all(WorldState&, const Options&, Scratch<float>&, Found&);
+template Status Detector::narrow_all(WorldState&, const Options&, Scratch<double>&, Found&);
 
 }  // namespace pcphys

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "collision/narrow.h"
+#include "collision/support_gap.h"
 #include "collision/twist.h"
 #include "collision/view.h"
 
@@ -17,6 +18,18 @@ template <class Scalar> struct Mover {
   TwistOf<Scalar> twist;
   float spin;    // how fast its surface comes outward by turning, at most [m/s]
   bool centred;  // its frame is the body's
+  float lever;   // how far a turn of one radian moves its surface outward, at most [m]
+
+  /// How fast it comes along the unit vector n by turning, at most [m/s]: n . (w x r) = r . (n x w).
+  double spin_along(const Scalar* n) const {
+    double squared = 0;
+    for (int k = 0; k < 3; k++) {
+      const int i = (k + 1) % 3, j = (k + 2) % 3;
+      const double c = double(n[i]) * double(twist.w[j]) - double(n[j]) * double(twist.w[i]);
+      squared += c * c;
+    }
+    return std::min(double(spin), std::sqrt(squared) * double(lever));
+  }
 };
 
 /// q turned by the rotation vector w t. Eight turns whose half angle's tangent is taken for the angle: within 1 % of a
@@ -54,33 +67,50 @@ template <class Scalar> Scalar least_separation(const Manifold<Scalar>& m) {
   return least;
 }
 
-inline constexpr double later = -1, past = -2;
+/// The manifold of time t as seen from the start: gaps open again with the speeds of the points, arms go back by the
+/// first body's share of the way.
+template <class Scalar>
+void back_to_start(const TwistOf<Scalar>& a, const TwistOf<Scalar>& b, const Scalar* apart, double share, double t,
+                   Manifold<Scalar>& m) {
+  Scalar path[3], d[3];
+  for (int k = 0; k < 3; k++) path[k] = Scalar((double(b.v[k]) - double(a.v[k])) * t), d[k] = apart[k] + path[k];
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    ManifoldPoint<Scalar>& point = m.points[i];
+    point.separation += Scalar(double(passing(a, b, m.normal, point.p, d).closing) * t);
+    for (int k = 0; k < 3; k++) point.p[k] -= Scalar(double(path[k]) * share);
+  }
+}
 
-/// From the manifold at the start, to that of the instant at which the shapes come within `near` [m] of each other, which
-/// is returned [s]; or the one at the end of the step if they come within `margin` by then; or `later`: nothing brings them
-/// together within the step as they move now; or `past`: they pass each other by.
-/// `apart`: b's centre as seen from a's. `find(a, b, manifold)`: the narrow phase, with a margin that all gaps are within.
+/// From the manifold of now to that of the instant within h [s] at which the shapes come within `near` [m] of each other, which is
+/// returned; below 0 where they do not. Bounded: what so many looks have not brought together passes, but for a gap that is none
+/// (`none`); what it overlaps in the end the next sub-step sees.
 template <class Scalar, class Find>
-double meet(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double margin, double dt,
-            Find&& find, Manifold<Scalar>& m) {
+double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double none, double h,
+                   Find&& find, Manifold<Scalar>& m) {
   constexpr int most = 32;
   double t = 0;
+  ShapeView<Scalar> here = *a.view, there = *b.view;
+  for (int i = 0; i < 3; i++) there.p[i] += apart[i];
   for (int k = 0; k < most; k++) {
-    const double gap = double(least_separation(m));
-    if (gap <= near || (t == dt && gap <= margin)) return t;
-    double nearing = double(a.spin) + double(b.spin);
+    const double gap = std::min(double(support_gap(here, there, m.normal)), double(least_separation(m)));
+    if (gap <= near) return t;
+    if (t >= h) return -1;
+    double nearing = a.spin_along(m.normal) + b.spin_along(m.normal);
     for (int i = 0; i < 3; i++) nearing += double(m.normal[i]) * (double(a.twist.v[i]) - double(b.twist.v[i]));
-    if (t == dt || (t == 0 && nearing <= 0)) return later;
-    if (nearing <= 0) return past;
-    t = std::min(dt, t + (gap - near / 2) / nearing);
-    ShapeView<Scalar> there = after(b, t);
+    if (nearing * (h - t) < gap - near) return -1;
+    t = std::min(h, t + (gap - near / 2) / nearing);
+    here = after(a, t);
+    there = after(b, t);
     for (int i = 0; i < 3; i++) there.p[i] += apart[i] + Scalar((double(b.twist.v[i]) - double(a.twist.v[i])) * t);
     Manifold<Scalar> next;
-    find(after(a, t), there, next);
-    if (next.count == 0) return past;
+    find(here, there, next);
+    if (next.count == 0) return -1;
     m = next;
   }
-  return t;  // as near as that many looks have brought them; the rest closes as it would have from the start
+  return double(least_separation(m)) <= none ? t : -1;
 }
+
+/// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand [m].
+inline double near_of(double thick, double far, double epsilon) { return std::max(1e-6 * thick, 16 * epsilon * far); }
 
 }  // namespace pcphys

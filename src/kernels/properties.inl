@@ -120,7 +120,7 @@ PC_PROPERTY(node, node_pending, 11, real, pending_touch, scratch, 0, "N s", "lar
 PC_PROPERTY(node, node_pending, 12, vec3, pending_torque, scratch, 0, "N m s", "and of their moments about its centre of mass")
 
 PC_TABLE(contact, "one manifold of up to four points between two shapes")
-PC_BUFFER(contact, contact, 9, "what the narrow phase found, and the impulses that hold it")
+PC_BUFFER(contact, contact, 11, "what the narrow phase found, and the impulses that hold it")
 PC_PROPERTY(contact, contact, 0, vec3, normal, derived, 0, "1", "from body a to body b")
 PC_PROPERTY(contact, contact, 3, real, point_count, state, 0, "1", "0 to 4")
 PC_PROPERTY(contact, contact, 4, vec3, arm_0, state, 0, "m", "from a's centre of mass to the point between the surfaces: at the light body's own, midway between equal ones")
@@ -139,6 +139,9 @@ PC_PROPERTY(contact, contact, 29, real, contact_kinetic_friction, derived, 0, "1
 PC_PROPERTY(contact, contact, 30, real, contact_restitution, derived, 0, "1", "")
 PC_PROPERTY(contact, contact, 31, real, impact_time, derived, 0, "s", "after the step's start, of shapes that meet in flight; 0: they are close; -1: a body hangs on joints")
 PC_PROPERTY(contact, contact, 32, quat, mean_impulse, state, 0, "N s", "slow mean of normal_impulse where a body stands in a joint tree, else what it was a sub-step before")
+PC_PROPERTY(contact, contact, 36, vec3, apart, scratch, 0, "m", "from a's centre of mass to b's, when the manifold was found")
+PC_PROPERTY(contact, contact, 39, real, found_anew, scratch, 0, "1", "0: the rows stand; 1: the manifold was found anew in this sub-step, and hands on what the rows hold; 2: of a new step, with the impulses above")
+PC_PROPERTY(contact, contact, 40, quat, from_point, scratch, 0, "1", "which point of the manifold before each one was, from 1; 0: none")
 
 PC_TABLE(touch, "what a step did to each contact: rows are those of the table of contacts; only where StepSettings asks for events (docs/events.md)")
 PC_BUFFER(touch, touch, 2, "")

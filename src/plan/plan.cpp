@@ -38,6 +38,17 @@ class Builder {
     add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses, k.domain);
   }
 
+  /// The narrow phase of a sub-step, on the host (Detector::meet).
+  void collide(std::uint32_t substep) {
+    static constexpr Access accesses[] = {{Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, false}, {Buffer::contact, true}};
+    for (const Access& a : accesses) bring(a.buffer, Place::cpu, substep);
+    plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, substep == 0 ? Phase::first : Phase::biased, false, substep, octave_, nullptr, 0});
+    Known& contact = at(Buffer::contact);
+    overwrite(Buffer::contact);
+    contact.current = {true, false};
+    contact.host_wrote = true;
+  }
+
   /// The host's own kernels of a moment of the step, in a sub-step of `count`.
   void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count, bool once_a_step) {
     for (const auto& k : own_) {
@@ -252,6 +263,8 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
   if (k > 0 && s.rotates) look_at_inertia(b, s, k);
+  if (s.contacts()) b.collide(k);
+  if (s.contacts()) b.kernel(contacts(s).prepare, k == 0 ? Phase::first : Phase::biased, k);
   b.own(Stage::integrate, true, k, count);
   b.own(Stage::joints, false, k, count);
   if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
@@ -319,7 +332,6 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   look_at_drives(b, s, Phase::first, 0);
   b.kernel(with.begin, Phase::first, 0);
   look_at_inertia(b, s, 0);
-  if (s.contacts()) b.kernel(contacts(s).prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < count; k++) substep(b, s, with, k, count);
   if (s.contacts() && s.restitution) b.kernel(contacts(s).restitution, Phase::relax, last);
   if (s.contacts() && s.touches) b.kernel(contacts(s).touch, Phase::relax, last);

@@ -23,9 +23,11 @@ std::string_view buffer_name(Buffer buffer, const OwnKernel* user) {
 }
 }  // namespace
 std::string_view buffer_name(const PlanEntry& entry) {
-  return entry.kind == PlanEntry::Kind::kernel ? std::string_view() : buffer_name(entry.buffer, entry.own);
+  const bool transfers = entry.kind == PlanEntry::Kind::upload || entry.kind == PlanEntry::Kind::download;
+  return transfers ? buffer_name(entry.buffer, entry.own) : std::string_view();
 }
 std::string_view stage_name(const PlanEntry& entry) {
+  if (entry.kind == PlanEntry::Kind::collide) return "collide";
   return entry.kind == PlanEntry::Kind::kernel ? name(stage(entry)) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
@@ -76,6 +78,8 @@ std::string to_text(const StepPlan& plan) {
       if (e.again > 0) line += "*";
       pad(line, 54);
       line += join(reads(e)) + " -> " + join(writes(e));
+    } else if (e.kind == PlanEntry::Kind::collide) {
+      line += "manifolds";
     } else {
       line += (e.kind == PlanEntry::Kind::upload ? "upload " : "download ") + std::string(buffer_name(e));
       if (e.bytes > 0) line += ", " + std::to_string(e.bytes) + " bytes";

@@ -34,7 +34,7 @@
 
 namespace pcphys {
 
-struct Stepper::Inside {
+struct Stepper::Inside final : Collider {
   using Clock = std::chrono::steady_clock;
   static constexpr int most_tries = 8;
 
@@ -75,6 +75,7 @@ struct Stepper::Inside {
   ForceJumps jumps;
   StepPlan no_plan;
   Clock::time_point began;
+  std::vector<std::uint32_t> to_meet;  // rows of contacts
 
   void lap(Timer timer) {
     if (!settings.timings) return;
@@ -105,6 +106,14 @@ struct Stepper::Inside {
   const void* fill(const WorldState& s, double h) {
     return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0),
                       octaves_of(octaves.used()));
+  }
+
+  void collide(WorldState& s, unsigned octave, bool first, double h) override {
+    to_meet.clear();
+    const std::vector<std::uint32_t>& order = schedule.contacts.order();
+    for (const Range& range : schedule.contacts.ranges(octave))
+      to_meet.insert(to_meet.end(), order.begin() + range.begin * schedule.contacts.width(), order.begin() + range.end * schedule.contacts.width());
+    detector.meet(s, to_meet, first, h, detection());
   }
 
   Status prepare(Precision precision) {
@@ -254,7 +263,7 @@ struct Stepper::Inside {
       const auto apart = tears.apart(s);
       detector.let_through(apart);
       report.let_through = std::uint32_t(apart.size());
-      if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
+      if (ok = detector.find_contacts(s, detection(), found); !ok) return undo(s, ok);
       lap(Timer::narrow);
       if (detector.touched().empty()) return {};
       runner.keep(s, Buffer::rest);
@@ -316,7 +325,7 @@ struct Stepper::Inside {
     if (plan->flight && settings.body_events) recorder.keep_poses(s);
     ran = true;
     runner.watch(watched);
-    if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
+    if (ok = runner.run(s, schedule, fill(s, h), report, this); !ok) return undo(s, ok);
     if (wanted.islands && !schedule.islands.take())
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "

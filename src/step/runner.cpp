@@ -19,6 +19,7 @@ Timer timer_of(Stage stage) {
   return timers[std::size_t(stage)];
 }
 Timer timer_of(const PlanEntry& entry) {
+  if (entry.kind == PlanEntry::Kind::collide) return Timer::narrow;
   if (entry.kind == PlanEntry::Kind::upload) return Timer::upload;
   if (entry.kind == PlanEntry::Kind::download) return Timer::download;
   return timer_of(stage(entry));
@@ -334,8 +335,20 @@ Status Runner::run_watched(Place place, std::span<const KernelRun> runs, WorldSt
   return {};
 }
 
-Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report) {
+double Runner::substep_of(const PlanEntry& entry, const void* infos, Precision precision) const {
+  const std::size_t index = info_index(entry);
+  if (precision == Precision::f64) return static_cast<const InfoOf<double>*>(infos)[index].h;
+  return double(static_cast<const InfoOf<float>*>(infos)[index].h);
+}
+
+Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
   const PlanEntry& entry = *call.entry;
+  if (entry.kind == PlanEntry::Kind::collide) {
+    if (!collider_) return {};  // the table holds what was found
+    collider_->collide(state, entry.octave, entry.substep == 0, substep_of(entry, infos, state.tables.precision()));
+    if (gl_) state.tables.touch(Buffer::contact);
+    return {};
+  }
   if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state);
   if (entry.kind == PlanEntry::Kind::download) return transfer(entry, state, report);
   return upload(entry.buffer, state, schedule, report);
@@ -357,8 +370,9 @@ Status Runner::keep_left(WorldState& state) {
   return {};
 }
 
-Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
+Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider) {
   left_ = false;
+  collider_ = collider;
   if (!fetched_) return std::exchange(fetched_, Status{});
   if (state.tables.kept())  // by this device or another stepper's
     for (const PlanBinding& b : bound_.plan->bindings)
@@ -374,7 +388,7 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
   Clock::time_point began;
   if (bound_.timings) began = Clock::now();
   for (const Call& c : calls_) {
-    if (Status ok = call(c, state, schedule, report); !ok) return ok;
+    if (Status ok = call(c, state, schedule, infos, report); !ok) return ok;
     if (c.ends) tracer_.substep({state, schedule, *bound_.plan, *c.entry, *at(Place::cpu).backend}, infos, info_index(*c.entry));
     if (!c.last) continue;
     if (gl_)

@@ -16,6 +16,14 @@
 
 namespace pcphys {
 
+/// The narrow phase of a sub-step.
+class Collider {
+ public:
+  virtual ~Collider() = default;
+  /// Of islands of one level, in a sub-step of h [s]; `first`: of the step.
+  virtual void collide(WorldState& state, unsigned octave, bool first, double h) = 0;
+};
+
 class Runner final : Keeper {
  public:
   Runner() = default;
@@ -30,7 +38,7 @@ class Runner final : Keeper {
   /// the last step, that step's bindings stand. The plan stays where it is until another one is bound.
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
   /// Runs the plan that was bound.
-  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
+  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider = nullptr);
   /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others is an error
   /// (check_written).
   void watch(bool kernels) { watched_ = kernels; }
@@ -116,7 +124,8 @@ class Runner final : Keeper {
   void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
-  Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
+  Status call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
+  double substep_of(const PlanEntry& entry, const void* infos, Precision precision) const;
   Status kernels(const Call& call, WorldState& state);
   Status keep_left(WorldState& state);
   Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
@@ -143,6 +152,7 @@ class Runner final : Keeper {
   bool left_ = false;           // see `left`
   bool watched_ = false;
   Tracer tracer_;
+  Collider* collider_ = nullptr;  // of the step
 };
 
 }  // namespace pcphys

@@ -1,0 +1,332 @@
+// The narrow phase within a step: which contacts act in a sub-step, and with what geometry.
+//
+// A manifold is found again when its bodies have moved against each other by more than a share of their size since. Of shapes that are
+// apart a bound of their gap is kept, less what their motion may have taken of it. Where that is more than the way of the sub-step they do
+// not meet and their rows push nothing; else conservative advancement finds the instant at which they do, and the manifold there.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "collision/detector.h"
+#include "collision/flights.h"
+#include "collision/hook.h"
+#include "collision/meeting.h"
+#include "collision/support_gap.h"
+#include "collision/view.h"
+
+namespace pcphys {
+namespace {
+
+/// What lies within this share of a thickness of a surface lies in it: so high may a seam between tiles be. Normals that are turned against
+/// each other by less than this are one [rad].
+constexpr double seam_share = 2e-3, same_normal = 3e-4;
+
+constexpr std::size_t contact_reals = reals_of(Buffer::contact), motion_reals = reals_of(Buffer::motion);
+
+/// What a sub-step reads of bodies.
+template <class Scalar> class Bodies {
+ public:
+  explicit Bodies(const Tables& t)
+      : poses_(t),
+        motion_(t.data<Scalar>(Buffer::motion)),
+        mass_(t.data<Scalar>(Buffer::mass)),
+        delta_(t.data<Scalar>(Buffer::delta)) {}
+
+  const BodyReader<Scalar>& poses() const { return poses_; }
+  Moved moved(std::uint32_t a, std::uint32_t b) const {
+    const Scalar *x = delta_ + a * reals_of(Buffer::delta), *y = delta_ + b * reals_of(Buffer::delta);
+    Moved m;
+    for (int k = 0; k < 3; k++) {
+      m.apart[std::size_t(k)] = double(y[k]) - double(x[k]);
+      m.turned_a[std::size_t(k)] = double(x[4 + k]);
+      m.turned_b[std::size_t(k)] = double(y[4 + k]);
+    }
+    return m;
+  }
+  TwistOf<Scalar> twist(std::uint32_t row) const {
+    const Scalar *motion = motion_ + row * motion_reals, *inverse = mass_ + row * reals_of(Buffer::mass) + 4;
+    const Scalar* q = poses_.orientation(row);
+    TwistOf<Scalar> t;
+    const Scalar back[4] = {-q[0], -q[1], -q[2], q[3]};
+    Scalar l[3];
+    rotate_by(back, motion + 4, l);
+    for (int k = 0; k < 3; k++) l[k] *= inverse[k];
+    rotate_by(q, l, t.w);
+    Scalar speed = 0, turn = 0;
+    for (int k = 0; k < 3; k++) t.v[k] = motion[k], speed += motion[k] * motion[k], turn += l[k] * l[k];
+    t.speed = std::sqrt(speed);
+    t.turn = std::sqrt(turn);
+    t.across = std::sqrt(l[0] * l[0] + l[2] * l[2]);
+    return t;
+  }
+
+ private:
+  BodyReader<Scalar> poses_;
+  const Scalar *motion_, *mass_, *delta_;
+};
+
+double size_of(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/// Points of a manifold that go on from those of the one before: its number from 1, by feature, or 0.
+template <class Scalar>
+std::array<std::uint32_t, 4> points_before(const Manifold<Scalar>& m, const std::array<std::uint32_t, 4>& before) {
+  std::array<std::uint32_t, 4> from{};
+  bool taken[4] = {};
+  for (std::uint32_t i = 0; i < m.count; i++)
+    for (std::uint32_t j = 0; j < 4 && from[i] == 0; j++) {
+      if (taken[j] || m.points[i].feature != before[j]) continue;
+      taken[j] = true;
+      from[i] = j + 1;
+    }
+  return from;
+}
+
+/// What is left over goes to the nearest point of before: a feature may change its name while the contact stays.
+template <class Scalar>
+void match_nearest(const Manifold<Scalar>& m, const Scalar* before, std::uint32_t count, std::array<std::uint32_t, 4>& from) {
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    if (from[i] != 0) continue;
+    Scalar best = std::numeric_limits<Scalar>::max();
+    for (std::uint32_t j = 0; j < count; j++) {
+      if (std::find(from.begin(), from.end(), j + 1) != from.end()) continue;
+      Scalar squared = 0;
+      for (std::uint32_t k = 0; k < 3; k++) {
+        const Scalar off = m.points[i].p[k] - before[4 + 4 * j + k];
+        squared += off * off;
+      }
+      if (squared >= best) continue;
+      best = squared;
+      from[i] = j + 1;
+    }
+  }
+}
+
+}  // namespace
+
+template <class Scalar>
+void Detector::find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
+                    std::uint32_t pair, Manifold<Scalar>& manifold) {
+  if (options.narrow == NarrowPhase::fcl)
+    fcl_hook()(a, b, view.margin, manifold);
+  else
+    narrow(a, b, view.margin, hints_[pair], manifold), hinted_ |= hints_[pair] != 0;
+}
+
+float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
+  const float x = proxies_[a].inner, y = proxies_[b].inner;
+  return x == 0 ? y : y == 0 ? x : std::min(x, y);
+}
+
+template void Detector::find(const Options&, const Sight<float>&, const ShapeView<float>&, const ShapeView<float>&, std::uint32_t, Manifold<float>&);
+template void Detector::find(const Options&, const Sight<double>&, const ShapeView<double>&, const ShapeView<double>&, std::uint32_t, Manifold<double>&);
+
+/// One contact in one sub-step.
+template <class Scalar> struct Detector::Meeting {
+  Detector& d;
+  WorldState& s;
+  const Bodies<Scalar>& bodies;
+  const Options& options;
+  double h;
+  bool first;
+  std::uint32_t row;
+
+  Standing& c = d.standings_[row];
+  Scalar* out = s.tables.data<Scalar>(Buffer::contact) + row * contact_reals;
+  std::uint32_t row_a = s.contacts.ends[row][0], row_b = s.contacts.ends[row][1];
+  const Proxy &pa = d.proxies_[c.shapes[0]], &pb = d.proxies_[c.shapes[1]];
+  double thick = double(d.thickness(c.shapes[0], c.shapes[1]));
+  double share = share_of<Scalar>(s.tables, row_a, row_b);
+  bool jointed = pa.jointed || pb.jointed;
+  Moved now = bodies.moved(row_a, row_b);
+  TwistOf<Scalar> ta = bodies.twist(row_a), tb = bodies.twist(row_b);
+  Scalar apart[3] = {0, 0, 0};
+  Scalar look = 0;
+
+  static double lever(const Proxy& p) { return double(p.lever_any) + double(p.lever_across); }
+  static double spin(const TwistOf<Scalar>& t, const Proxy& p) {
+    return double(t.across) * double(p.lever_across) + double(t.turn) * double(p.lever_any);
+  }
+  double speed() const {
+    double squared = 0;
+    for (int k = 0; k < 3; k++) squared += (double(tb.v[k]) - double(ta.v[k])) * (double(tb.v[k]) - double(ta.v[k]));
+    return std::sqrt(squared);
+  }
+  /// How far the two may have come against each other since they were looked at, at most [m].
+  double moved() const {
+    if (first) return 0;
+    return size_of(now.apart, c.then.apart) + size_of(now.turned_a, c.then.turned_a) * lever(pa) +
+           size_of(now.turned_b, c.then.turned_b) * lever(pb);
+  }
+  /// And how far they may come in the sub-step [m].
+  double way() const { return (speed() + spin(ta, pa) + spin(tb, pb)) * h; }
+  /// What moves fast along what answers too, or turns into it, is struck and not held: nothing of the contact lasts.
+  bool quick() const {
+    const double turns = (pa.responds ? spin(ta, pa) : 0) + (pb.responds ? spin(tb, pb) : 0);
+    const double shifts = (speed() * std::min(share, 1 - share) + turns) * h;
+    return shifts > constants::quick_share * thick;
+  }
+
+  void stand_aside() {
+    if (!c.acts) return;
+    c.acts = false;
+    out[3] = 0;
+    out[31] = jointed ? -1 : 0;
+    out[39] = first ? 2 : 1;
+    for (int k = 40; k < 44; k++) out[k] = 0;
+    s.contacts.features[row].fill(0xffffffffu);
+  }
+
+  ShapeView<Scalar> view(const Proxy& p, std::uint32_t shape, std::uint32_t body) const {
+    ShapeView<Scalar> v;
+    const Scalar* at = s.tables.data<Scalar>(Buffer::shape) + (shape + 1) * reals_of(Buffer::shape);
+    place_shape(at, p.kind, p.hull, p.centred, bodies.poses().orientation(body), v);
+    return v;
+  }
+  void look_at(const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& m) const {
+    if (options.narrow == NarrowPhase::fcl)
+      fcl_hook()(x, y, look, m);
+    else
+      narrow(x, y, look, c.hint, m);
+  }
+
+  void find() {
+    const double way = this->way();
+    const bool quick = this->quick();
+    const double moved = this->moved();
+    if (!first) out[39] = 0;
+    if (c.touches && !quick && moved <= constants::manifold_share * thick) return;
+    if (!c.touches && c.gap - moved > way) return stand_aside();
+    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
+    bodies.poses().shift(row_a, row_b, apart);
+    ShapeView<Scalar> there = b;
+    for (int k = 0; k < 3; k++) there.p[k] += apart[k];
+    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way);
+    Manifold<Scalar> m;
+    look_at(a, there, m);
+    c.then = now;
+    c.touches = false;
+    c.gap = double(look);
+    if (m.count == 0) return stand_aside();
+    c.gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
+    const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
+    const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
+    c.touches = c.gap <= near;
+    double t = 0;
+    if (!c.touches) {
+      if (c.gap > way) return stand_aside();
+      const Mover<Scalar> mover_a{&a, ta, float(spin(ta, pa)), pa.centred, float(lever(pa))};
+      const Mover<Scalar> mover_b{&b, tb, float(spin(tb, pb)), pb.centred, float(lever(pb))};
+      const auto find = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
+      t = meet_within(mover_a, mover_b, apart, near, 1e-4 * thick, h, find, m);
+      if (t < 0) return stand_aside();
+    }
+    c.together = 0;
+    for (std::uint32_t i = 0; i < m.count; i++)
+      if (double(m.points[i].separation) <= seam_share * thick) c.together |= std::uint8_t(1u << i);
+    to_light_side(m, share);
+    if (!c.touches) back_to_start(ta, tb, apart, share, t, m);
+    // (an overlap is for the rows to push out)
+    const bool struck = !jointed && (!c.touches || (quick && c.gap > -constants::manifold_share * thick));
+    write(m, jointed ? -1 : struck ? std::max(t, 1e-9 * h) : 0);
+  }
+
+  /// Impacts remember nothing.
+  void write(const Manifold<Scalar>& m, double impact) {
+    std::array<std::uint32_t, 4> from{};
+    if (c.acts && impact <= 0) {
+      from = points_before(m, s.contacts.features[row]);
+      match_nearest(m, out, std::uint32_t(out[3]), from);
+    }
+    c.acts = true;
+    for (int k = 0; k < 3; k++) out[k] = m.normal[k];
+    out[3] = Scalar(m.count);
+    for (std::uint32_t i = 0; i < 4; i++) {
+      const bool real = i < m.count;
+      for (std::uint32_t k = 0; k < 3; k++) out[4 + 4 * i + k] = real ? m.points[i].p[k] : Scalar(0);
+      out[7 + 4 * i] = real ? m.points[i].separation : Scalar(0);
+      s.contacts.features[row][i] = real ? m.points[i].feature : 0xffffffffu;
+      out[40 + i] = Scalar(from[i]);
+    }
+    if (impact > 0) {
+      std::fill(out + 20, out + 28, Scalar(0));
+      std::fill(out + 32, out + 36, Scalar(0));
+    }
+    for (int k = 0; k < 3; k++) out[36 + k] = apart[k];
+    out[31] = Scalar(impact);
+    out[39] = first ? Scalar(2) : Scalar(1);
+  }
+
+  /// Point i where the shapes meet, as seen from a's centre there, in this sub-step.
+  std::array<Scalar, 3> point(std::uint32_t i) const { return {out[4 + 4 * i], out[5 + 4 * i], out[6 + 4 * i]}; }
+};
+
+/// Whether a point that x has lies in what y is with, where the body touches that with another normal.
+template <class Scalar> bool Detector::lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const {
+  if (y.row == x.row || !y.c.acts) return false;
+  Scalar turned = 0;
+  for (int k = 0; k < 3; k++) turned += (x.out[k] - y.out[k]) * (x.out[k] - y.out[k]);
+  if (turned < Scalar(same_normal * same_normal)) return false;
+  const double t = std::max(0.0, double(x.out[31]));
+  ShapeView<Scalar> place = y.view(y.pb, y.c.shapes[1], y.row_b);
+  Scalar apart[3] = {0, 0, 0};
+  x.bodies.poses().shift(y.row_a, y.row_b, apart);
+  ShapeView<Scalar> dot{ShapeKind::sphere, {Scalar(1e-6 * x.thick), 0, 0}, {}, {0, 0, 0, 1}};
+  for (std::uint32_t k = 0; k < 3; k++) {
+    place.p[k] += apart[k];
+    dot.p[k] = x.out[4 + 4 * point + k] + Scalar(double(x.ta.v[k]) * t);
+  }
+  Manifold<Scalar> m;
+  std::uint32_t hint = 0;
+  narrow(dot, place, Scalar(seam_share * x.thick), hint, m);
+  return m.count > 0;
+}
+
+/// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with other normals, the
+/// surface goes on, and there is nothing to hit. `standing_`: rows of contacts with what stands, by the body.
+template <class Scalar> void Detector::drop_inner_edges(WorldState& s, bool first, double h, const Options& options) {
+  const Bodies<Scalar> bodies(s.tables);
+  const auto body_of = [&](std::uint32_t row) { return s.contacts.ends[row][0]; };
+  std::ranges::sort(standing_rows_, {}, [&](std::uint32_t row) { return std::pair(body_of(row), row); });
+  inner_.clear();
+  for (std::size_t begin = 0, end = 0; begin < standing_rows_.size(); begin = end) {
+    for (end = begin; end < standing_rows_.size() && body_of(standing_rows_[end]) == body_of(standing_rows_[begin]);) end++;
+    for (std::size_t i = begin; i < end && end - begin > 1; i++) {
+      const Meeting<Scalar> x{*this, s, bodies, options, h, first, standing_rows_[i]};
+      bool covered = x.c.together != 0;
+      for (std::uint32_t point = 0; point < 4 && covered; point++) {
+        if ((x.c.together >> point & 1) == 0) continue;
+        covered = false;
+        for (std::size_t j = begin; j < end && !covered; j++)
+          covered = lies_in<Scalar>(x, point, Meeting<Scalar>{*this, s, bodies, options, h, first, standing_rows_[j]});
+      }
+      if (covered) inner_.push_back(x.row);
+    }
+  }
+  for (const std::uint32_t row : inner_) Meeting<Scalar>{*this, s, bodies, options, h, first, row}.stand_aside();
+}
+
+template <class Scalar>
+void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options) {
+  const Bodies<Scalar> bodies(s.tables);
+  s.tables.data<Scalar>(Buffer::contact)[39] = first ? 2 : 0;  // slots that pad are made of row 0
+  standing_rows_.clear();
+  for (const std::uint32_t row : contacts) {
+    if (row == 0) continue;
+    Meeting<Scalar> m{*this, s, bodies, options, h, first, row};
+    m.find();
+    if (m.c.acts && s.stands(m.row_b)) standing_rows_.push_back(row);
+  }
+  drop_inner_edges<Scalar>(s, first, h, options);
+}
+
+void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options) {
+  if (s.tables.precision() == Precision::f32)
+    meet_all<float>(s, contacts, first, h, options);
+  else
+    meet_all<double>(s, contacts, first, h, options);
+}
+
+}  // namespace pcphys
