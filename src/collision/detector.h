@@ -42,9 +42,8 @@ class Detector {
     bool rolling = false;                     // some contact resists rolling or turning
     bool placed = false;                      // some is of a body that was just placed
     bool changed = false;                     // other pairs touch than in the last step
+    bool faces = false;                       // some have more than one point, so that something may stand on something
     std::uint32_t kept = 0, kept_points = 0;  // of contacts and points, those of bodies that sleep: as they were
-    /// Some contact has more than one point, so that something may stand on something.
-    bool faces() const { return points - kept_points > contacts - kept; }
   };
 
   /// Broad phase. Errors (too many pairs, a pose that is not finite) leave the world as it was.
@@ -54,8 +53,16 @@ class Detector {
   /// Narrow phase: replaces the world's contacts.
   Status find_contacts(WorldState& state, const Options& options, Found& found);
   /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by more than a share of
-  /// what they were made for, and of shapes that are apart whether, when and how they meet in it. Rows of contacts, 0 among them: padding.
-  void meet(WorldState& state, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options);
+  /// what they were made for, and of shapes that are apart whether, when and how they meet in it. `contacts`: rows, 0 among them (padding);
+  /// those of one level (octave) come together, from its `first` sub-step of the step on.
+  void meet(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h, const Options& options);
+  /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before; and of impacts.
+  std::span<const std::uint32_t> renewed() const { return renewed_; }
+  std::span<const std::uint32_t> struck() const { return struck_; }
+  /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points see it [m].
+  std::span<const Vec3> origins() const { return origins_; }
+  /// After the step: contacts that came apart in it have no points.
+  void let_go(WorldState& state);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
   /// After the step: whether some body went further than it was looked for, so far that it could be past what stands.
@@ -167,11 +174,14 @@ class Detector {
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
   template <class Scalar> Scratch<Scalar>& scratch();
+  template <class Scalar> struct Substep;
   template <class Scalar> struct Meeting;
-  template <class Scalar>
-  void meet_all(WorldState& state, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options);
+  template <class Scalar> void meet_in(const Substep<Scalar>& look);
+  template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
+  template <class Scalar> void find_sent(const Substep<Scalar>& look);
   template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
-  template <class Scalar> void drop_inner_edges(WorldState& state, bool first, double h, const Options& options);
+  template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look);
+  float went(std::uint32_t body) const { return ways_[body].went; }
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   std::uint64_t joint_changes_ = 0;
@@ -194,8 +204,16 @@ class Detector {
   std::vector<std::uint32_t> bodies_;  // rows, of shapes; whole lanes
   std::uint32_t movers_ = 0;           // bodies that do not stand
   double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
-  std::vector<Standing> standings_;                   // of contacts, by row
-  std::vector<std::uint32_t> standing_rows_, inner_;  // rows of contacts with what stands, in a sub-step; and those of inner edges
+  std::vector<Standing> standings_;    // of contacts, by row
+  std::vector<Moved> looked_;          // and how their bodies had moved when they were looked at, where that was within the step
+  std::vector<Vec3> origins_;          // see there
+  std::vector<float> levers_;          // of bodies: how far a turn of one radian moves any point of their shapes, at most [m]
+  std::vector<Way> ways_;              // of bodies
+  std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
+  std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
+  std::vector<std::uint32_t> renewed_, struck_, on_standing_, inner_;  // places in the contacts of a sub-step
+  std::vector<std::vector<std::uint32_t>> anew_;                       // by level: rows that were renewed in the sub-step before
+  std::vector<std::uint32_t> gone_;                                    // rows that came apart in the step
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;               // some body has

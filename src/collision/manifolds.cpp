@@ -77,10 +77,13 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   Manifold<Scalar>& m = *touch.manifold;
   Standing c;
   c.shapes[0] = view.shapes[0], c.shapes[1] = view.shapes[1];
+  c.rows[0] = touch.rows[0], c.rows[1] = touch.rows[1];
+  c.thick = thickness(c.shapes[0], c.shapes[1]);
+  c.jointed = touch.impact < 0;
   c.hint = hints_[pair];
   c.gap = std::min(double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)), double(least_separation(m)));
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
-  c.touches = c.acts = c.gap <= near_of(double(thickness(view.shapes[0], view.shapes[1])), far, double(std::numeric_limits<Scalar>::epsilon()));
+  c.touches = c.acts = c.gap <= near_of(double(c.thick), far, double(std::numeric_limits<Scalar>::epsilon()));
   for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
   if (c.touches)
     to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
@@ -102,6 +105,7 @@ void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t
   const std::byte* contacts = s.tables.bytes(Buffer::contact).data();
   std::copy(contacts + first * bytes, contacts + last * bytes, scratch.contacts.data() + row * bytes);
   standings_.resize(row + last - first);
+  for (std::size_t i = first; i < last; i++) origins_.push_back(BodyReader<Scalar>(s.tables).position(s.contacts.ends[i][0]));
   found.kept += last - first;
   for (; first < last; first++)
     found.kept_points += std::uint32_t(s.tables.data<Scalar>(Buffer::contact)[first * reals_of(Buffer::contact) + 3]);
@@ -117,6 +121,10 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   next_.keys.resize(1);
   next_.ends.resize(1);
   next_.features.resize(1);
+  standings_.resize(1);
+  origins_.resize(1);
+  for (std::vector<std::uint32_t>& rows : anew_) rows.clear();
+  gone_.clear();
   std::uint32_t old = 1;
   hints_.resize(pairs.size());
   found = {};
@@ -142,7 +150,8 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     const auto [a, b] = pairs[i];
     const auto [row_a, row_b] = touch.rows;
     Manifold<Scalar>& manifold = *touch.manifold;
-    Standing standing = stand<Scalar>(s, scratch, i, touch);
+    found.faces |= manifold.count > 1;
+    const Standing standing = stand<Scalar>(s, scratch, i, touch);
     const ContactKey key{a, b};
     if (kept < before_rows) keep_until(&key);
     const std::size_t row = next_.keys.size();
@@ -158,9 +167,9 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
     standings_.resize(row + 1);
     standings_[row] = standing;
+    origins_.push_back(bodies.position(row_a));
     write_contact(manifold, of_a, of_b, out, features.data());
     out[31] = Scalar(touch.impact);
-    out[39] = 2;
     bodies.shift(row_a, row_b, out + 36);
     while (old < before_rows && s.contacts.keys[old] < key) old++;
     if (standing.touches && old < before_rows && s.contacts.keys[old] == key)
@@ -178,6 +187,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   keep_until(nullptr);
   found.points += found.kept_points;
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
+  looked_.resize(next_.keys.size());
   found.placed = s.settling > 0 && some_settles(s, next_.ends);
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));

@@ -33,6 +33,16 @@ template <class Scalar> class Bodies {
         mass_(t.data<Scalar>(Buffer::mass)),
         delta_(t.data<Scalar>(Buffer::delta)) {}
 
+  const Scalar* motion(std::uint32_t row) const { return motion_ + row * motion_reals; }
+  /// `lever`: how far a turn of one radian moves any point of its shapes, at most.
+  Way way(std::uint32_t row, float lever, double h) const {
+    const Scalar *d = delta_ + row * reals_of(Buffer::delta), *m = motion(row), *inverse = mass_ + row * reals_of(Buffer::mass) + 4;
+    const auto size = [](const Scalar* v) { return std::sqrt(float(v[0]) * float(v[0]) + float(v[1]) * float(v[1]) + float(v[2]) * float(v[2])); };
+    const float most = float(std::max({inverse[0], inverse[1], inverse[2]}));
+    constexpr float up = 1.00001f;  // beyond the rounding of all this
+    return {up * (size(d) + size(d + 4) * lever), up * (size(m) + size(m + 4) * most * lever) * float(h), 0};
+  }
+
   const BodyReader<Scalar>& poses() const { return poses_; }
   Moved moved(std::uint32_t a, std::uint32_t b) const {
     const Scalar *x = delta_ + a * reals_of(Buffer::delta), *y = delta_ + b * reals_of(Buffer::delta);
@@ -66,7 +76,7 @@ template <class Scalar> class Bodies {
   const Scalar *motion_, *mass_, *delta_;
 };
 
-double size_of(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
@@ -123,6 +133,16 @@ float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
 template void Detector::find(const Options&, const Sight<float>&, const ShapeView<float>&, const ShapeView<float>&, std::uint32_t, Manifold<float>&);
 template void Detector::find(const Options&, const Sight<double>&, const ShapeView<double>&, const ShapeView<double>&, std::uint32_t, Manifold<double>&);
 
+/// What a sub-step's contacts are looked at with.
+template <class Scalar> struct Detector::Substep {
+  WorldState& s;
+  const Bodies<Scalar>& bodies;
+  std::span<const std::uint32_t> contacts;
+  const Options& options;
+  double h;
+  bool first;
+};
+
 /// One contact in one sub-step.
 template <class Scalar> struct Detector::Meeting {
   Detector& d;
@@ -130,16 +150,14 @@ template <class Scalar> struct Detector::Meeting {
   const Bodies<Scalar>& bodies;
   const Options& options;
   double h;
-  bool first;
   std::uint32_t row;
 
   Standing& c = d.standings_[row];
   Scalar* out = s.tables.data<Scalar>(Buffer::contact) + row * contact_reals;
-  std::uint32_t row_a = s.contacts.ends[row][0], row_b = s.contacts.ends[row][1];
+  std::uint32_t row_a = c.rows[0], row_b = c.rows[1];
   const Proxy &pa = d.proxies_[c.shapes[0]], &pb = d.proxies_[c.shapes[1]];
-  double thick = double(d.thickness(c.shapes[0], c.shapes[1]));
+  double thick = double(c.thick);
   double share = share_of<Scalar>(s.tables, row_a, row_b);
-  bool jointed = pa.jointed || pb.jointed;
   Moved now = bodies.moved(row_a, row_b);
   TwistOf<Scalar> ta = bodies.twist(row_a), tb = bodies.twist(row_b);
   Scalar apart[3] = {0, 0, 0};
@@ -156,11 +174,11 @@ template <class Scalar> struct Detector::Meeting {
   }
   /// How far the two may have come against each other since they were looked at, at most [m].
   double moved() const {
-    if (first) return 0;
-    return size_of(now.apart, c.then.apart) + size_of(now.turned_a, c.then.turned_a) * lever(pa) +
-           size_of(now.turned_b, c.then.turned_b) * lever(pb);
+    const Moved then = c.looked > 0 ? d.looked_[row] : Moved{};
+    return distance(now.apart, then.apart) + distance(now.turned_a, then.turned_a) * lever(pa) +
+           distance(now.turned_b, then.turned_b) * lever(pb);
   }
-  /// And how far they may come in the sub-step [m].
+  /// And how far they may come in the sub-step by their own velocities [m].
   double way() const { return (speed() + spin(ta, pa) + spin(tb, pb)) * h; }
   /// What moves fast along what answers too, or turns into it, is struck and not held: nothing of the contact lasts.
   bool quick() const {
@@ -171,12 +189,12 @@ template <class Scalar> struct Detector::Meeting {
 
   void stand_aside() {
     if (!c.acts) return;
-    c.acts = false;
-    out[3] = 0;
-    out[31] = jointed ? -1 : 0;
-    out[39] = first ? 2 : 1;
-    for (int k = 40; k < 44; k++) out[k] = 0;
+    c.acts = c.struck = false;
+    out[31] = c.jointed ? -1 : 0;
+    out[39] = 2;
+    std::fill(out + 40, out + 44, Scalar(0));
     s.contacts.features[row].fill(0xffffffffu);
+    d.gone_.push_back(row);
   }
 
   ShapeView<Scalar> view(const Proxy& p, std::uint32_t shape, std::uint32_t body) const {
@@ -192,21 +210,21 @@ template <class Scalar> struct Detector::Meeting {
       narrow(x, y, look, c.hint, m);
   }
 
-  void find() {
-    const double way = this->way();
+  /// `sent`: how far others of a joint tree may send them against each other.
+  void find(double sent) {
+    const double way = this->way(), goes = std::max(way, sent), moved = this->moved();
     const bool quick = this->quick();
-    const double moved = this->moved();
-    if (!first) out[39] = 0;
-    if (c.touches && !quick && moved <= constants::manifold_share * thick) return;
-    if (!c.touches && c.gap - moved > way) return stand_aside();
+    if (c.touches && !c.struck && !quick && moved <= constants::manifold_share * thick) return;
+    if (!c.touches && c.gap - moved > goes) return stand_aside();
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
     ShapeView<Scalar> there = b;
     for (int k = 0; k < 3; k++) there.p[k] += apart[k];
-    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way);
+    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * goes);
     Manifold<Scalar> m;
     look_at(a, there, m);
-    c.then = now;
+    d.looked_[row] = now;
+    c.looked = d.went(row_a) + d.went(row_b);
     c.touches = false;
     c.gap = double(look);
     if (m.count == 0) return stand_aside();
@@ -215,26 +233,30 @@ template <class Scalar> struct Detector::Meeting {
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
     c.touches = c.gap <= near;
     double t = 0;
+    bool meets = c.touches;
     if (!c.touches) {
-      if (c.gap > way) return stand_aside();
+      if (c.gap > goes) return stand_aside();
       const Mover<Scalar> mover_a{&a, ta, float(spin(ta, pa)), pa.centred, float(lever(pa))};
       const Mover<Scalar> mover_b{&b, tb, float(spin(tb, pb)), pb.centred, float(lever(pb))};
-      const auto find = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
-      t = meet_within(mover_a, mover_b, apart, near, 1e-4 * thick, h, find, m);
-      if (t < 0) return stand_aside();
+      const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
+      Manifold<Scalar> met = m;
+      t = meet_within(mover_a, mover_b, apart, near, 1e-4 * thick, h, look_there, met);
+      meets = t >= 0;
+      if (!meets && c.gap > sent) return stand_aside();
+      if (meets) m = met;  // else the rows stop what others send them beyond the gap of now
     }
     c.together = 0;
     for (std::uint32_t i = 0; i < m.count; i++)
       if (double(m.points[i].separation) <= seam_share * thick) c.together |= std::uint8_t(1u << i);
     to_light_side(m, share);
-    if (!c.touches) back_to_start(ta, tb, apart, share, t, m);
+    if (!c.touches && meets) back_to_start(ta, tb, apart, share, t, m);
     // (an overlap is for the rows to push out)
-    const bool struck = !jointed && (!c.touches || (quick && c.gap > -constants::manifold_share * thick));
-    write(m, jointed ? -1 : struck ? std::max(t, 1e-9 * h) : 0);
+    c.struck = !c.jointed && (!c.touches || (quick && c.gap > -constants::manifold_share * thick));
+    write(m, std::max(t, 0.0), c.jointed ? -1 : c.struck ? std::max(t, 1e-9 * h) : 0);
   }
 
-  /// Impacts remember nothing.
-  void write(const Manifold<Scalar>& m, double impact) {
+  /// Impacts remember nothing. `t`: when the shapes meet [s].
+  void write(const Manifold<Scalar>& m, double t, double impact) {
     std::array<std::uint32_t, 4> from{};
     if (c.acts && impact <= 0) {
       from = points_before(m, s.contacts.features[row]);
@@ -256,11 +278,10 @@ template <class Scalar> struct Detector::Meeting {
     }
     for (int k = 0; k < 3; k++) out[36 + k] = apart[k];
     out[31] = Scalar(impact);
-    out[39] = first ? Scalar(2) : Scalar(1);
+    out[39] = 1;
+    const auto on_the_way = [&](int k) { return t * (double(ta.v[k]) + share * (double(tb.v[k]) - double(ta.v[k]))); };
+    d.origins_[row] = bodies.poses().position(row_a) + Vec3{on_the_way(0), on_the_way(1), on_the_way(2)};
   }
-
-  /// Point i where the shapes meet, as seen from a's centre there, in this sub-step.
-  std::array<Scalar, 3> point(std::uint32_t i) const { return {out[4 + 4 * i], out[5 + 4 * i], out[6 + 4 * i]}; }
 };
 
 /// Whether a point that x has lies in what y is with, where the body touches that with another normal.
@@ -284,49 +305,98 @@ template <class Scalar> bool Detector::lies_in(const Meeting<Scalar>& x, std::ui
   return m.count > 0;
 }
 
-/// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with other normals, the
-/// surface goes on, and there is nothing to hit. `standing_`: rows of contacts with what stands, by the body.
-template <class Scalar> void Detector::drop_inner_edges(WorldState& s, bool first, double h, const Options& options) {
-  const Bodies<Scalar> bodies(s.tables);
-  const auto body_of = [&](std::uint32_t row) { return s.contacts.ends[row][0]; };
-  std::ranges::sort(standing_rows_, {}, [&](std::uint32_t row) { return std::pair(body_of(row), row); });
+/// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with
+/// other normals, the surface goes on, and there is nothing to hit.
+template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& look) {
+  const auto row_of = [&](std::uint32_t at) { return look.contacts[at]; };
+  const auto body_of = [&](std::uint32_t at) { return standings_[row_of(at)].rows[0]; };
+  const auto meeting = [&](std::uint32_t at) { return Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, row_of(at)}; };
+  std::ranges::sort(on_standing_, {}, [&](std::uint32_t at) { return std::pair(body_of(at), row_of(at)); });
   inner_.clear();
-  for (std::size_t begin = 0, end = 0; begin < standing_rows_.size(); begin = end) {
-    for (end = begin; end < standing_rows_.size() && body_of(standing_rows_[end]) == body_of(standing_rows_[begin]);) end++;
+  for (std::size_t begin = 0, end = 0; begin < on_standing_.size(); begin = end) {
+    for (end = begin; end < on_standing_.size() && body_of(on_standing_[end]) == body_of(on_standing_[begin]);) end++;
     for (std::size_t i = begin; i < end && end - begin > 1; i++) {
-      const Meeting<Scalar> x{*this, s, bodies, options, h, first, standing_rows_[i]};
+      const Meeting<Scalar> x = meeting(on_standing_[i]);
       bool covered = x.c.together != 0;
       for (std::uint32_t point = 0; point < 4 && covered; point++) {
         if ((x.c.together >> point & 1) == 0) continue;
         covered = false;
-        for (std::size_t j = begin; j < end && !covered; j++)
-          covered = lies_in<Scalar>(x, point, Meeting<Scalar>{*this, s, bodies, options, h, first, standing_rows_[j]});
+        for (std::size_t j = begin; j < end && !covered; j++) covered = lies_in<Scalar>(x, point, meeting(on_standing_[j]));
       }
-      if (covered) inner_.push_back(x.row);
+      if (covered) inner_.push_back(on_standing_[i]);
     }
   }
-  for (const std::uint32_t row : inner_) Meeting<Scalar>{*this, s, bodies, options, h, first, row}.stand_aside();
-}
-
-template <class Scalar>
-void Detector::meet_all(WorldState& s, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options) {
-  const Bodies<Scalar> bodies(s.tables);
-  s.tables.data<Scalar>(Buffer::contact)[39] = first ? 2 : 0;  // slots that pad are made of row 0
-  standing_rows_.clear();
-  for (const std::uint32_t row : contacts) {
-    if (row == 0) continue;
-    Meeting<Scalar> m{*this, s, bodies, options, h, first, row};
-    m.find();
-    if (m.c.acts && s.stands(m.row_b)) standing_rows_.push_back(row);
+  for (const std::uint32_t at : inner_) {
+    meeting(at).stand_aside();
+    standings_[row_of(at)].touches = false;  // it is looked at again while it is near
+    renewed_.push_back(at);
   }
-  drop_inner_edges<Scalar>(s, first, h, options);
 }
 
-void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, bool first, double h, const Options& options) {
-  if (s.tables.precision() == Precision::f32)
-    meet_all<float>(s, contacts, first, h, options);
-  else
-    meet_all<double>(s, contacts, first, h, options);
+template <class Scalar> Way Detector::way_of(const Substep<Scalar>& look, std::uint32_t body) {
+  Way& way = ways_[body];
+  if (way.of == meetings_) return way;
+  way = look.bodies.way(body, levers_[body], look.h);
+  way.of = meetings_;
+  return way;
+}
+
+/// By tree, how far the fastest of its bodies may go in the sub-step: joints may send any other as far.
+template <class Scalar> void Detector::find_sent(const Substep<Scalar>& look) {
+  std::ranges::fill(sent_, 0.0f);
+  sent_.resize(trees_.size());
+  for (std::uint32_t row = 1; row < trees_.size(); row++)
+    if (trees_[row] != 0) sent_[trees_[row]] = std::max(sent_[trees_[row]], way_of(look, row).goes);
+}
+
+template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
+  find_sent(look);
+  const auto sent = [&](std::uint32_t row) { return trees_.empty() || trees_[row] == 0 ? 0.0f : sent_[trees_[row]]; };
+  for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
+    const std::uint32_t row = look.contacts[at];
+    if (row == 0) continue;
+    Standing& c = standings_[row];
+    const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
+    const float moved = a.went + b.went + c.looked, from_others = c.jointed ? sent(c.rows[0]) + sent(c.rows[1]) : 0.0f;
+    const float goes = std::max(a.goes + b.goes, from_others);
+    // what the bounds of both bodies' motion settle needs no look at the two together
+    const bool rests = c.touches && !c.struck && goes <= float(constants::quick_share) * c.thick &&
+                       moved <= float(constants::manifold_share) * c.thick;
+    const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
+    if (rests || far) {
+      if (look.first && c.acts && look.s.stands(c.rows[1])) on_standing_.push_back(at);
+      continue;
+    }
+    Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
+    m.find(double(from_others));
+    if (m.out[39] != 0) renewed_.push_back(at);
+    if (c.struck) struck_.push_back(at);
+    if (c.acts && look.s.stands(c.rows[1])) on_standing_.push_back(at);
+  }
+  drop_inner_edges(look);
+}
+
+void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h, const Options& options) {
+  meetings_++;
+  renewed_.clear();
+  struck_.clear();
+  on_standing_.clear();
+  if (anew_.size() <= level) anew_.resize(level + 1);
+  const auto in = [&]<class Scalar>(Scalar) {
+    Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
+    for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
+    const Bodies<Scalar> bodies(s.tables);
+    meet_in(Substep<Scalar>{s, bodies, contacts, options, h, first});
+  };
+  s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
+  anew_[level].clear();
+  for (const std::uint32_t at : renewed_) anew_[level].push_back(contacts[at]);
+}
+
+void Detector::let_go(WorldState& s) {
+  for (const std::uint32_t row : gone_)
+    if (!standings_[row].acts) s.tables.set(Buffer::contact, row, 3, 0);
+  gone_.clear();
 }
 
 }  // namespace pcphys

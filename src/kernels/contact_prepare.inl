@@ -40,7 +40,7 @@ PC_FN void pc_keep_approach(PC_IO Slot m, uint i, Mask these, Mask of_step, Real
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
-  Quad seen = PC_GATHER(contact, record, 9u); Mask these = seen.s > PC_REAL(0.5); Mask of_step = seen.s > PC_REAL(1.5);
+  Quad seen = PC_GATHER(contact, record, 9u); Mask of_step = PC_INFO(begins) > PC_REAL(0.5); Mask these = pc_or(of_step, seen.s > PC_REAL(0.5));
   if (!PC_ANY(these)) return;  // lint: allow (rows stand)
   Quad head = PC_GATHER(contact, record, 0u);
   Quad p0 = PC_GATHER(contact, record, 1u); Quad p1 = PC_GATHER(contact, record, 2u); Quad p2 = PC_GATHER(contact, record, 3u); Quad p3 = PC_GATHER(contact, record, 4u);
@@ -50,7 +50,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
 
   // contact frame
-  Vec3 n = head.v; Real count = head.s;
+  // what came apart keeps the rows that it was struck by (contact_touch), but in trees, where all rows with mass are solved
+  Mask over = seen.s > PC_REAL(1.5); Mask jointed = material.s < PC_REAL(0.0);
+  Mask unjointed = material.s > PC_REAL(-0.5); Mask all = these; Mask made = pc_or(of_step, pc_or(jointed, seen.s < PC_REAL(1.5))); these = pc_and(these, made);
+  Vec3 n = head.v; Real count = pc_select(pc_and(over, jointed), PC_REAL(0.0), head.s);
   Mask steep = pc_abs(n.x) < PC_REAL(0.57);
   Vec3 e = Vec3(pc_select(steep, one, zero), pc_select(steep, zero, one), zero);
   Vec3 t1 = pc_unit_or_zero(pc_madd(e, n, -pc_dot(e, n))); Vec3 t2 = pc_cross(n, t1);
@@ -108,11 +111,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st_new(PC_PASS m, these, ROW_S, s0); pc_st_new(PC_PASS m, these, ROW_S + 1u, s1); pc_st_new(PC_PASS m, these, ROW_S + 2u, s2); pc_st_new(PC_PASS m, these, ROW_S + 3u, s3);
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
   // contact_solve leaves alone what has no point, and what meets within the sub-step: contact_impact has that, at its instant
-  Real acts = pc_select(flight > zero, zero, w0); pc_st_new(PC_PASS m, these, ROW_K, pc_select(acts > zero, PC_LD(contact_rows, m, ROW_K), zero));
+  Real acts = pc_select(pc_or(over, flight > zero), zero, w0); pc_st_new(PC_PASS m, all, ROW_K, pc_select(acts > zero, PC_LD(contact_rows, m, ROW_K), zero));
 #ifndef PC_FRICTIONLESS
   pc_st_new(PC_PASS m, these, ROW_MU_STATIC, material.v.x); pc_st_new(PC_PASS m, these, ROW_MU_KINETIC, material.v.y); pc_st_new(PC_PASS m, these, ROW_RADIUS, radius);
 #endif
-  pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, these, ROW_IMPACT, material.s); // (of the whole step: b's way against a until they meet)
+  pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, all, ROW_IMPACT, pc_select(pc_and(over, unjointed), PC_REAL(-2.0), material.s)); // (of the whole step: b's way against a until they meet)
   pc_st3_new(PC_PASS m, these, ROW_PATH, pc_select3(flight > zero, pc_add(gone, path), pc_zero3()));
   pc_st_new(PC_PASS m, these, ROW_SCALE, pc_select(of_step, one, zero));
   pc_keep_approach(PC_PASS m, 0u, these, of_step, approach0); pc_keep_approach(PC_PASS m, 1u, these, of_step, approach1); pc_keep_approach(PC_PASS m, 2u, these, of_step, approach2); pc_keep_approach(PC_PASS m, 3u, these, of_step, approach3);
@@ -121,18 +124,19 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real ratio = PC_INFO(impulse_ratio); precise Vec3 told_v = pushes.v * ratio; precise Real told_s = pushes.s * ratio; precise Vec3 mean_v = mean.v * ratio; precise Real mean_s = mean.s * ratio;
   Real h0 = pc_held_by(PC_PASS m, 0u, from.v.x); Real h1 = pc_held_by(PC_PASS m, 0u, from.v.y); Real h2 = pc_held_by(PC_PASS m, 0u, from.v.z); Real h3 = pc_held_by(PC_PASS m, 0u, from.s);
   Real m0 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.x); Real m1 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.y); Real m2 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.z); Real m3 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.s);
-  precise Real l0 = pc_select(of_step, told_v.x, h0) * w0; precise Real l1 = pc_select(of_step, told_v.y, h1) * w1; precise Real l2 = pc_select(of_step, told_v.z, h2) * w2; precise Real l3 = pc_select(of_step, told_s, h3) * w3;
-  pc_st_pushes(PC_PASS m, these, 0u, l0); pc_st_pushes(PC_PASS m, these, 1u, l1); pc_st_pushes(PC_PASS m, these, 2u, l2); pc_st_pushes(PC_PASS m, these, 3u, l3);
+  Real k0 = pc_select(over, zero, w0); Real k1 = pc_select(over, zero, w1); Real k2 = pc_select(over, zero, w2); Real k3 = pc_select(over, zero, w3);
+  precise Real l0 = pc_select(of_step, told_v.x, h0) * k0; precise Real l1 = pc_select(of_step, told_v.y, h1) * k1; precise Real l2 = pc_select(of_step, told_v.z, h2) * k2; precise Real l3 = pc_select(of_step, told_s, h3) * k3;
+  pc_st_pushes(PC_PASS m, all, 0u, l0); pc_st_pushes(PC_PASS m, all, 1u, l1); pc_st_pushes(PC_PASS m, all, 2u, l2); pc_st_pushes(PC_PASS m, all, 3u, l3);
 #ifndef PC_FRICTIONLESS
   Quad drag = PC_GATHER(contact, record, 6u); Real old1 = PC_LD(contact_impulses, m, IMPULSE_T); Real old2 = PC_LD(contact_impulses, m, IMPULSE_T + 1u); Real old_twist = PC_LD(contact_impulses, m, IMPULSE_T + 2u);
   precise Vec3 held = old_t1 * old1 + old_t2 * old2; precise Vec3 dragged = drag.v * ratio; precise Real twisted = drag.s * ratio;
-  Vec3 friction = pc_select3(of_step, dragged, held); Real any = pc_select(pc_or(of_step, pc_max(pc_max(from.v.x, from.v.y), pc_max(from.v.z, from.s)) > PC_REAL(0.5)), w0, zero);
+  Vec3 friction = pc_select3(of_step, dragged, held); Real any = pc_select(pc_or(of_step, pc_max(pc_max(from.v.x, from.v.y), pc_max(from.v.z, from.s)) > PC_REAL(0.5)), k0, zero);
   precise Real f1 = pc_dot(t1, friction) * any; precise Real f2 = pc_dot(t2, friction) * any; precise Real ft = pc_select(of_step, twisted, old_twist) * any;
-  pc_st_pushes(PC_PASS m, these, IMPULSE_T, f1); pc_st_pushes(PC_PASS m, these, IMPULSE_T + 1u, f2); pc_st_pushes(PC_PASS m, these, IMPULSE_T + 2u, ft);
+  pc_st_pushes(PC_PASS m, all, IMPULSE_T, f1); pc_st_pushes(PC_PASS m, all, IMPULSE_T + 1u, f2); pc_st_pushes(PC_PASS m, all, IMPULSE_T + 2u, ft);
 #endif
   for (uint i = 0u; i < 4u; i++) pc_st_pushes(PC_PASS m, of_step, IMPULSE_LARGEST + i, zero);
-  precise Real load = l0 + l1 + l2 + l3; pc_st_pushes(PC_PASS m, these, IMPULSE_BEFORE, load);
-  precise Real n0 = pc_select(of_step, mean_v.x, m0); precise Real n1 = pc_select(of_step, mean_v.y, m1); precise Real n2 = pc_select(of_step, mean_v.z, m2); precise Real n3 = pc_select(of_step, mean_s, m3);
-  pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN, n0); pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN + 1u, n1); pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN + 2u, n2); pc_st_pushes(PC_PASS m, these, IMPULSE_MEAN + 3u, n3);
+  precise Real load = l0 + l1 + l2 + l3; pc_st_pushes(PC_PASS m, all, IMPULSE_BEFORE, load);
+  precise Real n0 = pc_select(of_step, mean_v.x, m0) * k0; precise Real n1 = pc_select(of_step, mean_v.y, m1) * k1; precise Real n2 = pc_select(of_step, mean_v.z, m2) * k2; precise Real n3 = pc_select(of_step, mean_s, m3) * k3;
+  pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN, n0); pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN + 1u, n1); pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN + 2u, n2); pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN + 3u, n3);
 }
 #undef PC_SOME_ROWS

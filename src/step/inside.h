@@ -75,7 +75,9 @@ struct Stepper::Inside final : Collider {
   ForceJumps jumps;
   StepPlan no_plan;
   Clock::time_point began;
-  std::vector<std::uint32_t> to_meet;  // rows of contacts
+  // of the sub-step in hand: rows of contacts, the block of each so many of them, and the blocks of some
+  std::vector<std::uint32_t> to_meet, blocks, some;
+  std::vector<Range> renewed, struck;
 
   void lap(Timer timer) {
     if (!settings.timings) return;
@@ -109,11 +111,32 @@ struct Stepper::Inside final : Collider {
   }
 
   void collide(WorldState& s, unsigned octave, bool first, double h) override {
+    const std::uint32_t width = schedule.contacts.width();
     to_meet.clear();
-    const std::vector<std::uint32_t>& order = schedule.contacts.order();
+    blocks.clear();
     for (const Range& range : schedule.contacts.ranges(octave))
-      to_meet.insert(to_meet.end(), order.begin() + range.begin * schedule.contacts.width(), order.begin() + range.end * schedule.contacts.width());
-    detector.meet(s, to_meet, first, h, detection());
+      for (std::uint32_t block = range.begin; block < range.end; block++) {
+        const auto rows = schedule.contacts.order().begin() + block * width;
+        to_meet.insert(to_meet.end(), rows, rows + width);
+        blocks.push_back(block);
+      }
+    detector.meet(s, to_meet, octave, first, h, detection());
+    blocks_of(detector.renewed(), renewed);
+    blocks_of(detector.struck(), struck);
+  }
+  std::span<const Range> renewed_blocks() const override { return renewed; }
+  std::span<const Range> struck_blocks() const override { return struck; }
+  /// Of places in `to_meet`.
+  void blocks_of(std::span<const std::uint32_t> places, std::vector<Range>& ranges) {
+    const std::uint32_t width = schedule.contacts.width();
+    some.assign(places.begin(), places.end());
+    for (std::uint32_t& place : some) place /= width;
+    std::ranges::sort(some);
+    ranges.clear();
+    for (const std::uint32_t place : some) {
+      const std::uint32_t block = blocks[place];
+      if (ranges.empty() || block >= ranges.back().end) ranges.push_back({block, block + 1});
+    }
   }
 
   Status prepare(Precision precision) {
@@ -167,7 +190,8 @@ struct Stepper::Inside final : Collider {
       freeze(s);
       update_structure(s);
     }
-    record_events(s, dt);
+    record_events(s);
+    detector.let_go(s);
     if (settings.sleep) let_sleep(s, dt);
     ForceJumps::forget(own.ordered());
     recorder.follow_sleep(settings, s);
@@ -175,10 +199,10 @@ struct Stepper::Inside final : Collider {
     return ok;
   }
 
-  void record_events(const WorldState& s, double dt) {
+  void record_events(const WorldState& s) {
     if (!EventRecorder::wanted(settings)) return;
     const AlignedBytes* poses = plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
-    recorder.record(settings, s, {poses, runner.before(Buffer::motion), dt}, schedule.moving_bodies());
+    recorder.record(settings, s, {poses, detector.origins()}, schedule.moving_bodies());
   }
 
   /// The step was made: what is at rest may fall asleep.
@@ -285,7 +309,7 @@ struct Stepper::Inside final : Collider {
   /// And order, of each island, in which kernels then go.
   void choose_substeps(WorldState& s, double dt, const Detector::Found& found) {
     choose_order(fourth, s, schedule.trees, dt);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces, fourth.trees(),
                        own.kernels().pairs_of_bodies(), settings, dt) ||
         other)
       schedule.group(octaves.of_bodies());

@@ -46,6 +46,10 @@ std::uint32_t left_quad() {
   return quad;
 }
 
+bool prepares(Kernel k) { return k == Kernel::contact_prepare || k == Kernel::contact_prepare_frictionless; }
+bool strikes(Kernel k) { return k == Kernel::contact_impact || k == Kernel::contact_impact_frictionless; }
+bool restitutes(Kernel k) { return k == Kernel::contact_restitution || k == Kernel::contact_restitution_frictionless; }
+
 }  // namespace
 
 GlBackendMaker& gl_backend_maker() {
@@ -208,6 +212,13 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
   return at(place).backend->width_for(domain, side_by_side(domain, schedule));
 }
 
+/// Rows that stand need not be made, and what has no impact no look at one: on the host such runs go over the blocks of the others.
+void Runner::narrow(const PlanEntry& entry, bool bounces) {
+  if (entry.place != Place::cpu || entry.own) return;
+  const bool prepare = prepares(entry.kernel) && entry.phase != Phase::first, strike = strikes(entry.kernel) && !bounces;
+  if (prepare || strike) narrowed_.push_back({std::uint32_t(runs_.size()) - 1, strike});
+}
+
 /// Empty ranges are left out, and those that need not follow one another are joined.
 void Runner::add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule) {
   if (entry.own) return add_own(entry, state, schedule);
@@ -257,7 +268,12 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
   calls_.clear();
   runs_.clear();
   ranges_.clear();
+  narrowed_.clear();
   const PlanEntry* before = nullptr;
+  const bool bounces = std::ranges::any_of(plan.entries, [](const PlanEntry& e) {
+    return e.kind == PlanEntry::Kind::kernel && !e.own && restitutes(e.kernel);
+  });
+  std::size_t collides = 0;  // the call
   for (const PlanEntry& entry : plan.entries) {
     const bool kernel = entry.kind == PlanEntry::Kind::kernel;
     const bool clocked = timings && before && (timer_of(*before) != timer_of(entry) || before->place != entry.place);
@@ -267,9 +283,15 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
     const bool joins = kernel && !traced && before && before->kind == PlanEntry::Kind::kernel && before->place == entry.place &&
                        before->again == 0 && entry.again == 0 && !clocked && !plan.flight && !(gl_ && entry.place == Place::cpu);
     if (!joins) calls_.push_back({&entry, std::uint32_t(runs_.size()), 0, false});
+    if (entry.kind == PlanEntry::Kind::collide) {
+      collides = calls_.size() - 1;
+      calls_.back().narrowed = std::uint32_t(narrowed_.size());
+    }
     if (kernel) {
       add_run(entry, state, schedule);
       calls_.back().count++;
+      narrow(entry, bounces);
+      if (!narrowed_.empty()) calls_[collides].narrowed_count = std::uint32_t(narrowed_.size()) - calls_[collides].narrowed;
     }
     before = &entry;
   }
@@ -347,6 +369,8 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
     if (!collider_) return {};  // the table holds what was found
     collider_->collide(state, entry.octave, entry.substep == 0, substep_of(entry, infos, state.tables.precision()));
     if (gl_) state.tables.touch(Buffer::contact);
+    for (const Narrowed& n : std::span(narrowed_).subspan(call.narrowed, call.narrowed_count))
+      runs_[n.run].ranges = n.struck ? collider_->struck_blocks() : collider_->renewed_blocks();
     return {};
   }
   if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state);

@@ -22,6 +22,9 @@ class Collider {
   virtual ~Collider() = default;
   /// Of islands of one level, in a sub-step of h [s]; `first`: of the step.
   virtual void collide(WorldState& state, unsigned octave, bool first, double h) = 0;
+  /// Blocks of contacts, whose rows it has made other than they were in the sub-step before; and blocks with impacts.
+  virtual std::span<const Range> renewed_blocks() const = 0;
+  virtual std::span<const Range> struck_blocks() const = 0;
 };
 
 class Runner final : Keeper {
@@ -108,6 +111,11 @@ class Runner final : Keeper {
     std::uint32_t first = 0, count = 0;
     bool last = false;  // of a stage that is clocked
     bool ends = false;  // a sub-step
+    std::uint32_t narrowed = 0, narrowed_count = 0;  // of a collide entry: runs that go over some blocks alone
+  };
+  struct Narrowed {
+    std::uint32_t run;
+    bool struck;  // over blocks with impacts; else over renewed ones
   };
 
   void fetch(Buffer buffer) override;
@@ -123,6 +131,7 @@ class Runner final : Keeper {
   /// Finds calls_, and what undo must find.
   void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
+  void narrow(const PlanEntry& entry, bool bounces);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
   double substep_of(const PlanEntry& entry, const void* infos, Precision precision) const;
@@ -153,6 +162,7 @@ class Runner final : Keeper {
   bool watched_ = false;
   Tracer tracer_;
   Collider* collider_ = nullptr;  // of the step
+  std::vector<Narrowed> narrowed_;
 };
 
 }  // namespace pcphys
