@@ -162,6 +162,7 @@ class Detector {
                Touch<Scalar>& touch);
   template <class Scalar>
   Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, Touch<Scalar>& touch) const;
+  bool may_meet(const Standing& standing, const Vec3& normal, double gap) const;
   /// The shapes of a pair in the order of the contact's bodies.
   Pair in_order(std::uint32_t pair) const;
   template <class Scalar> Scalar look_margin(Pair shapes) const;
@@ -203,6 +204,7 @@ class Detector {
   std::vector<std::uint32_t> moving_;  // rows of bodies that do not stand; whole lanes
   std::vector<std::uint32_t> bodies_;  // rows, of shapes; whole lanes
   std::uint32_t movers_ = 0;           // bodies that do not stand
+  double dt_ = 0, fall_ = 0;           // the step [s], and how far gravity moves what rests in it, with a margin [m]
   double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
   std::vector<Standing> standings_;    // of contacts, by row
   std::vector<Moved> looked_;          // and how their bodies had moved when they were looked at, where that was within the step

@@ -14,6 +14,8 @@
 namespace pcphys {
 namespace {
 
+template <class Scalar> Vec3 to_vec3(const Scalar* v) { return {double(v[0]), double(v[1]), double(v[2])}; }
+
 /// Whether some contact is of a body that was just placed and settles still after this step has begun.
 bool some_settles(const WorldState& s, std::span<const std::array<std::uint32_t, 2>> ends) {
   return std::ranges::any_of(ends, [&](const auto& e) { return s.settles(e[0]) || s.settles(e[1]); });
@@ -92,6 +94,24 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   return c;
 }
 
+/// Whether shapes that are further apart than they are thick may come together by their own motion, or by what others send them: the
+/// bodies of a contact are of one island, and need one another's sub-steps.
+bool Detector::may_meet(const Standing& c, const Vec3& normal, double gap) const {
+  const double reach = double(reach_[c.shapes[0]]) + double(reach_[c.shapes[1]]), near = margin(c.shapes[0], c.shapes[1]);
+  if (gap <= near + std::min(reach, double(c.thick))) return true;
+  const Twist &a = twists_[c.rows[0]], &b = twists_[c.rows[1]];
+  const float* const others = reinterpret_cast<const float*>(columns_.data()) + (bound_columns - 1) * bodies_.size();
+  const double closing = normal.x * (double(a.v[0]) - double(b.v[0])) + normal.y * (double(a.v[1]) - double(b.v[1])) +
+                         normal.z * (double(a.v[2]) - double(b.v[2]));
+  const auto turning = [&](std::uint32_t shape, const Twist& twist) {
+    const Proxy& p = proxies_[shape];
+    return std::min(double(twist.across) * dt_, double(largest_turn)) * double(p.lever_across) +
+           std::min(double(twist.turn) * dt_, double(largest_turn)) * double(p.lever_any);
+  };
+  return gap <= near + std::max(closing * dt_, 0.0) + fall_ + turning(c.shapes[0], a) + turning(c.shapes[1], b) +
+                    double(others[c.shapes[0]]) + double(others[c.shapes[1]]);
+}
+
 template <class Scalar>
 void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found) {
   if (first == last) return;
@@ -152,6 +172,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     Manifold<Scalar>& manifold = *touch.manifold;
     found.faces |= manifold.count > 1;
     const Standing standing = stand<Scalar>(s, scratch, i, touch);
+    if (!standing.touches && !may_meet(standing, to_vec3(manifold.normal), standing.gap)) return;
     const ContactKey key{a, b};
     if (kept < before_rows) keep_until(&key);
     const std::size_t row = next_.keys.size();
