@@ -33,6 +33,7 @@ class Detector {
     double least_bounce = 0;    // slower approaches do not bounce [m/s]
     std::size_t max_pairs = 0;
     std::uint32_t lanes = 0;  // of the narrow phase; 0: the widest that the processor has
+    bool bounces = false;     // some contact has restitution
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
@@ -162,7 +163,13 @@ class Detector {
                Touch<Scalar>& touch);
   template <class Scalar>
   Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, Touch<Scalar>& touch) const;
-  bool may_meet(const Standing& standing, const Vec3& normal, double gap) const;
+  /// Of a contact whose shapes are far apart: the gap that they have to come across, and how far each comes by itself [m].
+  struct Distant {
+    std::uint32_t row;
+    double gap, comes[2];
+  };
+  Distant distant(std::uint32_t row, const Standing& standing, const Vec3& normal) const;
+  void drop_distant(ContactColumns& contacts, AlignedBytes& table, std::size_t row_bytes);
   /// The shapes of a pair in the order of the contact's bodies.
   Pair in_order(std::uint32_t pair) const;
   template <class Scalar> Scalar look_margin(Pair shapes) const;
@@ -182,6 +189,7 @@ class Detector {
   template <class Scalar> void find_sent(const Substep<Scalar>& look);
   template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
   template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look);
+  template <class Scalar> void find_free_ways(const Substep<Scalar>& look);
   float went(std::uint32_t body) const { return ways_[body].went; }
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
@@ -215,6 +223,8 @@ class Detector {
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
   std::vector<std::uint32_t> renewed_, struck_, on_standing_, inner_;  // places in the contacts of a sub-step
   std::vector<std::vector<std::uint32_t>> anew_;                       // by level: rows that were renewed in the sub-step before
+  std::vector<Distant> distant_;      // in ascending order of their rows
+  std::vector<char> sent_elsewhere_;  // bodies that contacts may send elsewhere than they go by themselves
   std::vector<std::uint32_t> gone_;                                    // rows that came apart in the step
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]

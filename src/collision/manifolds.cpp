@@ -94,22 +94,60 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   return c;
 }
 
-/// Whether shapes that are further apart than they are thick may come together by their own motion, or by what others send them: the
-/// bodies of a contact are of one island, and need one another's sub-steps.
-bool Detector::may_meet(const Standing& c, const Vec3& normal, double gap) const {
-  const double reach = double(reach_[c.shapes[0]]) + double(reach_[c.shapes[1]]), near = margin(c.shapes[0], c.shapes[1]);
-  if (gap <= near + std::min(reach, double(c.thick))) return true;
-  const Twist &a = twists_[c.rows[0]], &b = twists_[c.rows[1]];
-  const float* const others = reinterpret_cast<const float*>(columns_.data()) + (bound_columns - 1) * bodies_.size();
-  const double closing = normal.x * (double(a.v[0]) - double(b.v[0])) + normal.y * (double(a.v[1]) - double(b.v[1])) +
-                         normal.z * (double(a.v[2]) - double(b.v[2]));
-  const auto turning = [&](std::uint32_t shape, const Twist& twist) {
-    const Proxy& p = proxies_[shape];
-    return std::min(double(twist.across) * dt_, double(largest_turn)) * double(p.lever_across) +
-           std::min(double(twist.turn) * dt_, double(largest_turn)) * double(p.lever_any);
+/// Shapes that are further apart than they are thick: how far each comes towards the other by its own motion, unless something sends it
+/// elsewhere.
+Detector::Distant Detector::distant(std::uint32_t row, const Standing& c, const Vec3& normal) const {
+  const auto comes = [&](int side) {
+    const Proxy& p = proxies_[c.shapes[side]];
+    const Twist& t = twists_[c.rows[side]];
+    const double along = normal.x * double(t.v[0]) + normal.y * double(t.v[1]) + normal.z * double(t.v[2]);
+    const double turns = std::min(double(t.across) * dt_, double(largest_turn)) * double(p.lever_across) +
+                         std::min(double(t.turn) * dt_, double(largest_turn)) * double(p.lever_any);
+    return (side == 0 ? along : -along) * dt_ + turns + (p.responds ? fall_ : 0);
   };
-  return gap <= near + std::max(closing * dt_, 0.0) + fall_ + turning(c.shapes[0], a) + turning(c.shapes[1], b) +
-                    double(others[c.shapes[0]]) + double(others[c.shapes[1]]);
+  return {row, c.gap - margin(c.shapes[0], c.shapes[1]), {comes(0), comes(1)}};
+}
+
+/// Bodies of a contact are of one island and need one another's sub-steps. So distant pairs are none that do not come together, wherever
+/// contacts with others may send their bodies.
+void Detector::drop_distant(ContactColumns& contacts, AlignedBytes& table, std::size_t row_bytes) {
+  if (distant_.empty()) return;
+  sent_elsewhere_.assign(levers_.size(), false);
+  const auto note = [&](std::uint32_t row) {
+    for (const std::uint32_t body : contacts.ends[row]) sent_elsewhere_[body] = true;
+  };
+  std::size_t next = 0;
+  for (std::uint32_t row = 1; row < contacts.keys.size(); row++) {
+    const bool far = next < distant_.size() && distant_[next].row == row;
+    if (!far || distant_[next].comes[0] + distant_[next].comes[1] >= distant_[next].gap) note(row);
+    next += far;
+  }
+  std::size_t kept = 1;
+  next = 0;
+  for (std::uint32_t row = 1; row < contacts.keys.size(); row++) {
+    if (next < distant_.size() && distant_[next].row == row) {
+      const Distant& d = distant_[next++];
+      const auto comes = [&](int side) {
+        const std::uint32_t body = contacts.ends[row][std::size_t(side)];
+        return sent_elsewhere_[body] ? double(reach_[standings_[row].shapes[side]]) : d.comes[side];
+      };
+      if (comes(0) + comes(1) < d.gap) continue;
+    }
+    if (kept != row) {
+      contacts.keys[kept] = contacts.keys[row];
+      contacts.ends[kept] = contacts.ends[row];
+      contacts.features[kept] = contacts.features[row];
+      standings_[kept] = standings_[row];
+      origins_[kept] = origins_[row];
+      std::copy_n(table.data() + row * row_bytes, row_bytes, table.data() + kept * row_bytes);
+    }
+    kept++;
+  }
+  contacts.keys.resize(kept);
+  contacts.ends.resize(kept);
+  contacts.features.resize(kept);
+  standings_.resize(kept);
+  origins_.resize(kept);
 }
 
 template <class Scalar>
@@ -145,6 +183,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   origins_.resize(1);
   for (std::vector<std::uint32_t>& rows : anew_) rows.clear();
   gone_.clear();
+  distant_.clear();
   std::uint32_t old = 1;
   hints_.resize(pairs.size());
   found = {};
@@ -172,7 +211,6 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     Manifold<Scalar>& manifold = *touch.manifold;
     found.faces |= manifold.count > 1;
     const Standing standing = stand<Scalar>(s, scratch, i, touch);
-    if (!standing.touches && !may_meet(standing, to_vec3(manifold.normal), standing.gap)) return;
     const ContactKey key{a, b};
     if (kept < before_rows) keep_until(&key);
     const std::size_t row = next_.keys.size();
@@ -188,6 +226,8 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
     standings_.resize(row + 1);
     standings_[row] = standing;
+    if (!standing.touches && standing.gap > margin(a, b) + double(standing.thick))
+      distant_.push_back(distant(std::uint32_t(row), standing, to_vec3(manifold.normal)));
     origins_.push_back(bodies.position(row_a));
     write_contact(manifold, of_a, of_b, out, features.data());
     out[31] = Scalar(touch.impact);
@@ -207,6 +247,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     for (const std::uint32_t i : near_) add(i);
   keep_until(nullptr);
   found.points += found.kept_points;
+  drop_distant(next_, scratch.contacts, reals * sizeof(Scalar));
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
   looked_.resize(next_.keys.size());
   found.placed = s.settling > 0 && some_settles(s, next_.ends);

@@ -81,33 +81,67 @@ void back_to_start(const TwistOf<Scalar>& a, const TwistOf<Scalar>& b, const Sca
   }
 }
 
-/// From the manifold of now to that of the instant within h [s] at which the shapes come within `near` [m] of each other, which is
-/// returned; below 0 where they do not. Bounded: what so many looks have not brought together passes, but for a gap that is none
-/// (`none`); what it overlaps in the end the next sub-step sees.
-template <class Scalar, class Find>
-double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double none, double h,
-                   Find&& find, Manifold<Scalar>& m) {
-  constexpr int most = 32;
-  double t = 0;
-  ShapeView<Scalar> here = *a.view, there = *b.view;
-  for (int i = 0; i < 3; i++) there.p[i] += apart[i];
-  for (int k = 0; k < most; k++) {
-    const double gap = std::min(double(support_gap(here, there, m.normal)), double(least_separation(m)));
-    if (gap <= near) return t;
-    if (t >= h) return -1;
-    double nearing = a.spin_along(m.normal) + b.spin_along(m.normal);
-    for (int i = 0; i < 3; i++) nearing += double(m.normal[i]) * (double(a.twist.v[i]) - double(b.twist.v[i]));
-    if (nearing * (h - t) < gap - near) return -1;
-    t = std::min(h, t + (gap - near / 2) / nearing);
+/// How two shapes stand at a time of the sub-step, and the manifold there (left as it was where they are too far apart for one).
+template <class Scalar, class Find> struct Approach {
+  const Mover<Scalar>&a, &b;
+  const Scalar* apart;
+  Find& find;
+  ShapeView<Scalar> here, there;
+
+  void go_to(double t) {
     here = after(a, t);
     there = after(b, t);
     for (int i = 0; i < 3; i++) there.p[i] += apart[i] + Scalar((double(b.twist.v[i]) - double(a.twist.v[i])) * t);
+  }
+  bool look(double t, Manifold<Scalar>& m) {
+    go_to(t);
     Manifold<Scalar> next;
     find(here, there, next);
-    if (next.count == 0) return -1;
+    if (next.count == 0) return false;
     m = next;
+    return true;
   }
-  return double(least_separation(m)) <= none ? t : -1;
+  double gap(const Manifold<Scalar>& m) const {
+    return std::min(double(support_gap(here, there, m.normal)), double(least_separation(m)));
+  }
+  /// How fast the gap along a normal closes, at most [m/s].
+  double nearing(const Scalar* n) const {
+    double rate = a.spin_along(n) + b.spin_along(n);
+    for (int i = 0; i < 3; i++) rate += double(n[i]) * (double(a.twist.v[i]) - double(b.twist.v[i]));
+    return rate;
+  }
+};
+
+/// From the manifold of now to that of the instant within h [s] at which the shapes come within `near` [m] of each other, which is
+/// returned; below 0 where they do not. So many looks at most: conservative advancement creeps where shapes turn fast, and what it has not
+/// brought together by then, but overlaps at the end, halving does. What is missed all the same the next sub-step sees.
+template <class Scalar, class Find>
+double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double h, Find&& find,
+                   Manifold<Scalar>& m) {
+  constexpr int most = 16, halvings = 20;
+  Approach<Scalar, Find> way{a, b, apart, find, {}, {}};
+  double t = 0;
+  way.go_to(t);
+  for (int k = 0; k < most; k++) {
+    const double gap = way.gap(m);
+    if (gap <= near) return t;
+    if (t >= h) return -1;
+    const double nearing = way.nearing(m.normal);
+    if (nearing * (h - t) < gap - near) return -1;
+    t = std::min(h, t + (gap - near / 2) / nearing);
+    if (!way.look(t, m)) return -1;
+  }
+  Manifold<Scalar> end = m;
+  if (!way.look(h, end) || way.gap(end) > near) return -1;
+  double late = h;
+  for (int k = 0; k < halvings; k++) {
+    const double middle = t + (late - t) / 2;
+    Manifold<Scalar> seen = m;
+    const bool together = way.look(middle, seen) && way.gap(seen) <= near;
+    (together ? late : t) = middle;
+    if (!together) m = seen;
+  }
+  return t;
 }
 
 /// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand [m].

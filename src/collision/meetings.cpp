@@ -180,6 +180,12 @@ template <class Scalar> struct Detector::Meeting {
   }
   /// And how far they may come in the sub-step by their own velocities [m].
   double way() const { return (speed() + spin(ta, pa) + spin(tb, pb)) * h; }
+  /// And how much nearer along the normal by which their gap is known, at most [m].
+  double nearing() const {
+    double closing = 0;
+    for (int k = 0; k < 3; k++) closing += double(out[k]) * (double(ta.v[k]) - double(tb.v[k]));
+    return (std::max(closing, 0.0) + spin(ta, pa) + spin(tb, pb)) * h;
+  }
   /// What moves fast along what answers too, or turns into it, is struck and not held: nothing of the contact lasts.
   bool quick() const {
     const double turns = (pa.responds ? spin(ta, pa) : 0) + (pb.responds ? spin(tb, pb) : 0);
@@ -240,7 +246,7 @@ template <class Scalar> struct Detector::Meeting {
       const Mover<Scalar> mover_b{&b, tb, float(spin(tb, pb)), pb.centred, float(lever(pb))};
       const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
       Manifold<Scalar> met = m;
-      t = meet_within(mover_a, mover_b, apart, near, 1e-4 * thick, h, look_there, met);
+      t = meet_within(mover_a, mover_b, apart, near, h, look_there, met);
       meets = t >= 0;
       if (!meets && c.gap > sent) return stand_aside();
       if (meets) m = met;  // else the rows stop what others send them beyond the gap of now
@@ -374,6 +380,22 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     if (c.acts && look.s.stands(c.rows[1])) on_standing_.push_back(at);
   }
   drop_inner_edges(look);
+  if (look.options.bounces || !struck_.empty()) find_free_ways(look);
+}
+
+/// How far an impact may send a body before it could reach what it does not meet by itself: two that both respond share the gap.
+template <class Scalar> void Detector::find_free_ways(const Substep<Scalar>& look) {
+  Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
+  const auto way = [&](std::uint32_t body) -> Scalar& { return delta[body * reals_of(Buffer::delta) + 8]; };
+  for (const std::uint32_t row : look.contacts) way(standings_[row].rows[0]) = way(standings_[row].rows[1]) = Scalar(constants::largest_state);
+  for (const std::uint32_t row : look.contacts) {
+    const Standing& c = standings_[row];
+    if (row == 0 || c.acts || c.jointed) continue;
+    const Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
+    const bool both = m.pa.responds && m.pb.responds;
+    const double left = std::max(c.gap - m.moved() - m.nearing(), 0.0) * (both ? 0.5 : 1);
+    for (const std::uint32_t body : c.rows) way(body) = std::min(way(body), Scalar(left));
+  }
 }
 
 void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h, const Options& options) {

@@ -52,11 +52,17 @@ PC_FN Acceleration pc_acceleration(PC_IO Index i, BodyState b) {
   precise Real response = b.response; r.turn = pc_scale(pc_sym_mul(b.inertia, turn.v), response); return r;
 }
 
-// The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise).
+// The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise). What it goes after it ends
+// with its free way: beyond that may be what nobody looked for on a way that it was not to go. It keeps its velocity, and meets that next.
 PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits, Real strike) {
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
   precise Real back = -t; Vec3 shift = pc_scale(dv, back);
+  Quad room = PC_GATHER(delta, i, 2u); Real speed = pc_length(after.v);
+  precise Real rest = PC_INFO(h) - t; precise Real way = speed * rest; Mask ends = way > room.v.x;
+  precise Real lost = rest - room.v.x * pc_inverse_or_zero(speed); precise Real none = -lost;
+  shift = pc_select3(ends, pc_madd(shift, after.v, none), shift); precise Real left = room.v.x - way;
+  PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(left, PC_REAL(0.0)), room.v.y, room.v.z), room.s));
   Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));

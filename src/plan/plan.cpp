@@ -40,13 +40,16 @@ class Builder {
 
   /// The narrow phase of a sub-step, on the host (Detector::meet).
   void collide(std::uint32_t substep) {
-    static constexpr Access accesses[] = {{Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, false}, {Buffer::contact, true}};
+    static constexpr Access accesses[] = {{Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, true}, {Buffer::contact, true}};
     for (const Access& a : accesses) bring(a.buffer, Place::cpu, substep);
-    plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, substep == 0 ? Phase::first : Phase::biased, false, substep, octave_, nullptr, 0});
-    Known& contact = at(Buffer::contact);
-    overwrite(Buffer::contact);
-    contact.current = {true, false};
-    contact.host_wrote = true;
+    const Phase phase = substep == 0 ? Phase::first : Phase::biased;
+    plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, phase, false, substep, octave_, nullptr, 0});
+    for (const Access& a : accesses) {
+      if (!a.write) continue;
+      overwrite(a.buffer);
+      at(a.buffer).current = {true, false};
+      at(a.buffer).host_wrote = true;
+    }
   }
 
   /// The host's own kernels of a moment of the step, in a sub-step of `count`.

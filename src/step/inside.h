@@ -78,6 +78,7 @@ struct Stepper::Inside final : Collider {
   // of the sub-step in hand: rows of contacts, the block of each so many of them, and the blocks of some
   std::vector<std::uint32_t> to_meet, blocks, some;
   std::vector<Range> renewed, struck;
+  bool bounces = false;  // some contact of the step has restitution
 
   void lap(Timer timer) {
     if (!settings.timings) return;
@@ -120,7 +121,9 @@ struct Stepper::Inside final : Collider {
         to_meet.insert(to_meet.end(), rows, rows + width);
         blocks.push_back(block);
       }
-    detector.meet(s, to_meet, octave, first, h, detection());
+    Detector::Options options = detection();
+    options.bounces = bounces;
+    detector.meet(s, to_meet, octave, first, h, options);
     blocks_of(detector.renewed(), renewed);
     blocks_of(detector.struck(), struck);
   }
@@ -332,6 +335,7 @@ struct Stepper::Inside final : Collider {
     wanted.second_order = fourth.reasons();
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
+    bounces = found.restitution;
     add_contacts(wanted, schedule, found, Settling(h, s.gravity).visits);
     if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
     jumps.act(s, own.ordered(), schedule.moving_bodies(), h, dt, runner);

@@ -368,7 +368,8 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
   if (entry.kind == PlanEntry::Kind::collide) {
     if (!collider_) return {};  // the table holds what was found
     collider_->collide(state, entry.octave, entry.substep == 0, substep_of(entry, infos, state.tables.precision()));
-    if (gl_) state.tables.touch(Buffer::contact);
+    if (gl_)
+      for (const Buffer buffer : {Buffer::contact, Buffer::delta}) state.tables.touch(buffer);
     for (const Narrowed& n : std::span(narrowed_).subspan(call.narrowed, call.narrowed_count))
       runs_[n.run].ranges = n.struck ? collider_->struck_blocks() : collider_->renewed_blocks();
     return {};
