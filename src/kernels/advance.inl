@@ -11,7 +11,8 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Quad moved = PC_GATHER(delta, i, 0u);
   Quad rotated = PC_GATHER(delta, i, 1u);
 
-  Moved m = pc_advance(PC_PASS p, linear, angular, inverse);
+  Quad left = PC_GATHER(delta, i, 2u);
+  Moved m = pc_advance(PC_PASS p, linear, angular, inverse, left.v.y);
 #ifdef PC_SEED
   PC_SCATTER(motion, i, 1u, angular);
 #endif
@@ -28,5 +29,6 @@ PC_FN void pc_kernel(PC_IO Index i) {
   PC_SCATTER(pose, i, 2u, p.place_low);
   PC_SCATTER(pose, i, 3u, p.turned_low);
   PC_SCATTER(delta, i, 0u, moved);
+  PC_SCATTER(delta, i, 2u, pc_quad(pc_zero3(), PC_REAL(0.0)));
   PC_SCATTER(delta, i, 1u, pc_quad(rotated.v, rotated.s));
 }

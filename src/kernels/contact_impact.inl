@@ -58,11 +58,8 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
   precise Real back = -t; Vec3 shift = pc_scale(dv, back);
-  Quad room = PC_GATHER(delta, i, 2u); Real speed = pc_length(after.v);
-  precise Real rest = PC_INFO(h) - t; precise Real way = speed * rest; Mask ends = way > room.v.x;
-  precise Real lost = rest - room.v.x * pc_inverse_or_zero(speed); precise Real none = -lost;
-  shift = pc_select3(ends, pc_madd(shift, after.v, none), shift); precise Real left = room.v.x - way;
-  PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(left, PC_REAL(0.0)), room.v.y, room.v.z), room.s));
+  Quad left = PC_GATHER(delta, i, 2u); precise Real lag = (PC_INFO(h) - t) - left.v.x * pc_inverse_or_zero(pc_length(after.v));
+  PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(left.v.x, pc_max(left.v.y, lag), left.v.z), left.s));
   Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
@@ -175,7 +172,9 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Real until = pc_min(pc_min(pc_until(PC_PASS c0), pc_until(PC_PASS c1)), pc_min(pc_until(PC_PASS c2), pc_until(PC_PASS c3)));
   Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
-  Mask hits = pc_and(mine, here > zero);
+  // what comes later than one of them stops is for the next sub-step
+  Quad left_a = PC_GATHER(delta, ia, 2u); Quad left_b = PC_GATHER(delta, ib, 2u); precise Real last = PC_INFO(h) * PC_REAL(1.0001) - pc_max(left_a.v.y, left_b.v.y);
+  Mask hits = pc_and(pc_and(mine, here > zero), until < last);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
 
   // effective masses at the arms of the impact

@@ -45,9 +45,9 @@ PC_FN void pc_kernel(PC_IO Index i) {
     linear_before = m.linear; angular_before = m.angular;
     pc_integrate(PC_PASS m, f);
 #ifdef PC_STILL
-    pc_move(PC_PASS p, m.linear);
+    pc_move(PC_PASS p, m.linear, PC_REAL(0.0));
 #else
-    pc_advance(PC_PASS p, m.linear, m.angular, inverse);
+    pc_advance(PC_PASS p, m.linear, m.angular, inverse, PC_REAL(0.0));
 #endif
   }
   HalfChanges c = pc_half_changes(PC_PASS m.linear, m.angular, linear_before, angular_before, PC_GATHER(mass, i, 0u), f);
