@@ -7,9 +7,9 @@
 // Where no body rotates (PC_STILL) it is left out.
 // The original's scheme (PC_SEED) has no gyroscopic terms: w is constant, so that L = I w turns as the body does.
 
-// What an impact sent further than it could be looked for (contact_impact.inl) goes less far: by `lag`, of the sub-step [s].
-PC_FN Vec3 pc_move(PC_IO PC_INOUT(BodyPose) p, Quad linear, Real lag) {
-  precise Real time = PC_INFO(h) - lag; Vec3 step = pc_scale(linear.v, time);
+// What an impact sent further than it could be looked for (contact_impact.inl) goes until then alone: `until`, of the sub-step, above 0 [s].
+PC_FN Vec3 pc_move(PC_IO PC_INOUT(BodyPose) p, Quad linear, Real until) {
+  Real time = pc_select(until > PC_REAL(0.0), pc_min(until, PC_INFO(h)), PC_INFO(h)); Vec3 step = pc_scale(linear.v, time);
   TwoSum place = pc_two_sum(p.place.v, pc_add(p.place_low.v, step));
   p.place.v = place.sum; p.place_low.v = pc_snap3(place.low); return step;
 }
@@ -28,8 +28,8 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
 #include "turned.inl"
 
 struct Moved { Vec3 step; Quaternion before; Quaternion change; };  // of the orientation: what it was, and what was added to it
-PC_FN Moved pc_advance(PC_IO PC_INOUT(BodyPose) p, Quad linear, PC_INOUT(Quad) angular, Quad inverse, Real lag) {
-  Real h = PC_INFO(h); Moved moved; moved.step = pc_move(PC_PASS p, linear, lag);
+PC_FN Moved pc_advance(PC_IO PC_INOUT(BodyPose) p, Quad linear, PC_INOUT(Quad) angular, Quad inverse, Real until) {
+  Real h = PC_INFO(h); Moved moved; moved.step = pc_move(PC_PASS p, linear, until);
   Quaternion q = pc_quaternion(p.turned.v, p.turned.s); moved.before = q;
 #ifdef PC_SEED
   Vec3 w0 = pc_sym_mul(pc_world_inertia(q, inverse.v), angular.v);

@@ -58,8 +58,8 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
   precise Real back = -t; Vec3 shift = pc_scale(dv, back);
-  Quad left = PC_GATHER(delta, i, 2u); precise Real lag = (PC_INFO(h) - t) - left.v.x * pc_inverse_or_zero(pc_length(after.v));
-  PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(left.v.x, pc_max(left.v.y, lag), left.v.z), left.s));
+  Quad left = PC_GATHER(delta, i, 2u); precise Real until = t + left.v.x * pc_inverse_or_zero(pc_length(after.v));
+  PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(left.v.x, pc_max(left.v.y, pc_max(until, PC_TINY)), left.v.z), left.s));
   Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
@@ -134,6 +134,9 @@ PC_FN Real pc_struck(PC_IO Slot m) {
   precise Real both = a.s + b.s; return both;
 }
 
+// When in the sub-step a body stops.
+PC_FN Real pc_stops(PC_IO Quad left) { return pc_select(left.v.y > PC_REAL(0.0), pc_min(left.v.y, PC_INFO(h)), PC_INFO(h)); }
+
 PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Real zero = PC_REAL(0.0);
   Real e = PC_LD(contact_rows, m, ROW_E);
@@ -173,7 +176,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   // what comes later than one of them stops is for the next sub-step
-  Quad left_a = PC_GATHER(delta, ia, 2u); Quad left_b = PC_GATHER(delta, ib, 2u); precise Real last = PC_INFO(h) * PC_REAL(1.0001) - pc_max(left_a.v.y, left_b.v.y);
+  Quad left_a = PC_GATHER(delta, ia, 2u); Quad left_b = PC_GATHER(delta, ib, 2u); precise Real last = pc_min(pc_stops(PC_PASS left_a), pc_stops(PC_PASS left_b)) + PC_INFO(h) * PC_REAL(1e-4);
   Mask hits = pc_and(pc_and(mine, here > zero), until < last);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
 

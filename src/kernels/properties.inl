@@ -52,7 +52,7 @@ PC_PROPERTY(body, delta, 3, real, turned, scratch, 0, "rad^2", "sum of the squar
 PC_PROPERTY(body, delta, 4, vec3, rotation, scratch, 0, "rad", "rotation vector, world axes")
 PC_PROPERTY(body, delta, 7, real, struck, scratch, 0, "1", "how often impacts struck it in this step")
 PC_PROPERTY(body, delta, 8, real, free_way, scratch, 0, "m", "how far it may go in this sub-step after an impact before it could reach what it was not expected to")
-PC_PROPERTY(body, delta, 9, real, lag, scratch, 0, "s", "of the sub-step, so much it does not move")
+PC_PROPERTY(body, delta, 9, real, moves_until, scratch, 0, "s", "in this sub-step, after an impact; 0: until it ends")
 PC_BUFFER(body, material, 2, "read when a contact is made")
 PC_PROPERTY(body, material, 0, real, static_friction, input, 0.5, "1", "")
 PC_PROPERTY(body, material, 1, real, kinetic_friction, input, 0.5, "1", "")
