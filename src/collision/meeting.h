@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 #include "collision/narrow.h"
 #include "collision/support_gap.h"
@@ -19,6 +20,7 @@ template <class Scalar> struct Mover {
   float spin;    // how fast its surface comes outward by turning, at most [m/s]
   bool centred;  // its frame is the body's
   float lever;   // how far a turn of one radian moves its surface outward, at most [m]
+  float core;    // of a sphere about its centre that lies inside of it; 0: none is known [m]
 
   /// How fast it comes along the unit vector n by turning, at most [m/s]: n . (w x r) = r . (n x w).
   double spin_along(const Scalar* n) const {
@@ -83,7 +85,7 @@ void back_to_start(const TwistOf<Scalar>& a, const TwistOf<Scalar>& b, const Sca
 
 /// How two shapes stand at a time of the sub-step, and the manifold there (left as it was where they are too far apart for one).
 template <class Scalar, class Find> struct Approach {
-  const Mover<Scalar>&a, &b;
+  Mover<Scalar> a, b;
   const Scalar* apart;
   Find& find;
   ShapeView<Scalar> here, there;
@@ -112,28 +114,59 @@ template <class Scalar, class Find> struct Approach {
   }
 };
 
+enum class Advanced { apart, together, creeps };
+
+/// Conservative advancement from t on to the instant within h [s] at which the shapes come within `near` [m] of each other, with the manifold
+/// there. Bounded: it creeps where shapes turn fast for how they come together.
+template <class Scalar, class Find>
+Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m) {
+  constexpr int most = 16;
+  for (int k = 0; k < most; k++) {
+    const double gap = way.gap(m);
+    if (gap <= near) return Advanced::together;
+    if (t >= h) return Advanced::apart;
+    const double nearing = way.nearing(m.normal);
+    if (nearing * (h - t) < gap - near) return Advanced::apart;
+    t = std::min(h, t + (gap - near / 2) / nearing);
+    if (!way.look(t, m)) return Advanced::apart;
+  }
+  return Advanced::creeps;
+}
+
+/// When the spheres inside two shapes meet, by when the shapes have; below 0 where they do not. Turning does not move them.
+template <class Scalar, class Find>
+double cores_meet(const Approach<Scalar, Find>& of, double t, double near, double h) {
+  ShapeView<Scalar> cores[2] = {*of.a.view, *of.b.view};
+  Mover<Scalar> movers[2] = {of.a, of.b};
+  for (int side = 0; side < 2; side++) {
+    if (movers[side].core <= 0 || !movers[side].centred) continue;
+    cores[side].kind = ShapeKind::sphere;
+    cores[side].size[0] = Scalar(movers[side].core);
+    movers[side].view = &cores[side];
+    movers[side].spin = movers[side].lever = 0;
+  }
+  Approach<Scalar, Find> way{movers[0], movers[1], of.apart, of.find, {}, {}};
+  Manifold<Scalar> m;
+  if (!way.look(t, m)) return -1;
+  return advance(way, near, h, t, m) == Advanced::together ? t : -1;
+}
+
 /// From the manifold of now to that of the instant within h [s] at which the shapes come within `near` [m] of each other, which is
-/// returned; below 0 where they do not. So many looks at most: conservative advancement creeps where shapes turn fast, and what it has not
-/// brought together by then, but overlaps at the end, halving does. What is missed all the same the next sub-step sees.
+/// returned; below 0 where they do not. Where advancement creeps, halving finds an instant before they overlap at the end, or before what is
+/// inside of them meets. What is missed all the same the next sub-step sees.
 template <class Scalar, class Find>
 double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double h, Find&& find,
                    Manifold<Scalar>& m) {
-  constexpr int most = 16, halvings = 20;
-  Approach<Scalar, Find> way{a, b, apart, find, {}, {}};
+  constexpr int halvings = 20;
+  Approach<Scalar, std::remove_reference_t<Find>> way{a, b, apart, find, {}, {}};
   double t = 0;
   way.go_to(t);
-  for (int k = 0; k < most; k++) {
-    const double gap = way.gap(m);
-    if (gap <= near) return t;
-    if (t >= h) return -1;
-    const double nearing = way.nearing(m.normal);
-    if (nearing * (h - t) < gap - near) return -1;
-    t = std::min(h, t + (gap - near / 2) / nearing);
-    if (!way.look(t, m)) return -1;
-  }
+  const Advanced advanced = advance(way, near, h, t, m);
+  if (advanced != Advanced::creeps) return advanced == Advanced::together ? t : -1;
+  double late = cores_meet(way, t, near, h);
+  if (late < 0) late = h;
   Manifold<Scalar> end = m;
-  if (!way.look(h, end) || way.gap(end) > near) return -1;
-  double late = h;
+  if (!way.look(late, end) || way.gap(end) > near) return -1;
   for (int k = 0; k < halvings; k++) {
     const double middle = t + (late - t) / 2;
     Manifold<Scalar> seen = m;

@@ -242,8 +242,8 @@ template <class Scalar> struct Detector::Meeting {
     bool meets = c.touches;
     if (!c.touches) {
       if (c.gap > goes) return stand_aside();
-      const Mover<Scalar> mover_a{&a, ta, float(spin(ta, pa)), pa.centred, float(lever(pa))};
-      const Mover<Scalar> mover_b{&b, tb, float(spin(tb, pb)), pb.centred, float(lever(pb))};
+      const Mover<Scalar> mover_a{&a, ta, float(spin(ta, pa)), pa.centred, float(lever(pa)), pa.inner / 2};
+      const Mover<Scalar> mover_b{&b, tb, float(spin(tb, pb)), pb.centred, float(lever(pb)), pb.inner / 2};
       const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
       Manifold<Scalar> met = m;
       t = meet_within(mover_a, mover_b, apart, near, h, look_there, met);
