@@ -11,6 +11,10 @@
 
 namespace pcphys {
 namespace {
+/// Of Detector::meet.
+constexpr Access collide_accesses[] = {
+    {Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, true}, {Buffer::contact, true}};
+
 
 /// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
 class Builder {
@@ -40,11 +44,10 @@ class Builder {
 
   /// The narrow phase of a sub-step, on the host (Detector::meet).
   void collide(std::uint32_t substep) {
-    static constexpr Access accesses[] = {{Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, true}, {Buffer::contact, true}};
-    for (const Access& a : accesses) bring(a.buffer, Place::cpu, substep);
+    for (const Access& a : collide_accesses) bring(a.buffer, Place::cpu, substep);
     const Phase phase = substep == 0 ? Phase::first : Phase::biased;
     plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, phase, false, substep, octave_, nullptr, 0});
-    for (const Access& a : accesses) {
+    for (const Access& a : collide_accesses) {
       if (!a.write) continue;
       overwrite(a.buffer);
       at(a.buffer).current = {true, false};
@@ -373,6 +376,7 @@ void label_islands(Builder& b, const StepPlan& plan) {
 }  // namespace
 
 std::span<const Access> accesses(const PlanEntry& entry) {
+  if (entry.kind == PlanEntry::Kind::collide) return collide_accesses;
   return entry.own ? std::span<const Access>(entry.own->accesses) : schema(entry.kernel).accesses;
 }
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }
