@@ -156,6 +156,9 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   at[8] = Scalar(rarely() ? 0 : real(0, 1.2));
   at[9] = Scalar(at[8] * Scalar(real(0.5, 1)));
   at[10] = Scalar(rarely() ? 0 : real(0, 1));
+  for (int i = 16; i < 19; i++) at[i] = Scalar(either(1));  // from one body to the other
+  at[19] = Scalar(below(3));                                // its rows stand, were found anew, act no longer
+  for (int i = 20; i < 24; i++) at[i] = Scalar(below(5));   // which point each was
 }
 
 template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {

@@ -39,7 +39,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
     INFO("entry " << i << ": " << std::string(kernel_name(e)) << std::string(buffer_name(e)) << " on "
                   << std::string(name(e.place)));
     CHECK(e.substep < std::max(signature.substeps, 1u));
-    if (e.kind != PlanEntry::Kind::kernel) {
+    if (e.transfers()) {
       CHECK((e.place == Place::gl) == (e.kind == PlanEntry::Kind::upload));
       CHECK_FALSE(scratch_of_solver(e.buffer));
       if (e.kind == PlanEntry::Kind::download) CHECK((e.buffer < Buffer::table_buffers || e.buffer == Buffer::island_labels));
@@ -58,10 +58,15 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
       continue;
     }
 
-    const KernelSchema& k = schema(e.kernel);
-    CHECK(e.place == (k.stage == Stage::islands ? Place::gl : signature.places[std::size_t(k.stage)]));
+    const std::span<const Access> accessed = accesses(e);
+    if (e.kind == PlanEntry::Kind::kernel) {
+      const Stage of = schema(e.kernel).stage;
+      CHECK(e.place == (of == Stage::islands ? Place::gl : signature.places[std::size_t(of)]));
+    } else {
+      CHECK(e.place == Place::cpu);
+    }
     bool hazard = false;
-    for (const Access& a : k.accesses) {
+    for (const Access& a : accessed) {
       if (scratch_of_solver(a.buffer)) {
         const auto [home, first] = homes.emplace(a.buffer, e.place);
         CHECK_MESSAGE(home->second == e.place, text_of(a.buffer) << " is used in two places");
@@ -80,7 +85,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
       written.clear();
       read.clear();
     }
-    for (const Access& a : k.accesses) {
+    for (const Access& a : accessed) {
       if (e.place == Place::gl) (a.write ? written : read).insert(a.buffer);
       if (!a.write) continue;
       Holder& h = holders[a.buffer];

@@ -62,6 +62,11 @@ inline constexpr double settled_load = 1.5, settled_friction = 0.5;
 inline constexpr double least_load = 0.01;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together. They seldom do.
 inline constexpr double settling_pace = 1.5;
+/// A manifold stands until its bodies have moved against each other by this share of the smaller one's thickness.
+inline constexpr double manifold_share = 0.01;
+/// Where bodies that both answer move along each other by more than this share in a sub-step, or turn into each other, their contact is an
+/// impact: nothing of it lasts.
+inline constexpr double quick_share = 0.1;
 /// Contacts are kept up to a gap of this share of the smaller shape's radius (of the sphere that holds it), so that what happens is the
 /// same at any size.
 inline constexpr double margin_share = 0.02;

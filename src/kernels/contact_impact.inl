@@ -57,6 +57,7 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
   precise Real back = -t; Vec3 shift = pc_scale(dv, back);
+  Quad hit = PC_GATHER(delta, i, 2u); PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(hit.v.x, pc_max(t, PC_TINY)), hit.v.y, hit.v.z), hit.s));
   Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
   PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
@@ -65,20 +66,6 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
-}
-
-// A body that flies against one that stands and turns far within the sub-step meets it with its centre behind the point:
-// which of its corners comes first is chance, and rows know small turns only. So nothing gets past.
-PC_FN Mask pc_whirls(PC_IO BodyState a, BodyState b) {
-  Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b); Real h = PC_INFO(h);
-  precise Real turn = (pc_dot(wa, wa) + pc_dot(wb, wb)) * h * h; return turn > PC_REAL(0.06);
-}
-PC_FN Arms pc_arms_at(PC_IO Slot m, Vec3 moved_a, Vec3 moved_b, Vec3 n, Mask central) {
-  Arms r = pc_arms(PC_PASS m, moved_a, moved_b);
-  r.a = pc_select3(central, pc_scale(n, pc_dot(n, r.a)), r.a); r.b = pc_select3(central, pc_scale(n, pc_dot(n, r.b)), r.b); return r;
-}
-PC_FN Real pc_impact_mass(Real mass, Real light, Mask central) {
-  return pc_select(central, pc_select(mass > PC_REAL(0.0), pc_inverse_or_zero(light), PC_REAL(0.0)), mass);
 }
 
 // What has bounced does not bounce again at the end of the step: its place holds the impulse (contact_touch) in place of the approach.
@@ -157,12 +144,11 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Vec3 relative = pc_sub(b.v, a.v); Vec3 come = pc_sub(moved_b.v, moved_a.v);
   Vec3 path = pc_impact_path(PC_PASS m, n, relative, come);
   Mask both_move = pc_and(a.inverse_mass > zero, b.inverse_mass > zero); Mask both_fly = pc_and(always, both_move);
-  Mask whirls = pc_and(pc_and(always, pc_whirls(PC_PASS a, b)), pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY);
-  Arms arms = pc_arms_at(PC_PASS m, pc_zero3(), path, n, whirls);
+  Arms arms = pc_arms(PC_PASS m, pc_zero3(), path);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
 
-  Real a0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A)); Real a1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 1u)); Real a2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 2u)); Real a3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 3u));
-  Real b0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B)); Real b1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 1u)); Real b2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 2u)); Real b3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 3u));
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
+  Real b0 = PC_LD(contact_rows, m, ROW_B); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real u0 = v.vn + b0 * v.w1 - a0 * v.w2; precise Real u1 = v.vn + b1 * v.w1 - a1 * v.w2;
   precise Real u2 = v.vn + b2 * v.w1 - a2 * v.w2; precise Real u3 = v.vn + b3 * v.w1 - a3 * v.w2;
 
@@ -190,12 +176,11 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   // effective masses at the arms of the impact
   Responses r = pc_free_responses(a, b, arms.a, arms.b, n, t1, t2); r.these = hits;
   pc_renew_masses(PC_PASS m, r);
-  precise Real light = a.inverse_mass + b.inverse_mass;
-  m0 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS), light, whirls); m1 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 1u), light, whirls);
-  m2 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 2u), light, whirls); m3 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 3u), light, whirls);
+  m0 = PC_LD(contact_rows, m, ROW_MASS); m1 = PC_LD(contact_rows, m, ROW_MASS + 1u);
+  m2 = PC_LD(contact_rows, m, ROW_MASS + 2u); m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
   // all rows that close, together: equal shares of what stops their mean, then rounds of what each asks for
-  Real d01 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D)); Real d02 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 1u)); Real d03 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 2u));
-  Real d12 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 3u)); Real d13 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 4u)); Real d23 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 5u));
+  Real d01 = PC_LD(contact_rows, m, ROW_D); Real d02 = PC_LD(contact_rows, m, ROW_D + 1u); Real d03 = PC_LD(contact_rows, m, ROW_D + 2u);
+  Real d12 = PC_LD(contact_rows, m, ROW_D + 3u); Real d13 = PC_LD(contact_rows, m, ROW_D + 4u); Real d23 = PC_LD(contact_rows, m, ROW_D + 5u);
   precise Real own = c0.closes * pc_inverse_or_zero(m0) + c1.closes * pc_inverse_or_zero(m1) + c2.closes * pc_inverse_or_zero(m2) + c3.closes * pc_inverse_or_zero(m3);
   precise Real coupled = c0.closes * (c1.closes * d01 + c2.closes * d02 + c3.closes * d03) + c1.closes * (c2.closes * d12 + c3.closes * d13) + c2.closes * c3.closes * d23;
   precise Real whole = own + coupled * PC_REAL(2.0);
@@ -213,7 +198,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   }
   j0 = pc_select(hits, j0, zero); j1 = pc_select(hits, j1, zero); j2 = pc_select(hits, j2, zero); j3 = pc_select(hits, j3, zero);
 
-  Push push = pc_push(PC_PASS m, j0, j1, j2, j3); push.m1 = pc_select(whirls, zero, push.m1); push.m2 = pc_select(whirls, zero, push.m2);
+  Push push = pc_push(PC_PASS m, j0, j1, j2, j3);
   Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), push.n, PC_REAL(1.0), zero, zero, zero);
   precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
 
@@ -221,7 +206,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Mask strikes = pc_and(hits, pc_max(pc_max(c0.bounces, c1.bounces), pc_max(c2.bounces, c3.bounces)) > zero);
   PC_RAISE(strikes, velocity_parts, 2u);
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
-  Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
+  Arms struck = pc_arms(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t));
   BodyState before_a = a; BodyState before_b = b;
   Wrench w = pc_wrench(n, t1, t2, push, f.change1, f.change2, f.change_twist);
   // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not close all at once: the

@@ -19,8 +19,8 @@ const uint ROW_APPROACH = 36u; // below 0: relative normal velocity of each poin
 const uint ROW_K = 40u;        // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
 const uint ROW_SCALE = 41u;    // of all effective masses in this sub-step, see pc_mass_scale
 const uint ROW_MET = 41u;      // the same place, where shapes meet in flight, until contact_warm: when in this sub-step they did; 0 before
-const uint ROW_IMPACT = 42u;   // contact_impact's: below 0 none of it, 0 where it bounces, above 0 always
-const uint ROW_PATH = 43u;     // b's way against a until they meet
+const uint ROW_IMPACT = 42u;   // contact_impact's: below 0 none of it (-1: a body hangs on joints, -2: it acts no longer), 0 where it bounces, above 0 always
+const uint ROW_PATH = 43u;     // b's way against a until they meet, since the step began
 const uint ROW_SEEN = 43u;     // the same place, where no shapes meet in flight: how often the bodies had been struck when contact_impact last looked
 #ifndef PC_FRICTIONLESS  // what follows is friction's: where nothing has any, rows end here (frictionless_rows)
 const uint ROW_MU_STATIC = 46u;

@@ -96,6 +96,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
     info.kept_turn = 0;
   };
   change(Phase::first, from.last_substep > 0 ? from.last_substep : from.h, h);
+  infos[unsigned(Phase::first)].begins = 1;
   change(Phase::last, h, from.h);
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
