@@ -56,8 +56,12 @@ class Detector {
   /// what they were made for, and of shapes that are apart whether, when and how they meet in it. `contacts`: rows, 0 among them (padding);
   /// those of one level (octave) come together, from its `first` sub-step of the step on.
   void meet(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h, const Options& options);
-  /// And once more of bodies that impacts have struck since, which now go elsewhere.
-  void meet_again(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options);
+  /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for others. `last`: none
+  /// waits any longer.
+  void meet_again(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool last, double h,
+                  const Options& options);
+  /// Whether impacts wait for others that come before them.
+  bool waits() const { return waiting_ > 0; }
   /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before; and of impacts.
   std::span<const std::uint32_t> renewed() const { return renewed_; }
   std::span<const std::uint32_t> struck() const { return struck_; }
@@ -189,7 +193,8 @@ class Detector {
   template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
   template <class Scalar> void find_sent(const Substep<Scalar>& look);
   template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
-  template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look);
+  template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among);
+  template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
   float went(std::uint32_t body) const { return ways_[body].went; }
 
@@ -223,6 +228,8 @@ class Detector {
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
   std::vector<std::uint32_t> renewed_, struck_, on_standing_, inner_;  // places in the contacts of a sub-step
+  std::vector<double> soonest_;                                        // of bodies: when in the sub-step the first impact is [s]
+  std::uint32_t waiting_ = 0;                                          // impacts
   std::vector<std::vector<std::uint32_t>> anew_;                       // by level: rows that were renewed in the sub-step before
   std::vector<Distant> distant_;      // in ascending order of their rows
   std::vector<char> sent_elsewhere_;  // bodies that contacts may send elsewhere than they go by themselves

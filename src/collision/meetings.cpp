@@ -22,6 +22,9 @@ namespace {
 /// each other by less than this are one [rad].
 constexpr double seam_share = 2e-3, same_normal = 3e-4;
 
+/// Impacts within this share of a sub-step are at one time.
+constexpr double at_once = 1e-3;
+
 constexpr std::size_t contact_reals = reals_of(Buffer::contact), motion_reals = reals_of(Buffer::motion);
 
 /// What a sub-step reads of bodies.
@@ -140,7 +143,7 @@ template <class Scalar> struct Detector::Substep {
   std::span<const std::uint32_t> contacts;
   const Options& options;
   double h;
-  bool first;
+  bool first, last;  // the first sub-step of the step; the last look of the sub-step
 };
 
 /// One contact in one sub-step.
@@ -262,7 +265,7 @@ template <class Scalar> struct Detector::Meeting {
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
     const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
     Manifold<Scalar> m;
-    const double t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, from, h, look_there, m);
+    const double t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
     if (t < 0) return false;
     to_light_side(m, share);
     back_to_start(ta, tb, apart, share, t, m);
@@ -325,8 +328,9 @@ template <class Scalar> bool Detector::lies_in(const Meeting<Scalar>& x, std::ui
 }
 
 /// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with
-/// other normals, the surface goes on, and there is nothing to hit.
-template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& look) {
+/// other normals, the surface goes on, and there is nothing to hit. `among`: places of which some may go.
+template <class Scalar>
+void Detector::drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among) {
   const auto row_of = [&](std::uint32_t at) { return look.contacts[at]; };
   const auto body_of = [&](std::uint32_t at) { return standings_[row_of(at)].rows[0]; };
   const auto meeting = [&](std::uint32_t at) { return Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, row_of(at)}; };
@@ -335,6 +339,7 @@ template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& l
   for (std::size_t begin = 0, end = 0; begin < on_standing_.size(); begin = end) {
     for (end = begin; end < on_standing_.size() && body_of(on_standing_[end]) == body_of(on_standing_[begin]);) end++;
     for (std::size_t i = begin; i < end && end - begin > 1; i++) {
+      if (among.size() < on_standing_.size() && std::ranges::find(among, on_standing_[i]) == among.end()) continue;
       const Meeting<Scalar> x = meeting(on_standing_[i]);
       bool covered = x.c.together != 0;
       for (std::uint32_t point = 0; point < 4 && covered; point++) {
@@ -392,26 +397,62 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     if (c.struck) struck_.push_back(at);
     if (c.acts && look.s.stands(c.rows[1])) on_standing_.push_back(at);
   }
-  drop_inner_edges(look);
+  drop_inner_edges(look, on_standing_);
+  put_off(look, 0);
+}
+
+/// Impacts come in the order of time: what meets later than something else meets one of the two waits, since that one then goes elsewhere.
+/// Of those in `struck_` from `begin` on.
+template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std::size_t begin) {
+  const auto standing = [&](std::uint32_t at) -> Standing& { return standings_[look.contacts[at]]; };
+  const auto soonest = [&](const Standing& c, int side) -> double* {
+    return proxies_[c.shapes[side]].responds ? &soonest_[c.rows[side]] : nullptr;
+  };
+  const auto when = [&](std::uint32_t at) { return double(look.s.tables.get(Buffer::contact, look.contacts[at], 31)); };
+  const double h = look.h;
+  waiting_ = 0;
+  std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });  // an inner edge, for one
+  if (struck_.size() <= begin || look.last) return;
+  soonest_.resize(levers_.size(), std::numeric_limits<double>::infinity());
+  const auto each = [&](const auto& does) {
+    for (std::size_t i = begin; i < struck_.size(); i++)
+      for (int side = 0; side < 2; side++)
+        if (double* at = soonest(standing(struck_[i]), side)) does(*at, struck_[i]);
+  };
+  each([&](double& at, std::uint32_t place) { at = std::min(at, when(place)); });
+  each([&](double& at, std::uint32_t place) { standing(place).waits |= when(place) > at + at_once * h; });
+  each([&](double& at, std::uint32_t) { at = std::numeric_limits<double>::infinity(); });
+  for (std::size_t i = begin; i < struck_.size(); i++) {
+    if (!standing(struck_[i]).waits) continue;
+    Meeting<Scalar>{*this, look.s, look.bodies, look.options, h, look.contacts[struck_[i]]}.stand_aside();
+    waiting_++;
+  }
+  std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });
 }
 
 /// Contacts that do not act, of bodies that were struck since: as their velocities are now, from that instant on.
 template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto struck_at = [&](std::uint32_t body) { return double(delta[body * reals_of(Buffer::delta) + 8]); };
+  const std::size_t before = struck_.size();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
-    const Standing& c = standings_[row];
+    Standing& c = standings_[row];
     if (row == 0 || c.acts || c.touches || c.jointed) continue;
-    const double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
-    if (from == 0) continue;
+    double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
+    if (from == 0 && !c.waits) continue;
+    c.waits = false;
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
     Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
     if (!m.find_from(from)) continue;
     renewed_.push_back(at);
     struck_.push_back(at);
+    if (look.s.stands(c.rows[1])) on_standing_.push_back(at);
   }
+  if (struck_.size() == before) return void(waiting_ = 0);
+  drop_inner_edges(look, std::span(struck_).subspan(before));
+  put_off(look, before);
 }
 
 void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h, const Options& options) {
@@ -424,21 +465,22 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
     Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
     const Bodies<Scalar> bodies(s.tables);
-    meet_in(Substep<Scalar>{s, bodies, contacts, options, h, first});
+    meet_in(Substep<Scalar>{s, bodies, contacts, options, h, first, false});
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
   anew_[level].clear();
   for (const std::uint32_t at : renewed_) anew_[level].push_back(contacts[at]);
 }
 
-void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options) {
+void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool last, double h,
+                          const Options& options) {
   meetings_++;
   renewed_.clear();
   const auto in = [&]<class Scalar>(Scalar) {
     Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
     const Bodies<Scalar> bodies(s.tables);
-    meet_struck(Substep<Scalar>{s, bodies, contacts, options, h, false});
+    meet_struck(Substep<Scalar>{s, bodies, contacts, options, h, false, last});
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
   anew_[level].clear();

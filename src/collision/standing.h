@@ -15,6 +15,7 @@ struct Standing {
   bool touches = false;              // its shapes did, when they were looked at last
   bool acts = false;                 // its rows do
   bool struck = false;               // as an impact: nothing of it lasts
+  bool waits = false;                // for an impact that comes before
   bool jointed = false;              // a body of it hangs on joints
   std::uint8_t together = 0;         // bit i: at point i the shapes are together, now or where they meet in the sub-step
 };

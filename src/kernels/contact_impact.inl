@@ -98,13 +98,6 @@ PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   return pc_madd(come, relative, until);
 }
 
-// Gaps: of the centre, and by how the bodies turned.
-PC_FN Shift pc_gap_shift(Vec3 n, Vec3 t1, Vec3 t2, Arms arms, Quad moved_a, Quad moved_b, Quad turned_a, Quad turned_b) {
-  Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, arms.a)); Vec3 shift_b = pc_add(moved_b.v, pc_cross(turned_b.v, arms.b));
-  Vec3 turn = pc_sub(turned_b.v, turned_a.v);
-  Shift r; r.n = pc_dot(n, pc_sub(shift_b, shift_a)); r.turn1 = pc_dot(t1, turn); r.turn2 = pc_dot(t2, turn); return r;
-}
-
 // What approaches no faster than the threshold does not bounce: |v*| is at most |u| + |A| h / 2, and has to be |A| h above it.
 // Then the gap closes by at most |u| h + |A| h^2 / 8, less than 5 / 4 |u| h.
 PC_FN Mask pc_closes_fast(PC_IO Slot m, Twist v, Shift shift, uint i, Mask before) {
@@ -120,7 +113,7 @@ PC_FN Mask pc_may_hit(PC_IO Slot m) {
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, pc_zero3(), pc_impact_path(PC_PASS m, n, pc_sub(b.v, a.v), pc_sub(moved_b.v, moved_a.v)));
   Twist v = pc_twist(a, b, arms, n, t1, t2);
-  Shift shift = pc_gap_shift(n, t1, t2, arms, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
+  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
   Mask fast = pc_impact_always(PC_PASS m);
   fast = pc_closes_fast(PC_PASS m, v, shift, 0u, fast); fast = pc_closes_fast(PC_PASS m, v, shift, 1u, fast);
   fast = pc_closes_fast(PC_PASS m, v, shift, 2u, fast); fast = pc_closes_fast(PC_PASS m, v, shift, 3u, fast);
@@ -153,8 +146,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   precise Real u2 = v.vn + b2 * v.w1 - a2 * v.w2; precise Real u3 = v.vn + b3 * v.w1 - a3 * v.w2;
 
   // gaps, and accelerations in the contact frame
-  Quad turned_a = PC_GATHER(delta, ia, 1u); Quad turned_b = PC_GATHER(delta, ib, 1u);
-  Shift shift = pc_gap_shift(n, t1, t2, arms, moved_a, moved_b, turned_a, turned_b); Real shift_n = shift.n; Real turn1 = shift.turn1; Real turn2 = shift.turn2;
+  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u)); Real shift_n = shift.n; Real turn1 = shift.turn1; Real turn2 = shift.turn2;
   Acceleration pull_a = pc_acceleration(PC_PASS ia, a); Acceleration pull_b = pc_acceleration(PC_PASS ib, b);
   Vec3 pull = pc_sub(pc_add(pull_b.a, pc_cross(pull_b.turn, arms.b)), pc_add(pull_a.a, pc_cross(pull_a.turn, arms.a)));
   Vec3 spin_up = pc_sub(pull_b.turn, pull_a.turn); Real pull_n = pc_dot(n, pull); Real up1 = pc_dot(t1, spin_up); Real up2 = pc_dot(t2, spin_up);
@@ -168,7 +160,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
   Real until = pc_min(pc_min(pc_until(PC_PASS c0), pc_until(PC_PASS c1)), pc_min(pc_until(PC_PASS c2), pc_until(PC_PASS c3)));
-  Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
+  Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Vec3 found_a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 found_b = pc_ld3_rows(PC_PASS m, ROW_ARM_B); precise Real size = pc_dot(found_a, found_a) + pc_dot(found_b, found_b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   Mask hits = pc_and(mine, here > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
@@ -200,7 +192,9 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
 
   Push push = pc_push(PC_PASS m, j0, j1, j2, j3);
   Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), push.n, PC_REAL(1.0), zero, zero, zero);
-  precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
+  precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real mean = late * pc_inverse_or_zero(push.n);
+  // none comes before one that a body of it had already
+  Quad hit_a = PC_GATHER(delta, ia, 2u); Quad hit_b = PC_GATHER(delta, ib, 2u); Real t = pc_max(mean, pc_max(hit_a.v.x, hit_b.v.x));
 
   // another sweep is to follow; what is stopped slowly is for the next sub-step
   Mask strikes = pc_and(hits, pc_max(pc_max(c0.bounces, c1.bounces), pc_max(c2.bounces, c3.bounces)) > zero);
@@ -225,20 +219,15 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
 
 // A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at bodies that were struck since
 // it looked last.
-PC_FN Mask pc_unseen(PC_IO Slot m) {
+PC_FN Mask pc_unseen(PC_IO Slot m, Mask again) {
   Mask flight = pc_impact_always(PC_PASS m); Real kept = PC_LD(contact_rows, m, ROW_SEEN); Real struck = pc_struck(PC_PASS m);
-  PC_ST(contact_rows, m, ROW_SEEN, pc_select(flight, kept, struck));
-  precise Real since = struck - pc_select(flight, PC_REAL(0.0), kept); return pc_abs(since) > PC_REAL(0.5);
+  PC_ST(contact_rows, m, ROW_SEEN, pc_select(flight, pc_select(again, kept, PC_REAL(0.0)), struck));
+  precise Real since = struck - kept; Real anew = pc_select(again, pc_abs(since), PC_REAL(1.0)); return pc_or(flight, anew > PC_REAL(0.5));
 }
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
-  if (PC_ANY(again)) {  // lint: allow (the same for all)
-    mine = pc_and(mine, pc_unseen(PC_PASS m));
-    if (!PC_ANY(mine)) return;  // lint: allow (nothing has changed)
-  } else {
-    PC_ST(contact_rows, m, ROW_MET, pc_select(pc_impact_always(PC_PASS m), PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MET)));
-  }
+  mine = pc_and(mine, pc_unseen(PC_PASS m, again));
   if (PC_ANY(pc_and(mine, pc_may_hit(PC_PASS m)))) pc_hit(PC_PASS m, mine);  // lint: allow (nothing to do otherwise)
 }
 #undef PC_SOME_ROWS

@@ -96,9 +96,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 old_t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 old_t2 = pc_cross(pc_ld3_rows(PC_PASS m, ROW_N), old_t1);
 #endif
   pc_st3_new(PC_PASS m, these, ROW_N, n); pc_st3_new(PC_PASS m, these, ROW_T, t1); pc_st_new(PC_PASS m, these, ROW_SHARE, share_a);
-  // rows go by the motion since the step began (pc_arms, pc_shift_of): arms and gaps are kept less what there was of it
-  Vec3 gone = pc_sub(moved_b.v, moved_a.v); precise Real gone_a = -share_a; precise Real gone_b = PC_REAL(1.0) - share_a;
-  pc_st3_new(PC_PASS m, these, ROW_ARM_A, pc_madd(start_a, gone, gone_a)); pc_st3_new(PC_PASS m, these, ROW_ARM_B, pc_madd(start_b, gone, gone_b));
+  // rows go by the motion since the step began (pc_arms, pc_shift_of), less what there was of it
+  Vec3 gone = pc_sub(moved_b.v, moved_a.v);
+  pc_st3_new(PC_PASS m, these, ROW_ARM_A, ra); pc_st3_new(PC_PASS m, these, ROW_ARM_B, rb); pc_st3_new(PC_PASS m, these, ROW_PATH, pc_add(gone, path));
   Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
   pc_st_new(PC_PASS m, these, ROW_A, a0); pc_st_new(PC_PASS m, these, ROW_A + 1u, a1); pc_st_new(PC_PASS m, these, ROW_A + 2u, a2); pc_st_new(PC_PASS m, these, ROW_A + 3u, a3);
   pc_st_new(PC_PASS m, these, ROW_B, b0); pc_st_new(PC_PASS m, these, ROW_B + 1u, b1); pc_st_new(PC_PASS m, these, ROW_B + 2u, b2); pc_st_new(PC_PASS m, these, ROW_B + 3u, b3);
@@ -115,8 +115,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #ifndef PC_FRICTIONLESS
   pc_st_new(PC_PASS m, these, ROW_MU_STATIC, material.v.x); pc_st_new(PC_PASS m, these, ROW_MU_KINETIC, material.v.y); pc_st_new(PC_PASS m, these, ROW_RADIUS, radius);
 #endif
-  pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, all, ROW_IMPACT, pc_select(pc_and(over, unjointed), PC_REAL(-2.0), material.s)); // (of the whole step: b's way against a until they meet)
-  pc_st3_new(PC_PASS m, these, ROW_PATH, pc_select3(flight > zero, pc_add(gone, path), pc_zero3()));
+  pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, all, ROW_IMPACT, pc_select(pc_and(over, unjointed), PC_REAL(-2.0), material.s));
   pc_st_new(PC_PASS m, these, ROW_SCALE, pc_select(of_step, one, zero));
   pc_keep_approach(PC_PASS m, 0u, these, of_step, approach0); pc_keep_approach(PC_PASS m, 1u, these, of_step, approach1); pc_keep_approach(PC_PASS m, 2u, these, of_step, approach2); pc_keep_approach(PC_PASS m, 3u, these, of_step, approach3);
 

@@ -124,8 +124,9 @@ struct Stepper::Inside final : Collider {
     blocks_of(detector.renewed(), renewed);
     blocks_of(detector.struck(), struck);
   }
-  void collide_again(WorldState& s, unsigned octave, double h) override {
-    detector.meet_again(s, to_meet, octave, h, detection());
+  bool waits() const override { return detector.waits(); }
+  void collide_again(WorldState& s, unsigned octave, bool last, double h) override {
+    detector.meet_again(s, to_meet, octave, last, h, detection());
     blocks_of(detector.renewed(), renewed);
     blocks_of(detector.struck(), struck);
   }

@@ -336,23 +336,25 @@ Status Runner::kernels(const Call& call, WorldState& state, const void* infos) {
   for (std::uint32_t i = 0; i < entry.again; i++) {
     const Result<bool> more = backend.take_flag(flag, struck_quad());
     if (!more) return more.error();
-    if (!*more) break;
-    if (collider_ && strikes(entry.kernel))
-      if (Status ok = collide_again(entry, state, infos, runs[0]); !ok) return ok;
+    const bool looks = collider_ && strikes(entry.kernel);
+    if (!*more && !(looks && collider_->waits())) break;
+    if (looks)
+      if (Status ok = collide_again(entry, i + 1 == entry.again, state, infos, runs[0]); !ok) return ok;
     if (Status ok = backend.run(runs); !ok) return ok;
   }
   return {};
 }
 
 /// What impacts have sent elsewhere may meet others there: contacts that act from now on have their rows made.
-Status Runner::collide_again(const PlanEntry& entry, WorldState& state, const void* infos, const KernelRun& impacts) {
+Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos,
+                             const KernelRun& impacts) {
   Backend& backend = *at(entry.place).backend;
   if (entry.place == Place::gl)
     for (const Buffer buffer : {Buffer::pose, Buffer::motion, Buffer::delta})
       if (Status ok = backend.download(buffer); !ok) return ok;
   PlanEntry biased = entry;
   biased.phase = Phase::biased;
-  collider_->collide_again(state, entry.octave, substep_of(biased, infos, state.tables.precision()));
+  collider_->collide_again(state, entry.octave, last, substep_of(biased, infos, state.tables.precision()));
   if (entry.place == Place::gl)
     if (Status ok = backend.upload(Buffer::contact); !ok) return ok;
   const bool frictionless = entry.kernel == Kernel::contact_impact_frictionless;

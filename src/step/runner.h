@@ -22,8 +22,9 @@ class Collider {
   virtual ~Collider() = default;
   /// Of islands of one level, in a sub-step of h [s]; `first`: of the step.
   virtual void collide(WorldState& state, unsigned octave, bool first, double h) = 0;
-  /// Once more, where impacts have sent bodies elsewhere since.
-  virtual void collide_again(WorldState& state, unsigned octave, double h) = 0;
+  /// Once more, where impacts have sent bodies elsewhere since, or waited for others; `last`: for the last time in the sub-step.
+  virtual void collide_again(WorldState& state, unsigned octave, bool last, double h) = 0;
+  virtual bool waits() const = 0;
   /// Blocks of contacts, whose rows it has made other than they were in the sub-step before; and blocks with impacts.
   virtual std::span<const Range> renewed_blocks() const = 0;
   virtual std::span<const Range> struck_blocks() const = 0;
@@ -138,7 +139,7 @@ class Runner final : Keeper {
   Status call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
   double substep_of(const PlanEntry& entry, const void* infos, Precision precision) const;
   Status kernels(const Call& call, WorldState& state, const void* infos);
-  Status collide_again(const PlanEntry& entry, WorldState& state, const void* infos, const KernelRun& impacts);
+  Status collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos, const KernelRun& impacts);
   Status keep_left(WorldState& state);
   Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
   bool keeps(Buffer buffer) const;
