@@ -251,8 +251,7 @@ template <class Scalar> struct Detector::Meeting {
       if (double(m.points[i].separation) <= seam_share * thick) c.together |= std::uint8_t(1u << i);
     to_light_side(m, share);
     if (!c.touches && meets) back_to_start(ta, tb, apart, share, t, m);
-    // (an overlap is for the rows to push out)
-    c.struck = !c.jointed && (!c.touches || (quick && c.gap > -constants::manifold_share * thick));
+    c.struck = !c.jointed && (!c.touches || quick);
     write(m, std::max(t, 0.0), c.jointed ? -1 : c.struck ? std::max(t, 1e-9 * h) : 0);
   }
 

@@ -52,17 +52,22 @@ PC_FN Acceleration pc_acceleration(PC_IO Index i, BodyState b) {
   precise Real response = b.response; r.turn = pc_scale(pc_sym_mul(b.inertia, turn.v), response); return r;
 }
 
+PC_FN void pc_shift_place(PC_IO Index i, Mask these, Vec3 shift) {
+  Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
+  TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
+  PC_SCATTER_IF(these, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(these, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
+  PC_SCATTER_IF(these, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s));
+}
+
 // The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise).
 PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits, Real strike) {
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
-  precise Real back = -t; Vec3 shift = pc_scale(dv, back);
+  precise Real back = -t;
   Quad hit = PC_GATHER(delta, i, 2u); PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(hit.v.x, pc_max(t, PC_TINY)), hit.v.y, hit.v.z), hit.s));
-  Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
-  TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
-  PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
-  Quad turned = PC_GATHER(delta, i, 1u);
-  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); precise Real struck = turned.s + strike; PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
+  pc_shift_place(PC_PASS i, moves, pc_scale(dv, back));
+  Quad turned = PC_GATHER(delta, i, 1u); precise Real struck = turned.s + strike;
+  PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
@@ -219,15 +224,35 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
 
 // A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at bodies that were struck since
 // it looked last.
-PC_FN Mask pc_unseen(PC_IO Slot m, Mask again) {
+PC_FN Mask pc_unseen(PC_IO Slot m, Mask mine, Mask again) {
   Mask flight = pc_impact_always(PC_PASS m); Real kept = PC_LD(contact_rows, m, ROW_SEEN); Real struck = pc_struck(PC_PASS m);
-  PC_ST(contact_rows, m, ROW_SEEN, pc_select(flight, pc_select(again, kept, PC_REAL(0.0)), struck));
-  precise Real since = struck - kept; Real anew = pc_select(again, pc_abs(since), PC_REAL(1.0)); return pc_or(flight, anew > PC_REAL(0.5));
+  Real seen = pc_select(flight, pc_select(again, kept, PC_REAL(0.0)), struck); PC_ST(contact_rows, m, ROW_SEEN, pc_select(mine, seen, kept));
+  precise Real since = struck - kept; Real anew = pc_select(again, pc_abs(since), PC_REAL(1.0)); return pc_and(mine, pc_or(flight, anew > PC_REAL(0.5)));
+}
+// What moves fast and overlaps is struck, too, as it is at once; its overlap is undone by places alone, at the solver's rate (0 in later
+// sweeps).
+PC_FN void pc_part(PC_IO Slot m, Mask fast) {
+  Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
+  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib); Real zero = PC_REAL(0.0);
+  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
+  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, PC_GATHER(delta, ia, 0u), PC_GATHER(delta, ib, 0u), PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
+  Real least = zero;
+  for (uint i = 0u; i < 4u; i++) {
+    precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + PC_LD(contact_rows, m, ROW_B + i) * shift.turn1 - PC_LD(contact_rows, m, ROW_A + i) * shift.turn2);
+    least = pc_min(least, s);
+  }
+  precise Real rate = least * PC_INFO(contact_rate); precise Real apart = pc_min(-rate, PC_INFO(push_speed)) * PC_INFO(h);
+  precise Real push = apart * pc_inverse_or_zero(a.inverse_mass + b.inverse_mass); precise Real by_a = push * -a.inverse_mass; precise Real by_b = push * b.inverse_mass;
+  Mask these = pc_and(fast, push > zero);
+  pc_shift_place(PC_PASS ia, pc_and(these, a.inverse_mass > zero), pc_scale(n, by_a));
+  pc_shift_place(PC_PASS ib, pc_and(these, b.inverse_mass > zero), pc_scale(n, by_b));
 }
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
-  mine = pc_and(mine, pc_unseen(PC_PASS m, again));
+  mine = pc_unseen(PC_PASS m, mine, again);
   if (PC_ANY(pc_and(mine, pc_may_hit(PC_PASS m)))) pc_hit(PC_PASS m, mine);  // lint: allow (nothing to do otherwise)
+  Mask fast = pc_and(pc_impact_always(PC_PASS m), PC_INFO(contact_rate) > PC_REAL(0.0));
+  if (PC_ANY(fast)) pc_part(PC_PASS m, fast);  // lint: allow (nothing to do otherwise)
 }
 #undef PC_SOME_ROWS

@@ -15,7 +15,9 @@ PC_FN void pc_drive_rates(PC_IO Slot n, Slot up) {
   Mask driven = pc_has_drive(PC_PASS n);
   if (!PC_ANY(driven)) return;  // lint: allow (nothing reads them otherwise)
   Vec3 turn = pc_select3(driven, pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)), pc_zero3());
-  pc_st3_drive(PC_PASS n, DRIVE_RATE, turn); PC_ST(tree_drive_rows, n, MOTOR_ON, PC_REAL(2.0)); Mask moves = pc_drive_moves(PC_PASS n);
+  pc_st3_drive(PC_PASS n, DRIVE_RATE, turn);
+  PC_ST(tree_drive_rows, n, MOTOR_ON, pc_select(driven, PC_REAL(2.0), PC_LD(tree_drive_rows, n, MOTOR_ON)));
+  Mask moves = pc_drive_moves(PC_PASS n);
   if (!PC_ANY(moves)) return;  // lint: allow (the world's axes)
   Vec3 along = Vec3(pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 3u), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 6u), turn));
   pc_st3_drive(PC_PASS n, DRIVE_RATE, pc_select3(moves, along, turn));
