@@ -32,11 +32,13 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   // what rests approaches with what the forces give it in a sub-step
   precise Real slow = PC_INFO(restitution_threshold) + pc_abs(acceleration) * h; Mask fast = impact < -slow;
   precise Real most = h * PC_REAL(1.00001);  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
-  Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < zero, zero, most));
+  // what moves fast and overlaps is pushed apart as the solver would (in the first sweep: its rate is 0 in later ones)
+  precise Real rate = -s * PC_INFO(contact_rate); Real push = pc_select(always, pc_clamp(rate, zero, PC_INFO(push_speed)), zero);
+  Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < push, zero, most));
   Mask now = ahead < most;
-  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < zero)));
-  Real bounce = pc_select(fast, e, zero);
-  precise Real aim = half_change - acceleration * t - bounce * impact;
+  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < push)));
+  Real bounce = pc_select(fast, e, zero); precise Real thrown = -bounce * impact;
+  precise Real aim = half_change - acceleration * t + pc_max(thrown, push);
   Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); r.bounces = pc_select(fast, r.closes, zero); return r;
 }
 PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
@@ -210,9 +212,10 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Wrench w = pc_wrench(n, t1, t2, push, f.change1, f.change2, f.change_twist);
   // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not close all at once: the
   // impulse leaves no more energy than e allows
+  precise Real parts = -pc_min(pc_min(s0, s1), pc_min(s2, s3)) * PC_INFO(contact_rate); Mask pushed = pc_and(always, parts > pc_noise(PC_PASS relative));
   Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b)));
   precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, w.impulse, w.couple);
-  Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
+  Real share = pc_select(pushed, PC_REAL(1.0), pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0)));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
   pc_keep_impact(PC_PASS m, 0u, j0, share); pc_keep_impact(PC_PASS m, 1u, j1, share); pc_keep_impact(PC_PASS m, 2u, j2, share); pc_keep_impact(PC_PASS m, 3u, j3, share);
   // (what rounding leaves of an approach closes anywhere)
@@ -229,30 +232,10 @@ PC_FN Mask pc_unseen(PC_IO Slot m, Mask mine, Mask again) {
   Real seen = pc_select(flight, pc_select(again, kept, PC_REAL(0.0)), struck); PC_ST(contact_rows, m, ROW_SEEN, pc_select(mine, seen, kept));
   precise Real since = struck - kept; Real anew = pc_select(again, pc_abs(since), PC_REAL(1.0)); return pc_and(mine, pc_or(flight, anew > PC_REAL(0.5)));
 }
-// What moves fast and overlaps is struck, too, as it is at once; its overlap is undone by places alone, at the solver's rate (0 in later
-// sweeps).
-PC_FN void pc_part(PC_IO Slot m, Mask fast) {
-  Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
-  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib); Real zero = PC_REAL(0.0);
-  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
-  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, PC_GATHER(delta, ia, 0u), PC_GATHER(delta, ib, 0u), PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
-  Real least = zero;
-  for (uint i = 0u; i < 4u; i++) {
-    precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + PC_LD(contact_rows, m, ROW_B + i) * shift.turn1 - PC_LD(contact_rows, m, ROW_A + i) * shift.turn2);
-    least = pc_min(least, s);
-  }
-  precise Real rate = least * PC_INFO(contact_rate); precise Real apart = pc_min(-rate, PC_INFO(push_speed)) * PC_INFO(h);
-  precise Real push = apart * pc_inverse_or_zero(a.inverse_mass + b.inverse_mass); precise Real by_a = push * -a.inverse_mass; precise Real by_b = push * b.inverse_mass;
-  Mask these = pc_and(fast, push > zero);
-  pc_shift_place(PC_PASS ia, pc_and(these, a.inverse_mass > zero), pc_scale(n, by_a));
-  pc_shift_place(PC_PASS ib, pc_and(these, b.inverse_mass > zero), pc_scale(n, by_b));
-}
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
   mine = pc_unseen(PC_PASS m, mine, again);
   if (PC_ANY(pc_and(mine, pc_may_hit(PC_PASS m)))) pc_hit(PC_PASS m, mine);  // lint: allow (nothing to do otherwise)
-  Mask fast = pc_and(pc_impact_always(PC_PASS m), PC_INFO(contact_rate) > PC_REAL(0.0));
-  if (PC_ANY(fast)) pc_part(PC_PASS m, fast);  // lint: allow (nothing to do otherwise)
 }
 #undef PC_SOME_ROWS
