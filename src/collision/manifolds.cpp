@@ -85,7 +85,8 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   c.hint = hints_[pair];
   c.gap = std::min(double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)), double(least_separation(m)));
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
-  c.touches = c.acts = c.gap <= near_of(double(c.thick), far, double(std::numeric_limits<Scalar>::epsilon()));
+  const double near = near_of(double(c.thick), far, double(std::numeric_limits<Scalar>::epsilon()));
+  c.touches = c.acts = c.gap <= std::max(near, seam_share * double(c.thick));
   for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
   if (c.touches)
     to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));

@@ -178,6 +178,10 @@ double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar*
   return t;
 }
 
+/// What lies within this share of a thickness of a surface lies in it: so high may a seam between tiles be, and so far may shapes be apart
+/// whose contact lasts.
+constexpr double seam_share = 2e-3;
+
 /// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand [m].
 inline double near_of(double thick, double far, double epsilon) { return std::max(1e-6 * thick, 16 * epsilon * far); }
 

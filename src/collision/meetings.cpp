@@ -18,9 +18,8 @@
 namespace pcphys {
 namespace {
 
-/// What lies within this share of a thickness of a surface lies in it: so high may a seam between tiles be. Normals that are turned against
-/// each other by less than this are one [rad].
-constexpr double seam_share = 2e-3, same_normal = 3e-4;
+/// Normals that are turned against each other by less than this are one [rad].
+constexpr double same_normal = 3e-4;
 
 /// Impacts within this share of a sub-step are at one time.
 constexpr double at_once = 1e-3;
@@ -234,7 +233,7 @@ template <class Scalar> struct Detector::Meeting {
     c.gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
-    c.touches = c.gap <= near;
+    c.touches = c.gap <= (quick ? near : std::max(near, seam_share * thick));
     double t = 0;
     bool meets = c.touches;
     if (!c.touches) {
