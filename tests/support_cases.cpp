@@ -25,8 +25,8 @@ std::map<std::string, double> rows_that_miss() {
 }
 std::string fields_of(const cases::Row& row) {
   std::ostringstream text;
-  text << row.case_name << ';' << row.variant << ';' << (row.precision == Precision::f64 ? "double" : "float") << ';' << row.dt << ';'
-       << row.substeps << ';' << row.metric;
+  text << row.case_name << ';' << row.variant << ';' << (row.precision == Precision::f64 ? "double" : "float") << ';' << row.dt
+       << ';' << row.substeps << ';' << row.metric;
   return text.str();
 }
 

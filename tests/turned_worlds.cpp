@@ -24,7 +24,9 @@ struct Turned {
     def.angular_velocity = rotate(turn, def.angular_velocity);
     return run.add(def);
   }
-  void pin(BodyId a, BodyId b, Vec3 place, const AngleFreedom& freedom = {}) { join(run, a, b, rotate(turn, place), freedom, turn); }
+  void pin(BodyId a, BodyId b, Vec3 place, const AngleFreedom& freedom = {}) {
+    join(run, a, b, rotate(turn, place), freedom, turn);
+  }
   /// Of all bodies, as the scene that is not turned has them.
   std::vector<Pose> poses() const {
     std::vector<Pose> all;

@@ -55,7 +55,8 @@ class Detector {
   /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by more than a share of
   /// what they were made for, and of shapes that are apart whether, when and how they meet in it. `contacts`: rows, 0 among them (padding);
   /// those of one level (octave) come together, from its `first` sub-step of the step on.
-  void meet(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h, const Options& options);
+  void meet(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h,
+            const Options& options);
   /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for others. `last`: none
   /// waits any longer.
   void meet_again(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool last, double h,
@@ -115,7 +116,7 @@ class Detector {
     AlignedBytes rows;                      // of shapes: narrow_bounds.inl
     std::vector<Look<Scalar>> looks;        // of shapes
     PairLanes<Scalar> lanes;
-    AlignedBytes contacts;                // the table of the next step
+    AlignedBytes contacts;  // the table of the next step
   };
 
   /// A pair of which a contact comes.
@@ -153,8 +154,7 @@ class Detector {
   template <class Scalar> void find_twists(const WorldState& state, const Options& options);
   void find_drawn(double dt);
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  template <class Scalar>
-  Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  template <class Scalar> Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
   /// Takes over contacts of the last step, from the first row to before the last.
   template <class Scalar>
   void keep(const WorldState& state, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found);
@@ -231,9 +231,9 @@ class Detector {
   std::vector<double> soonest_;                                        // of bodies: when in the sub-step the first impact is [s]
   std::uint32_t waiting_ = 0;                                          // impacts
   std::vector<std::vector<std::uint32_t>> anew_;                       // by level: rows that were renewed in the sub-step before
-  std::vector<Distant> distant_;      // in ascending order of their rows
+  std::vector<Distant> distant_;                                       // in ascending order of their rows
   std::vector<char> sent_elsewhere_;  // bodies that contacts may send elsewhere than they go by themselves
-  std::vector<std::uint32_t> gone_;                                    // rows that came apart in the step
+  std::vector<std::uint32_t> gone_;   // rows that came apart in the step
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;               // some body has

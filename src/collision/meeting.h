@@ -134,8 +134,7 @@ Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, 
 }
 
 /// When the spheres inside two shapes meet, by when the shapes have; below 0 where they do not. Turning does not move them.
-template <class Scalar, class Find>
-double cores_meet(const Approach<Scalar, Find>& of, double t, double near, double h) {
+template <class Scalar, class Find> double cores_meet(const Approach<Scalar, Find>& of, double t, double near, double h) {
   ShapeView<Scalar> cores[2] = {*of.a.view, *of.b.view};
   Mover<Scalar> movers[2] = {of.a, of.b};
   for (int side = 0; side < 2; side++) {
@@ -155,8 +154,8 @@ double cores_meet(const Approach<Scalar, Find>& of, double t, double near, doubl
 /// below 0 where they do not. Where advancement creeps, halving finds an instant before they overlap at the end, or before what is
 /// inside of them meets. What is missed all the same the next sub-step sees.
 template <class Scalar, class Find>
-double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h, Find&& find,
-                   Manifold<Scalar>& m) {
+double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h,
+                   Find&& find, Manifold<Scalar>& m) {
   constexpr int halvings = 20;
   Approach<Scalar, std::remove_reference_t<Find>> way{a, b, apart, find, {}, {}};
   double t = from;

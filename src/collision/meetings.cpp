@@ -38,8 +38,11 @@ template <class Scalar> class Bodies {
   const Scalar* motion(std::uint32_t row) const { return motion_ + row * motion_reals; }
   /// `lever`: how far a turn of one radian moves any point of its shapes, at most.
   Way way(std::uint32_t row, float lever, double h) const {
-    const Scalar *d = delta_ + row * reals_of(Buffer::delta), *m = motion(row), *inverse = mass_ + row * reals_of(Buffer::mass) + 4;
-    const auto size = [](const Scalar* v) { return std::sqrt(float(v[0]) * float(v[0]) + float(v[1]) * float(v[1]) + float(v[2]) * float(v[2])); };
+    const Scalar *d = delta_ + row * reals_of(Buffer::delta), *m = motion(row),
+                 *inverse = mass_ + row * reals_of(Buffer::mass) + 4;
+    const auto size = [](const Scalar* v) {
+      return std::sqrt(float(v[0]) * float(v[0]) + float(v[1]) * float(v[1]) + float(v[2]) * float(v[2]));
+    };
     const float most = float(std::max({inverse[0], inverse[1], inverse[2]}));
     constexpr float up = 1.00001f;  // beyond the rounding of all this
     return {up * (size(d) + size(d + 4) * lever), up * (size(m) + size(m + 4) * most * lever) * float(h), 0};
@@ -132,8 +135,10 @@ float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
   return x == 0 ? y : y == 0 ? x : std::min(x, y);
 }
 
-template void Detector::find(const Options&, const Sight<float>&, const ShapeView<float>&, const ShapeView<float>&, std::uint32_t, Manifold<float>&);
-template void Detector::find(const Options&, const Sight<double>&, const ShapeView<double>&, const ShapeView<double>&, std::uint32_t, Manifold<double>&);
+template void Detector::find(const Options&, const Sight<float>&, const ShapeView<float>&, const ShapeView<float>&, std::uint32_t,
+                             Manifold<float>&);
+template void Detector::find(const Options&, const Sight<double>&, const ShapeView<double>&, const ShapeView<double>&,
+                             std::uint32_t, Manifold<double>&);
 
 /// What a sub-step's contacts are looked at with.
 template <class Scalar> struct Detector::Substep {
@@ -238,7 +243,9 @@ template <class Scalar> struct Detector::Meeting {
     bool meets = c.touches;
     if (!c.touches) {
       if (c.gap > goes) return stand_aside();
-      const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
+      const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
+        look_at(x, y, z);
+      };
       Manifold<Scalar> met = m;
       t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, met);
       meets = t >= 0;
@@ -261,7 +268,9 @@ template <class Scalar> struct Detector::Meeting {
     look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way());
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
-    const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) { look_at(x, y, z); };
+    const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
+      look_at(x, y, z);
+    };
     Manifold<Scalar> m;
     const double t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
     if (t < 0) return false;
@@ -327,11 +336,12 @@ template <class Scalar> bool Detector::lies_in(const Meeting<Scalar>& x, std::ui
 
 /// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with
 /// other normals, the surface goes on, and there is nothing to hit. `among`: places of which some may go.
-template <class Scalar>
-void Detector::drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among) {
+template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among) {
   const auto row_of = [&](std::uint32_t at) { return look.contacts[at]; };
   const auto body_of = [&](std::uint32_t at) { return standings_[row_of(at)].rows[0]; };
-  const auto meeting = [&](std::uint32_t at) { return Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, row_of(at)}; };
+  const auto meeting = [&](std::uint32_t at) {
+    return Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, row_of(at)};
+  };
   std::ranges::sort(on_standing_, {}, [&](std::uint32_t at) { return std::pair(body_of(at), row_of(at)); });
   inner_.clear();
   for (std::size_t begin = 0, end = 0; begin < on_standing_.size(); begin = end) {
@@ -453,7 +463,8 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
   put_off(look, before);
 }
 
-void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h, const Options& options) {
+void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h,
+                    const Options& options) {
   meetings_++;
   renewed_.clear();
   struck_.clear();

@@ -21,7 +21,8 @@ struct Responses {
 // says that the contact is left alone.
 PC_FN Real pc_least_response(Sym3 l) {
   precise Real det = l.xx * l.yy - l.xy * l.xy;
-  precise Real tangents = PC_REAL(2.0) * det * pc_inverse_or_zero(l.xx + l.yy);
+  precise Real trace = l.xx + l.yy;
+  precise Real tangents = PC_REAL(2.0) * det * pc_inverse_or_zero(trace);
   return pc_min(l.zz, pc_max(tangents, PC_REAL(0.0)));
 }
 // Effective masses and the responses between rows; `w0` to `w3`: 1 where the point exists.

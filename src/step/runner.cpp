@@ -270,9 +270,8 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
   ranges_.clear();
   narrowed_.clear();
   const PlanEntry* before = nullptr;
-  const bool bounces = std::ranges::any_of(plan.entries, [](const PlanEntry& e) {
-    return e.kind == PlanEntry::Kind::kernel && !e.own && restitutes(e.kernel);
-  });
+  const bool bounces = std::ranges::any_of(
+      plan.entries, [](const PlanEntry& e) { return e.kind == PlanEntry::Kind::kernel && !e.own && restitutes(e.kernel); });
   std::size_t collides = 0;  // the call
   for (const PlanEntry& entry : plan.entries) {
     const bool kernel = entry.kind == PlanEntry::Kind::kernel;
@@ -346,8 +345,7 @@ Status Runner::kernels(const Call& call, WorldState& state, const void* infos) {
 }
 
 /// What impacts have sent elsewhere may meet others there: contacts that act from now on have their rows made.
-Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos,
-                             const KernelRun& impacts) {
+Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos, const KernelRun& impacts) {
   Backend& backend = *at(entry.place).backend;
   if (entry.place == Place::gl)
     for (const Buffer buffer : {Buffer::pose, Buffer::motion, Buffer::delta})
@@ -394,8 +392,7 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
   if (entry.kind == PlanEntry::Kind::collide) {
     if (!collider_) return {};  // the table holds what was found
     collider_->collide(state, entry.octave, entry.substep == 0, substep_of(entry, infos, state.tables.precision()));
-    if (gl_)
-      state.tables.touch(Buffer::contact);
+    if (gl_) state.tables.touch(Buffer::contact);
     for (const Narrowed& n : std::span(narrowed_).subspan(call.narrowed, call.narrowed_count))
       runs_[n.run].ranges = n.struck ? collider_->struck_blocks() : collider_->renewed_blocks();
     return {};
