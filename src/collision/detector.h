@@ -167,7 +167,7 @@ class Detector {
   bool touches(const WorldState& state, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                Touch<Scalar>& touch);
   template <class Scalar>
-  Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, Touch<Scalar>& touch) const;
+  Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held, Touch<Scalar>& touch) const;
   /// Of a contact whose shapes are far apart: the gap that they have to come across, and how far each comes by itself [m].
   struct Distant {
     std::uint32_t row;

@@ -72,9 +72,16 @@ bool Detector::touches(const WorldState& s, const Options& options, Scratch<Scal
   return touch.manifold->count > 0;
 }
 
-/// How a pair stands when the step begins. Rows of shapes that are apart are of no manifold yet.
+/// Whether a contact of the last step pushed.
+template <class Scalar> bool holds(const Scalar* contact) {
+  return contact[3] > 0 && std::max({contact[20], contact[21], contact[22], contact[23]}) > 0;
+}
+
+/// How a pair stands when the step begins, whose contact held something in the last one or not. Rows of shapes that are apart are of no
+/// manifold yet.
 template <class Scalar>
-Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair, Touch<Scalar>& touch) const {
+Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
+                         Touch<Scalar>& touch) const {
   const Sight<Scalar> view = sight(s, scratch, pair);
   Manifold<Scalar>& m = *touch.manifold;
   Standing c;
@@ -86,7 +93,7 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   c.gap = std::min(double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)), double(least_separation(m)));
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
   const double near = near_of(double(c.thick), far, double(std::numeric_limits<Scalar>::epsilon()));
-  c.touches = c.acts = c.gap <= std::max(near, seam_share * double(c.thick));
+  c.touches = c.acts = c.gap <= (held ? std::max(near, seam_share * double(c.thick)) : near);
   for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
   if (c.touches)
     to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
@@ -211,8 +218,10 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     const auto [row_a, row_b] = touch.rows;
     Manifold<Scalar>& manifold = *touch.manifold;
     found.faces |= manifold.count > 1;
-    const Standing standing = stand<Scalar>(s, scratch, i, touch);
     const ContactKey key{a, b};
+    while (old < before_rows && s.contacts.keys[old] < key) old++;
+    const bool was_there = old < before_rows && s.contacts.keys[old] == key;
+    const Standing standing = stand<Scalar>(s, scratch, i, was_there && holds(before + old * reals), touch);
     if (kept < before_rows) keep_until(&key);
     const std::size_t row = next_.keys.size();
     next_.keys.push_back(key);
@@ -233,8 +242,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     write_contact(manifold, of_a, of_b, out, features.data());
     out[31] = Scalar(touch.impact);
     bodies.shift(row_a, row_b, out + 36);
-    while (old < before_rows && s.contacts.keys[old] < key) old++;
-    if (standing.touches && old < before_rows && s.contacts.keys[old] == key)
+    if (standing.touches && was_there)
       remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out, features.data());
     found.points += manifold.count;
     found.friction |= out[28] > 0 || out[29] > 0;
