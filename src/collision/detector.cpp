@@ -310,6 +310,7 @@ void Detector::put_back(WorldState& s) {
 
 Status Detector::find_contacts(WorldState& s, const Options& options, Found& found) {
   replaced_ = false;
+  gone_.clear();  // of a step that could not be made
   if (!possible_ && s.contact_rows() == 1) return {};
   return s.tables.precision() == Precision::f32 ? narrow_all(s, options, scratch<float>(), found)
                                                 : narrow_all(s, options, scratch<double>(), found);

@@ -93,7 +93,7 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   c.gap = std::min(double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)), double(least_separation(m)));
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
   const double near = near_of(double(c.thick), far, double(std::numeric_limits<Scalar>::epsilon()));
-  c.touches = c.acts = c.gap <= (held ? std::max(near, seam_share * double(c.thick)) : near);
+  c.touches = c.acts = c.gap <= (held ? seam_share * double(c.thick) : near);
   for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
   if (c.touches)
     to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
@@ -190,7 +190,6 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   standings_.resize(1);
   origins_.resize(1);
   for (std::vector<std::uint32_t>& rows : anew_) rows.clear();
-  gone_.clear();
   distant_.clear();
   std::uint32_t old = 1;
   hints_.resize(pairs.size());

@@ -181,7 +181,9 @@ double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar*
 /// whose contact lasts.
 constexpr double seam_share = 2e-3;
 
-/// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand [m].
-inline double near_of(double thick, double far, double epsilon) { return std::max(1e-6 * thick, 16 * epsilon * far); }
+/// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand, up to a seam [m].
+inline double near_of(double thick, double far, double epsilon) {
+  return std::min(std::max(1e-6 * thick, 16 * epsilon * far), seam_share * thick);
+}
 
 }  // namespace pcphys

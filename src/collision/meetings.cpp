@@ -238,7 +238,7 @@ template <class Scalar> struct Detector::Meeting {
     c.gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
-    c.touches = c.gap <= (c.acts && !quick ? std::max(near, seam_share * thick) : near);
+    c.touches = c.gap <= (c.acts && !quick ? seam_share * thick : near);
     double t = 0;
     bool meets = c.touches;
     if (!c.touches) {
