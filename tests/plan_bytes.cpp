@@ -52,7 +52,9 @@ TEST_CASE("what the plan of a world says that a step moves, a first step moves")
         REQUIRE_MESSAGE(bool(report), report.error.message);
         REQUIRE(report.contacts == contacts);
         const std::uint64_t down = report.transfer_bytes - report.upload_bytes;
-        if (std::string_view(name) == "ragdolls") {  // contacts without trees could come, and do not
+        // what could come and does not: contacts without trees, and impacts, whose bodies would have to go up once more
+        const bool foreseen = std::string_view(name) == "ragdolls" || (mix.places[0] == Place::gl && mix.places[2] == Place::cpu);
+        if (foreseen) {
           CHECK(report.upload_bytes <= all.up);
           CHECK(down <= all.down);
         } else {

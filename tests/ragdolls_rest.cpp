@@ -1,6 +1,7 @@
 // Pins how a heap of ragdolls comes to rest: by the damping of its joints within seconds, by drag, and, where joints turn freely and nothing
 // drags, slowly if at all: single limbs swing on for long. Its energy is not monotone, since what limits and overlaps hold as springs is not in the
 // sum, but never rises by more than a ten-thousandth or two of what there is (docs/joint-trees.md).
+#include <algorithm>
 #include <limits>
 
 #include "support_world.h"
@@ -97,7 +98,7 @@ TEST_CASE("ragdolls at rest: 100") {
       CHECK(r.rise <= 2.5e-4 * r.potential);
       if (calmed == Calmed::by_joints) {
         CHECK(r.moving[1] < r.moving[0]);
-        CHECK(r.moving[2] < r.moving[1]);
+        CHECK(r.moving[2] < std::max(r.moving[1], 1e-3));  // less than that is at rest: 0.5 mm/s of each
         CHECK(r.moving[2] <= 0.02);
       } else {
         CHECK(r.moving[2] <= 4);  // pendulums without friction; of 12 seeds 0.7 to 3.6 and one of 8.4
