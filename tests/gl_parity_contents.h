@@ -332,6 +332,9 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.loop_give = Scalar(1e-5);
     info.cross_share = Scalar(0.9);
     info.row_mass_most = Scalar(1000);
+    info.seen_turn = Scalar(1);
+    info.strayed_turn = Scalar(0.1);
+    info.strayed_share = Scalar(0.03);
     info.idle_speed = Scalar(0.5);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);

@@ -68,6 +68,9 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
                                      constants::loop_roundings * epsilon));
   biased.cross_share = Scalar(constants::cross_share);
+  biased.seen_turn = Scalar(constants::seen_turn);
+  biased.strayed_turn = Scalar(constants::strayed_turn);
+  biased.strayed_share = Scalar(constants::strayed_share);
   biased.row_mass_most = Scalar(constants::row_mass_most);
   biased.kept_turn = Scalar(constants::kept_turn);
   biased.idle_speed = Scalar(constants::idle_speed);
