@@ -203,9 +203,9 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   // none comes before one that a body of it had already
   Quad hit_a = PC_GATHER(delta, ia, 2u); Quad hit_b = PC_GATHER(delta, ib, 2u); Real t = pc_max(mean, pc_max(hit_a.v.x, hit_b.v.x));
 
-  // another sweep is to follow; what is stopped slowly is for the next sub-step
+  // another sweep is to follow, until one changes nothing: else what others do would tell how many there are
   Mask strikes = pc_and(hits, pc_max(pc_max(c0.bounces, c1.bounces), pc_max(c2.bounces, c3.bounces)) > zero);
-  PC_RAISE(strikes, velocity_parts, 2u);
+  PC_RAISE(hits, velocity_parts, 2u);
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
   Arms struck = pc_arms(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t));
   BodyState before_a = a; BodyState before_b = b;
