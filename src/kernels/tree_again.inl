@@ -104,7 +104,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   pc_tree_residual(PC_PASS m, t, PC_REAL(1.0), PC_INFO(seen_turn)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
   Real steps = wanted;
-  if (PC_ANY(steps > PC_REAL(0.5))) pc_keep_motion(PC_PASS m, t);  // lint: allow (nothing changes otherwise)
+  if (PC_ANY(steps > PC_REAL(0.5))) pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
   for (uint turn = 0u; turn < 4u; turn++) {
     if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
     if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted, PC_INFO(seen_turn));

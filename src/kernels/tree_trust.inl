@@ -5,12 +5,15 @@
 const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other
 const uint TREE_KEPT_PUSHES = TREE_H;        // impulses of the pin and of the angle rows; of a root it is the factor
 
-PC_FN void pc_keep_motion(PC_IO Slot m, Tree t) {
+PC_FN void pc_keep(PC_IO Slot n, Mask these, uint f, Vec3 v) { pc_st3_tree(PC_PASS n, f, pc_select3(these, v, pc_ld3_tree(PC_PASS n, f))); }
+PC_FN void pc_keep_motion(PC_IO Slot m, Tree t, Mask these) {
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
-    pc_st6_tree(PC_PASS n, TREE_KEPT_MOTION, pc_six(b.v, b.l));
-    if (k > 0u) pc_st6_tree(PC_PASS n, TREE_KEPT_PUSHES, pc_six(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_LIMIT)));
+    pc_keep(PC_PASS n, these, TREE_KEPT_MOTION, b.v);
+    pc_keep(PC_PASS n, these, TREE_KEPT_MOTION + 3u, b.l);
+    if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_PUSHES, pc_ld3_tree(PC_PASS n, TREE_PIN));
+    if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_PUSHES + 3u, pc_ld3_tree(PC_PASS n, TREE_LIMIT));
   }
 }
 // Twice an energy, by the whole tree's mass.
