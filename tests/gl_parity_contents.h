@@ -334,7 +334,6 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.row_mass_most = Scalar(1000);
     info.seen_turn = Scalar(1);
     info.strayed_turn = Scalar(0.1);
-    info.strayed_share = Scalar(0.03);
     info.idle_speed = Scalar(0.5);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);

@@ -139,11 +139,9 @@ inline constexpr double idle_speed = 0.5;
 /// Contacts keep how they reach into a joint tree, from sub-step to sub-step of a step, until its bodies may have turned by this [rad].
 inline constexpr double kept_turn = 0.005;
 /// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by `seen_turn`. Newton's method there is not to be
-/// trusted where what it changes has more than `strayed_share` of the energy of the motion within the tree, as after a blow or in a whip that
-/// sub-steps are too long for: its steps are taken back, and bodies are seen ahead until `strayed_turn` [rad]. With these, of 192 ragdolls that were
-/// dragged through a gap (tests/torn_trees.cpp's, shifted) 5 gained energy after the hand had stopped, at most 0.15 of it; of those before 14, one
-/// 3,980 times.
-inline constexpr double seen_turn = 1, strayed_turn = 0.1, strayed_share = 0.03;
+/// trusted where it more than doubles the energy of the motion within the tree, as after a blow or in a whip that sub-steps are too long for: its
+/// steps are taken back, and bodies are seen ahead until `strayed_turn` [rad].
+inline constexpr double seen_turn = 1, strayed_turn = 0.1;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

@@ -39,7 +39,6 @@ PC_INFO_FIELD(idle_speed, "contacts with trees that hold nothing and have this m
 PC_INFO_FIELD(limit_stiffness, "of an angle limit inside a tree, as a multiple of the joint's own inertia")
 PC_INFO_FIELD(seen_turn, "joints of a tree are seen ahead until a body has turned by this [rad]")
 PC_INFO_FIELD(strayed_turn, "the same where Newton's method does not find its way further off [rad]")
-PC_INFO_FIELD(strayed_share, "it has not where it changes the motion of a tree by more than this, of its energy")
 PC_INFO_FIELD(spin_floor, "least inertia of a joint's freedom, as a share of its largest")
 PC_INFO_FIELD(tree_damping, "of rotations too fast for the sub-step")
 PC_INFO_FIELD(lock_stiffness, "of a locked angle")

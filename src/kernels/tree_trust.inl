@@ -1,6 +1,6 @@
 // Whether Newton's steps have found their way. From far off, after a blow or in a whip, they do not, and what they add is energy of any size.
-// What they changed is weighed against the motion within the tree, as energies: where it is more than `strayed_share` of it, all is taken back, and
-// bodies are seen ahead until they have turned by `strayed_turn`: pins then make none, and gaps that this leaves are closed by the push.
+// Where they more than double the energy of the motion within the tree, all is taken back, and bodies are seen ahead until they have turned by
+// `strayed_turn`: pins then make none, and gaps that this leaves are closed by the push.
 
 const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other
 const uint TREE_KEPT_PUSHES = TREE_H;        // impulses of the pin and of the angle rows; of a root it is the factor
@@ -28,24 +28,24 @@ PC_FN Real pc_strayed(PC_IO Slot m, Tree t) {
   Vec3 root_v = pc_ld3_tree(PC_PASS PC_NODE(m, t.first), TREE_KEPT_MOTION);
   Mask held = root.inverse_mass < PC_TINY;
   Vec3 carried = pc_select3(held, root.v, root_v);
-  Real changed = PC_REAL(0.0);
+  Real after = PC_REAL(0.0);
   Real before = PC_REAL(0.0);
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
     Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
     Vec3 w = pc_sym_mul(b.inertia, kept.a);
-    Real of_change = pc_node_energy(PC_PASS n, pc_sub(b.v, kept.l), pc_sub(pc_angular_velocity(b), w));
+    Real left = pc_node_energy(PC_PASS n, pc_sub(b.v, carried), pc_angular_velocity(b));
     Real of_motion = pc_node_energy(PC_PASS n, pc_sub(kept.l, carried), w);
     Mask moves = PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0);
-    precise Real all_changed = changed + pc_select(moves, of_change, PC_REAL(0.0));
+    precise Real all_after = after + pc_select(moves, left, PC_REAL(0.0));
     precise Real all_before = before + pc_select(moves, of_motion, PC_REAL(0.0));
-    changed = all_changed;
+    after = all_after;
     before = all_before;
   }
   PC_MEET;
-  precise Real most = before * PC_INFO(strayed_share);
-  return pc_select(changed > most, PC_REAL(1.0), PC_REAL(0.0));
+  precise Real most = before + before;
+  return pc_select(after > most, PC_REAL(1.0), PC_REAL(0.0));
 }
 PC_FN void pc_take_back(PC_IO Slot m, Tree t, Mask strayed) {
   PC_NODES(k, 0u, t) {

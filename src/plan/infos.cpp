@@ -70,7 +70,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.cross_share = Scalar(constants::cross_share);
   biased.seen_turn = Scalar(constants::seen_turn);
   biased.strayed_turn = Scalar(constants::strayed_turn);
-  biased.strayed_share = Scalar(constants::strayed_share);
   biased.row_mass_most = Scalar(constants::row_mass_most);
   biased.kept_turn = Scalar(constants::kept_turn);
   biased.idle_speed = Scalar(constants::idle_speed);
