@@ -114,7 +114,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (as above)
     Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
-    if (pc_is_pivot(PC_PASS t) == 1u) strayed = PC_REAL(0.0);
+    if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
     if (PC_ANY(strayed > PC_REAL(0.5))) {  // lint: allow (as above)
       pc_take_back(PC_PASS m, t, strayed > PC_REAL(0.5));
       for (uint turn = 0u; turn < 2u; turn++) {

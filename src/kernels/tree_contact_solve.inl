@@ -12,16 +12,44 @@
 #include "kept_meeting.inl"
 #include "reach_motion.inl"
 
+// In the relax visit: with which speed rows are to leave that were pressed in this sub-step, and approached fast as it began.
+PC_FN Real pc_leaves(PC_IO Slot m, uint i, Twist v) {
+  Real a = PC_LD(contact_rows, m, ROW_A + i);
+  Real b = PC_LD(contact_rows, m, ROW_B + i);
+  precise Real approach = v.vn + b * v.w1 - a * v.w2;
+  precise Real threshold = -PC_INFO(restitution_threshold);
+  Mask bounces = pc_and(PC_LD(contact_impulses, m, i) > PC_REAL(0.0), approach < threshold);
+  precise Real back = -(PC_LD(contact_rows, m, ROW_E) * approach);
+  return pc_select(bounces, back, PC_REAL(0.0));
+}
+PC_FN FourRows pc_bounce(PC_IO Way w, Slot m) {
+  Real none = PC_REAL(0.0);
+  Mask may = pc_and(PC_INFO(load_ahead) > PC_REAL(0.5), PC_LD(contact_rows, m, ROW_E) > none);
+  if (!PC_ANY(may)) return pc_four(none, none, none, none);  // lint: allow (zeros otherwise)
+  Meeting start = pc_kept_meeting(PC_PASS w, m);
+  Real share = pc_select(may, PC_REAL(1.0), none);
+  precise Real r0 = pc_leaves(PC_PASS m, 0u, start.twist) * share;
+  precise Real r1 = pc_leaves(PC_PASS m, 1u, start.twist) * share;
+  precise Real r2 = pc_leaves(PC_PASS m, 2u, start.twist) * share;
+  precise Real r3 = pc_leaves(PC_PASS m, 3u, start.twist) * share;
+  return pc_four(r0, r1, r2, r3);
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   if (!PC_ANY(PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0))) return;  // lint: allow (without mass they do nothing)
   Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Meeting now = pc_meeting_now(PC_PASS w, m, ia, ib, n, t1, t2); Twist v = now.twist;
+  if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) {
+    precise Real h2 = PC_INFO(h) * PC_INFO(h) * PC_REAL(4.0);
+    precise Real far = pc_max(pc_dot(pc_angular_velocity(now.a), pc_angular_velocity(now.a)), pc_dot(pc_angular_velocity(now.b), pc_angular_velocity(now.b))) * h2;
+    if (PC_ANY(far > PC_REAL(1.0))) return;
+  }
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
-  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, pc_both_move(PC_PASS w, m));
+  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, pc_both_move(PC_PASS w, m), pc_bounce(PC_PASS w, m));
 
   Real acts = pc_max(r.touch, pc_max(pc_largest(r.impulse), pc_largest(r.couple)));
   if (!PC_ANY(acts > PC_REAL(0.0))) return;  // lint: allow (nothing changes nothing)
@@ -39,6 +67,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 }
 #undef PC_MEAN
 #undef pc_kept
+#undef pc_thrown
+#undef pc_lasts
 #undef PC_PRELOAD
 #undef PC_ACTS
 #undef PC_ACTING

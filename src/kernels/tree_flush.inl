@@ -21,12 +21,19 @@ PC_FN void pc_flush_node(PC_IO Slot m, Tree t, uint k) {
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
+  Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3(); Real touch = PC_REAL(0.0);
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); Quad impulse = PC_GATHER(node_pending, row, 2u); Quad torque = PC_GATHER(node_pending, row, 3u);
-    push = pc_add(push, impulse.v); PC_ONE PC_ST(tree_rows, n, TREE_TOUCH, impulse.s);
+    push = pc_add(push, impulse.v); touch = pc_max(touch, impulse.s); PC_ONE PC_ST(tree_rows, n, TREE_TOUCH, impulse.s);
     precise Vec3 moment = turn + torque.v + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), impulse.v); turn = moment;
     PC_THEN(PC_DOWN(k, 0u, t)) pc_flush_node(PC_PASS m, t, k);
+  }
+  // what strikes one body is a blow for all (half_changes.inl)
+  Real least = pc_select(touch > PC_REAL(0.0), PC_TINY, PC_REAL(0.0));
+  PC_MEET;
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    PC_ST(tree_rows, n, TREE_TOUCH, pc_max(PC_LD(tree_rows, n, TREE_TOUCH), least));
   }
   Real share = pc_inverse_or_zero(PC_LD(tree_rows, root, TREE_TOTAL));
   pc_tree_add_changes(PC_PASS m, t, pc_scale(push, share), pc_scale(turn, share));

@@ -339,7 +339,7 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   b.kernel(with.begin, Phase::first, 0);
   look_at_inertia(b, s, 0);
   for (std::uint32_t k = 0; k < count; k++) substep(b, s, with, k, count);
-  if (s.contacts() && s.restitution) b.kernel(contacts(s).restitution, Phase::relax, last);
+  if (s.free_contacts && s.restitution) b.kernel(contacts(s).restitution, Phase::relax, last);
   if (s.contacts() && s.touches) b.kernel(contacts(s).touch, Phase::relax, last);
   if (s.contacts()) b.kernel(contacts(s).store, Phase::last, last);
   b.kernel(with.synchronise, Phase::relax, last);
