@@ -1,5 +1,5 @@
-// After the last sub-step: rows that were pressed in this step and approached faster than the threshold
-// leave with e times their approach speed (restitution e: the mean of the two bodies', as the original).
+// After the last sub-step, of contacts of trees that are too large for tree_contact_solve: rows that were pressed in this step and approached
+// faster than the threshold leave with e times their approach speed (restitution e: the mean of the two bodies', as the original).
 // The load that this adds allows more friction, so a bouncing manifold's friction is solved once more:
 // in all mu (1 + e) times the impulse that stopped it, Newton's and Coulomb's laws together.
 // These impulses are not remembered: they are of an instant, warm starting is for what lasts.
@@ -19,6 +19,11 @@ PC_FN Real pc_bounced_row(Real impulse, Real change, Real share) { precise Real 
 PC_FN Mask pc_bounces(PC_IO Slot m, uint i) {
   precise Real threshold = -PC_INFO(restitution_threshold);
   return pc_and(PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_APPROACH + i) < threshold);
+}
+
+PC_FN void pc_note_bounce(PC_IO Slot m, uint i, Real bounce) {
+  precise Real all = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) + bounce;
+  PC_ST(contact_impulses, m, IMPULSE_LARGEST + i, all);
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -46,6 +51,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real one = pc_select(some, PC_REAL(1.0), PC_REAL(0.0));
   precise Real e0 = (k0 - l0) * one; precise Real e1 = (k1 - l1) * one; precise Real e2 = (k2 - l2) * one; precise Real e3 = (k3 - l3) * one;
 
+  pc_note_bounce(PC_PASS m, 0u, e0); pc_note_bounce(PC_PASS m, 1u, e1); pc_note_bounce(PC_PASS m, 2u, e2); pc_note_bounce(PC_PASS m, 3u, e3);
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
   Mask bounced = push.n > PC_REAL(0.0);
   precise Real load = k0 + k1 + k2 + k3;

@@ -35,5 +35,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #undef pc_thrown
 #undef pc_lasts
 #undef PC_PRELOAD
+#undef PC_SOME_ACT
 #undef PC_ACTS
 #undef PC_ACTING

@@ -19,6 +19,7 @@ PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real 
 // It was of an instant: nothing of it is remembered.
 PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0.0), PC_REAL(0.0), impulse); }
 #define PC_PRELOAD , Mask both_move, FourRows back
+#define PC_SOME_ACT
 #else
 PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loose; return r; }
 #define pc_kept(i) loose
@@ -27,6 +28,9 @@ PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loos
 #define PC_PRELOAD , Real preload
 #endif
 #ifdef PC_PLACED
+#define PC_SOME_ACT
+#endif
+#ifdef PC_SOME_ACT  // others keep what they have
 #define PC_ACTS , acts
 #define PC_ACTING , Mask acts
 #else
@@ -151,7 +155,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   }
 #endif
 #endif
-#ifdef PC_PLACED
+#ifdef PC_SOME_ACT
   now.k0 = pc_select(acts, now.k0, l0); now.k1 = pc_select(acts, now.k1, l1); now.k2 = pc_select(acts, now.k2, l2); now.k3 = pc_select(acts, now.k3, l3);
 #ifndef PC_FRICTIONLESS
   now.f.next1 = pc_select(acts, now.f.next1, PC_LD(contact_impulses, m, IMPULSE_T)); now.f.next2 = pc_select(acts, now.f.next2, PC_LD(contact_impulses, m, IMPULSE_T + 1u));

@@ -15,6 +15,7 @@
 #include "tree_reach.inl"
 #include "kept_meeting.inl"
 #include "contact_reach.inl"
+#include "row_approach.inl"
 
 // Contacts that hold nothing, and whose points would come no nearer than this speed could close, are left alone in this sub-step: in a pile half of all. What
 // is missed the next sub-step sees.
@@ -81,11 +82,10 @@ PC_FN Mask pc_reaches_same(PC_IO Way w, Slot m, Meeting now, Real before) {
 // it towards the other, has no place to go; with means that hold whatever was pushed before, the two push ever harder.
 PC_FN Real pc_mean_most(PC_IO Meeting now) { precise Real light = now.a.inverse_mass + now.b.inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_INFO(mean_most); return most; }
 
-// The approach that a row bounces from is that of the sub-step in which it first pushes: on its way there a limb is turned by blows elsewhere.
+// The approach that is told of a row (contact_touch) is that of the sub-step in which it first pushes: on its way there a limb is turned by blows
+// elsewhere.
 PC_FN void pc_see_approach(PC_IO Slot m, uint i, Twist v) {
-  Real a = PC_LD(contact_rows, m, ROW_A + i);
-  Real b = PC_LD(contact_rows, m, ROW_B + i);
-  precise Real u = v.vn + b * v.w1 - a * v.w2;
+  Real u = pc_row_approach(PC_PASS m, i, v);
   Mask waits = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) < PC_TINY;
   PC_ST(contact_rows, m, ROW_APPROACH + i, pc_select(waits, pc_min(u, PC_REAL(0.0)), PC_LD(contact_rows, m, ROW_APPROACH + i)));
 }

@@ -6,6 +6,7 @@
 // the root (the halves of its motion), then one a level; then as many for the couples, which are unset where pc_turns_matter says no. Of each
 // row three reals.
 const uint REACH_ROWS = 2u;     // where slots of rows begin
+const uint REACH_APPROACH = 11u; // in the first slot: the fastest approach of a row before anything remembered acted (tree_contact_warm)
 const uint REACH_PENDING = 9u;  // what was pending when the contact was visited; in slots of impulses
 
 PC_FN Vec3 pc_ld3_reach(PC_IO Slot s, uint f) { return Vec3(PC_LD(contact_reach, s, f), PC_LD(contact_reach, s, f + 1u), PC_LD(contact_reach, s, f + 2u)); }
