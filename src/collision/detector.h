@@ -63,9 +63,10 @@ class Detector {
                   const Options& options);
   /// Whether impacts wait for others that come before them.
   bool waits() const { return waiting_ > 0; }
-  /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before; and of impacts.
+  /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before; and of impacts that may
+  /// act, since their bodies were struck after they were looked for last.
   std::span<const std::uint32_t> renewed() const { return renewed_; }
-  std::span<const std::uint32_t> struck() const { return struck_; }
+  std::span<const std::uint32_t> struck() const { return unseen_; }
   /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points see it [m].
   std::span<const Vec3> origins() const { return origins_; }
   /// After the step: contacts that came apart in it have no points.
@@ -196,6 +197,7 @@ class Detector {
   template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among);
   template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
+  template <class Scalar> void find_unseen(const Substep<Scalar>& look, bool first);
   float went(std::uint32_t body) const { return ways_[body].went; }
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
@@ -227,7 +229,7 @@ class Detector {
   std::vector<Way> ways_;              // of bodies
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
-  std::vector<std::uint32_t> renewed_, struck_, on_standing_, inner_;  // places in the contacts of a sub-step
+  std::vector<std::uint32_t> renewed_, struck_, unseen_, on_standing_, inner_;  // places in the contacts of a sub-step
   std::vector<double> soonest_;                                        // of bodies: when in the sub-step the first impact is [s]
   std::uint32_t waiting_ = 0;                                          // impacts
   std::vector<std::vector<std::uint32_t>> anew_;                       // by level: rows that were renewed in the sub-step before

@@ -245,6 +245,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
       remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out, features.data());
     found.points += manifold.count;
     found.friction |= out[28] > 0 || out[29] > 0;
+    standings_[row].bounces = out[30] > 0;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
     found.impacts |= touch.impact >= 0;

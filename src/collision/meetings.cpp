@@ -454,6 +454,7 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
     Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
     if (!m.find_from(from)) continue;
+    c.times_struck = -1;
     renewed_.push_back(at);
     struck_.push_back(at);
     if (look.s.stands(c.rows[1])) on_standing_.push_back(at);
@@ -461,6 +462,25 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
   if (struck_.size() == before) return void(waiting_ = 0);
   drop_inner_edges(look, std::span(struck_).subspan(before));
   put_off(look, before);
+}
+
+/// Contacts that may have an impact: those that meet, and touching ones that bounce and whose bodies are fast enough; after the `first` sweep those
+/// whose bodies were struck since they were looked at last.
+template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, bool first) {
+  const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
+  const auto times_struck = [&](std::uint32_t body) { return float(delta[body * reals_of(Buffer::delta) + 7]); };
+  const double slow = look.options.least_bounce * look.h * 0.99;
+  unseen_.clear();
+  for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
+    const std::uint32_t row = look.contacts[at];
+    Standing& c = standings_[row];
+    if (row == 0 || !c.acts || c.jointed || !(c.struck || c.bounces)) continue;
+    const float times = times_struck(c.rows[0]) + times_struck(c.rows[1]);
+    const bool looked = first ? !c.struck && double(way_of(look, c.rows[0]).goes + way_of(look, c.rows[1]).goes) < slow
+                              : times == c.times_struck;
+    c.times_struck = times;
+    if (!looked) unseen_.push_back(at);
+  }
 }
 
 void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h,
@@ -474,7 +494,9 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
     Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
     const Bodies<Scalar> bodies(s.tables);
-    meet_in(Substep<Scalar>{s, bodies, contacts, options, h, first, false});
+    const Substep<Scalar> look{s, bodies, contacts, options, h, first, false};
+    meet_in(look);
+    find_unseen(look, true);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
   anew_[level].clear();
@@ -489,7 +511,9 @@ void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts
     Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
     const Bodies<Scalar> bodies(s.tables);
-    meet_struck(Substep<Scalar>{s, bodies, contacts, options, h, false, last});
+    const Substep<Scalar> look{s, bodies, contacts, options, h, false, last};
+    meet_struck(look);
+    find_unseen(look, false);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
   anew_[level].clear();

@@ -5,8 +5,8 @@
 // it changed the velocity by J / m and the position by (h - t) J / m: so J acts on u whole and the position goes
 // back by t J / m. For a single contact that is exact, energy and all; several follow one another, colour by colour.
 // The rows of one manifold that close are solved together. What is left (slow approaches, several impacts of one body
-// in one sub-step that block each other, bodies on joints) is contact_solve's and contact_restitution's; but shapes that
-// meet in flight, whose arms mean nothing before they do, are left to this kernel for the whole step.
+// in one sub-step that block each other) is contact_solve's, what is on joints tree_contact_solve's; but shapes that meet in
+// flight, whose arms mean nothing before they do, are left to this kernel for the whole step.
 #define PC_SOME_ROWS
 #include "contact_rows.inl"
 #include "contact_response.inl"
@@ -18,8 +18,8 @@
 #include "contact_turned.inl"
 #include "contact_calming.inl"
 
-// u_aim: the velocity u that the row is to leave with; closes: 1 or 0; bounces: 1 where it closes fast
-struct Closing { Real t; Real u_aim; Real closes; Real bounces; };
+// u_aim: the velocity u that the row is to leave with; closes: 1 or 0
+struct Closing { Real t; Real u_aim; Real closes; };
 PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Real e, Mask always) {
   Real h = PC_INFO(h); Real zero = PC_REAL(0.0);
   precise Real half_change = acceleration * h * PC_REAL(0.5); precise Real v = u - half_change;
@@ -39,7 +39,7 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < push)));
   Real bounce = pc_select(fast, e, zero); precise Real thrown = -bounce * impact;
   precise Real aim = half_change - acceleration * t + pc_max(thrown, push);
-  Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); r.bounces = pc_select(fast, r.closes, zero); return r;
+  Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); return r;
 }
 PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
 // What a row asks for, as a change of its impulse.
@@ -62,13 +62,13 @@ PC_FN void pc_shift_place(PC_IO Index i, Mask these, Vec3 shift) {
 }
 
 // The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise).
-PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits, Real strike) {
+PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits) {
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
   precise Real back = -t;
   Quad hit = PC_GATHER(delta, i, 2u); PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(hit.v.x, pc_max(t, PC_TINY)), hit.v.y, hit.v.z), hit.s));
   pc_shift_place(PC_PASS i, moves, pc_scale(dv, back));
-  Quad turned = PC_GATHER(delta, i, 1u); precise Real struck = turned.s + strike;
+  Quad turned = PC_GATHER(delta, i, 1u); precise Real struck = turned.s + PC_REAL(1.0);
   PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
@@ -126,12 +126,6 @@ PC_FN Mask pc_may_hit(PC_IO Slot m) {
   fast = pc_closes_fast(PC_PASS m, v, shift, 2u, fast); fast = pc_closes_fast(PC_PASS m, v, shift, 3u, fast);
   return fast;
 }
-// How often the two bodies were struck in this step: as often as when they were last looked at, and nothing has changed.
-PC_FN Real pc_struck(PC_IO Slot m) {
-  Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 1u); Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 1u);
-  precise Real both = a.s + b.s; return both;
-}
-
 PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Real zero = PC_REAL(0.0);
   Real e = PC_LD(contact_rows, m, ROW_E);
@@ -204,7 +198,6 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Quad hit_a = PC_GATHER(delta, ia, 2u); Quad hit_b = PC_GATHER(delta, ib, 2u); Real t = pc_max(mean, pc_max(hit_a.v.x, hit_b.v.x));
 
   // another sweep is to follow, until one changes nothing: else what others do would tell how many there are
-  Mask strikes = pc_and(hits, pc_max(pc_max(c0.bounces, c1.bounces), pc_max(c2.bounces, c3.bounces)) > zero);
   PC_RAISE(hits, velocity_parts, 2u);
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
   Arms struck = pc_arms(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t));
@@ -221,21 +214,13 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   // (what rounding leaves of an approach closes anywhere)
   precise Real nearing = -pc_dot(n, relative); Real met = PC_LD(contact_rows, m, ROW_MET);
   Mask anew = pc_or(met < PC_TINY, nearing > pc_noise(PC_PASS relative)); PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, always), anew), t, met));
-  Real strike = pc_select(strikes, PC_REAL(1.0), zero);
-  pc_set_back(PC_PASS ia, before_a, a, t, hits, strike); pc_set_back(PC_PASS ib, before_b, b, t, hits, strike);
+  pc_set_back(PC_PASS ia, before_a, a, t, hits); pc_set_back(PC_PASS ib, before_b, b, t, hits);
 }
 
-// A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at bodies that were struck since
-// it looked last.
-PC_FN Mask pc_unseen(PC_IO Slot m, Mask mine, Mask again) {
-  Mask flight = pc_impact_always(PC_PASS m); Real kept = PC_LD(contact_rows, m, ROW_SEEN); Real struck = pc_struck(PC_PASS m);
-  Real seen = pc_select(flight, pc_select(again, kept, PC_REAL(0.0)), struck); PC_ST(contact_rows, m, ROW_SEEN, pc_select(mine, seen, kept));
-  precise Real since = struck - kept; Real anew = pc_select(again, pc_abs(since), PC_REAL(1.0)); return pc_and(mine, pc_or(flight, anew > PC_REAL(0.5)));
-}
+// What no impact has changed since it was looked at finds nothing again: the host leaves such blocks out (Detector::find_unseen).
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
+  Mask mine = pc_impact_mine(PC_PASS m);
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
-  mine = pc_unseen(PC_PASS m, mine, again);
   if (PC_ANY(pc_and(mine, pc_may_hit(PC_PASS m)))) pc_hit(PC_PASS m, mine);  // lint: allow (nothing to do otherwise)
 }
 #undef PC_SOME_ROWS

@@ -19,7 +19,6 @@ const uint ROW_APPROACH = 36u; // below 0: relative normal velocity of each poin
 const uint ROW_K = 40u;        // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
 const uint ROW_SCALE = 41u;    // of all effective masses in this sub-step, see pc_mass_scale
 const uint ROW_MET = 41u;      // the same place until contact_warm, where shapes meet in flight: when in this sub-step they did; 0 before
-const uint ROW_SEEN = 41u;     // and where they do not: how often the bodies had been struck when contact_impact last looked
 const uint ROW_IMPACT = 42u;   // contact_impact's: below 0 none of it (-1: a body hangs on joints, -2: it acts no longer), 0 where it bounces, above 0 always
 const uint ROW_PATH = 43u;     // b's way against a since the step began, when the rows were found: arms are of there
 #ifndef PC_FRICTIONLESS  // what follows is friction's: where nothing has any, rows end here (frictionless_rows)

@@ -48,7 +48,6 @@ std::uint32_t left_quad() {
 
 bool prepares(Kernel k) { return k == Kernel::contact_prepare || k == Kernel::contact_prepare_frictionless; }
 bool strikes(Kernel k) { return k == Kernel::contact_impact || k == Kernel::contact_impact_frictionless; }
-bool restitutes(Kernel k) { return k == Kernel::contact_restitution || k == Kernel::contact_restitution_frictionless; }
 
 }  // namespace
 
@@ -213,9 +212,9 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
 }
 
 /// Rows that stand need not be made, and what has no impact no look at one: on the host such runs go over the blocks of the others.
-void Runner::narrow(const PlanEntry& entry, bool bounces) {
+void Runner::narrow(const PlanEntry& entry) {
   if (entry.place != Place::cpu || entry.own) return;
-  const bool prepare = prepares(entry.kernel) && entry.phase != Phase::first, strike = strikes(entry.kernel) && !bounces;
+  const bool prepare = prepares(entry.kernel) && entry.phase != Phase::first, strike = strikes(entry.kernel);
   if (prepare || strike) narrowed_.push_back({std::uint32_t(runs_.size()) - 1, strike});
 }
 
@@ -270,8 +269,6 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
   ranges_.clear();
   narrowed_.clear();
   const PlanEntry* before = nullptr;
-  const bool bounces = std::ranges::any_of(
-      plan.entries, [](const PlanEntry& e) { return e.kind == PlanEntry::Kind::kernel && !e.own && restitutes(e.kernel); });
   std::size_t collides = 0;  // the call
   for (const PlanEntry& entry : plan.entries) {
     const bool kernel = entry.kind == PlanEntry::Kind::kernel;
@@ -289,7 +286,7 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
     if (kernel) {
       add_run(entry, state, schedule);
       calls_.back().count++;
-      narrow(entry, bounces);
+      narrow(entry);
       if (!narrowed_.empty()) calls_[collides].narrowed_count = std::uint32_t(narrowed_.size()) - calls_[collides].narrowed;
     }
     before = &entry;
@@ -361,8 +358,8 @@ Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& stat
   prepare.barrier = true;
   prepare.info = std::uint32_t(info_index(biased));
   if (entry.place == Place::cpu) prepare.ranges = collider_->renewed_blocks();
-  for (const Narrowed& n : narrowed_)  // the list has grown
-    if (n.struck && !runs_[n.run].ranges.empty()) runs_[n.run].ranges = collider_->struck_blocks();
+  for (const Narrowed& n : narrowed_)  // other ones than those of the sweep before
+    if (n.struck && &runs_[n.run] == &impacts) runs_[n.run].ranges = collider_->struck_blocks();
   return backend.run(std::span(&prepare, 1));
 }
 

@@ -134,7 +134,7 @@ class Runner final : Keeper {
   /// Finds calls_, and what undo must find.
   void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
-  void narrow(const PlanEntry& entry, bool bounces);
+  void narrow(const PlanEntry& entry);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
   double substep_of(const PlanEntry& entry, const void* infos, Precision precision) const;
