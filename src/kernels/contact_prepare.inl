@@ -116,7 +116,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st_new(PC_PASS m, these, ROW_MU_STATIC, material.v.x); pc_st_new(PC_PASS m, these, ROW_MU_KINETIC, material.v.y); pc_st_new(PC_PASS m, these, ROW_RADIUS, radius);
 #endif
   pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, all, ROW_IMPACT, pc_select(pc_and(over, unjointed), PC_REAL(-2.0), material.s));
-  pc_st_new(PC_PASS m, these, ROW_SCALE, pc_select(pc_and(of_step, flight <= zero), one, zero));  // 0 as ROW_MET: they have not met
+  pc_st_new(PC_PASS m, these, ROW_SCALE, pc_select(flight > zero, zero, pc_select(of_step, one, zero)));  // 0 as ROW_MET: they have not met
   pc_keep_approach(PC_PASS m, 0u, these, of_step, approach0); pc_keep_approach(PC_PASS m, 1u, these, of_step, approach1); pc_keep_approach(PC_PASS m, 2u, these, of_step, approach2); pc_keep_approach(PC_PASS m, 3u, these, of_step, approach3);
 
   // impulses: of the step before, which scale with the sub-step; or those that the rows hold
