@@ -334,6 +334,24 @@ template <class Scalar> bool Detector::lies_in(const Meeting<Scalar>& x, std::ui
   return m.count > 0;
 }
 
+/// Of the points at which a contact is closed, how far apart the shapes are where they overlap most.
+template <class Scalar> Scalar Detector::depth(const Meeting<Scalar>& x) {
+  Scalar least = std::numeric_limits<Scalar>::max();
+  for (std::uint32_t point = 0; point < 4; point++)
+    if (x.c.together >> point & 1) least = std::min(least, x.out[7 + 4 * point]);
+  return least;
+}
+
+/// Whether y may take x's place there. Over a seam each of two lies in the other: the one that holds more stays.
+template <class Scalar> bool Detector::covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const {
+  if (!lies_in<Scalar>(x, point, y)) return false;
+  const Scalar of_x = depth(x), of_y = depth(y);
+  if (of_y < of_x || (of_y == of_x && y.row < x.row)) return true;
+  for (std::uint32_t other = 0; other < 4; other++)
+    if ((y.c.together >> other & 1) != 0 && !lies_in<Scalar>(y, other, x)) return true;
+  return false;
+}
+
 /// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with
 /// other normals, the surface goes on, and there is nothing to hit. `among`: places of which some may go.
 template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among) {
@@ -353,7 +371,7 @@ template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& l
       for (std::uint32_t point = 0; point < 4 && covered; point++) {
         if ((x.c.together >> point & 1) == 0) continue;
         covered = false;
-        for (std::size_t j = begin; j < end && !covered; j++) covered = lies_in<Scalar>(x, point, meeting(on_standing_[j]));
+        for (std::size_t j = begin; j < end && !covered; j++) covered = covers<Scalar>(meeting(on_standing_[j]), x, point);
       }
       if (covered) inner_.push_back(on_standing_[i]);
     }
