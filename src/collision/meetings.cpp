@@ -467,6 +467,7 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
 template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto struck_at = [&](std::uint32_t body) { return double(delta[body * reals_of(Buffer::delta) + 8]); };
+  const auto times_struck = [&](std::uint32_t body) { return float(delta[body * reals_of(Buffer::delta) + 7]); };
   const std::size_t before = struck_.size();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
@@ -474,6 +475,9 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     if (row == 0 || c.acts || c.touches || c.jointed) continue;
     double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
     if (from == 0 && !c.waits) continue;
+    const float times = times_struck(c.rows[0]) + times_struck(c.rows[1]);
+    if (times == c.times_struck && !c.waits) continue;  // as it was looked at last
+    c.times_struck = times;
     c.waits = false;
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
