@@ -199,6 +199,7 @@ class Detector {
   template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among);
   template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
+  template <class Scalar> void mark_struck(const Substep<Scalar>& look, std::size_t seen);
   template <class Scalar> void find_unseen(const Substep<Scalar>& look, bool first);
   float went(std::uint32_t body) const { return ways_[body].went; }
 
@@ -232,6 +233,7 @@ class Detector {
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
   std::vector<std::uint32_t> renewed_, struck_, unseen_, on_standing_, inner_;  // places in the contacts of a sub-step
+  std::vector<float> times_struck_;  // of bodies, when impacts were looked for last
   std::vector<double> soonest_;                                        // of bodies: when in the sub-step the first impact is [s]
   std::uint32_t waiting_ = 0;                                          // impacts
   std::vector<std::vector<std::uint32_t>> anew_;                       // by level: rows that were renewed in the sub-step before

@@ -483,7 +483,6 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
     Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
     if (!m.find_from(from)) continue;
-    c.times_struck = -1;
     renewed_.push_back(at);
     struck_.push_back(at);
     if (look.s.stands(c.rows[1])) on_standing_.push_back(at);
@@ -493,22 +492,29 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
   put_off(look, before);
 }
 
-/// Contacts that may have an impact: those that meet, and touching ones that bounce and whose bodies are fast enough; after the `first` sweep those
-/// whose bodies were struck since they were looked at last.
+/// Marks the bodies that the sweep before has struck, and those of impacts that it had not seen: the next looks at no others.
+template <class Scalar> void Detector::mark_struck(const Substep<Scalar>& look, std::size_t seen) {
+  Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
+  constexpr std::size_t reals = reals_of(Buffer::delta);
+  for (std::size_t body = 0; body < times_struck_.size(); body++) {
+    const float times = float(delta[body * reals + 7]);
+    delta[body * reals + 9] = times != times_struck_[body];
+    times_struck_[body] = times;
+  }
+  for (std::size_t i = seen; i < struck_.size(); i++)
+    for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows) delta[body * reals + 9] = 1;
+}
+
+/// Contacts that may have an impact: those that meet, and touching ones that bounce; after the `first` sweep those of marked bodies.
 template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, bool first) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
-  const auto times_struck = [&](std::uint32_t body) { return float(delta[body * reals_of(Buffer::delta) + 7]); };
-  const double slow = look.options.least_bounce * look.h * 0.99;
+  const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
   unseen_.clear();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
-    Standing& c = standings_[row];
+    const Standing& c = standings_[row];
     if (row == 0 || !c.acts || c.jointed || !(c.struck || c.bounces)) continue;
-    const float times = times_struck(c.rows[0]) + times_struck(c.rows[1]);
-    const bool looked = first ? !c.struck && double(way_of(look, c.rows[0]).goes + way_of(look, c.rows[1]).goes) < slow
-                              : times == c.times_struck;
-    c.times_struck = times;
-    if (!looked) unseen_.push_back(at);
+    if (first || is_marked(c.rows[0]) || is_marked(c.rows[1])) unseen_.push_back(at);
   }
 }
 
@@ -525,6 +531,9 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
     const Bodies<Scalar> bodies(s.tables);
     const Substep<Scalar> look{s, bodies, contacts, options, h, first, false};
     meet_in(look);
+    const Scalar* const delta = s.tables.data<Scalar>(Buffer::delta);
+    times_struck_.resize(levers_.size());
+    for (std::size_t body = 0; body < levers_.size(); body++) times_struck_[body] = float(delta[body * reals_of(Buffer::delta) + 7]);
     find_unseen(look, true);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
@@ -541,7 +550,9 @@ void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
     const Bodies<Scalar> bodies(s.tables);
     const Substep<Scalar> look{s, bodies, contacts, options, h, false, last};
+    const std::size_t seen = struck_.size();
     meet_struck(look);
+    mark_struck(look, seen);
     find_unseen(look, false);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
