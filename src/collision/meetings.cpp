@@ -533,7 +533,8 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
     meet_in(look);
     const Scalar* const delta = s.tables.data<Scalar>(Buffer::delta);
     times_struck_.resize(levers_.size());
-    for (std::size_t body = 0; body < levers_.size(); body++) times_struck_[body] = float(delta[body * reals_of(Buffer::delta) + 7]);
+    for (std::size_t body = 0; body < levers_.size(); body++)
+      times_struck_[body] = float(delta[body * reals_of(Buffer::delta) + 7]);
     find_unseen(look, true);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
