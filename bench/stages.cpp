@@ -79,7 +79,7 @@ class Bench {
   }
 
   Status broad() { return detector_.find_pairs(state(), dt, options_); }
-  Status narrow() { return detector_.find_contacts(state(), dt, options_, found_); }
+  Status narrow() { return detector_.find_contacts(state(), options_, found_); }
   Status bind() { return runner_.bind(settings_, plan_, state(), schedule_); }
   /// Colours and layout of contacts, as after a step in which other pairs touch.
   Status lay_out() {

@@ -52,12 +52,11 @@ Bytes bytes_of(const PlanEntry& entry, const World& world) {
 }
 
 Json entry_json(const PlanEntry& entry, const World& world) {
-  Json json{{"kind", entry.kind == PlanEntry::Kind::kernel   ? "kernel"
-                     : entry.kind == PlanEntry::Kind::upload ? "upload"
-                                                             : "download"},
+  constexpr const char* kinds[] = {"kernel", "upload", "download", "collide"};
+  Json json{{"kind", kinds[std::size_t(entry.kind)]},
             {"place", name(entry.place)},
             {"substep", entry.substep}};
-  if (entry.kind != PlanEntry::Kind::kernel) {
+  if (entry.transfers()) {
     json["buffer"] = std::string(buffer_name(entry));
     json["bytes"] = entry.bytes;
     return json;
@@ -133,7 +132,7 @@ std::string plan_csv(const StepPlan& plan, const World& world) {
   std::string text = "kind,place,substep,stage,name,phase,barrier,bytes\n";
   for (const PlanEntry& entry : plan.entries) {
     const Json json = entry_json(entry, world);
-    const bool kernel = entry.kind == PlanEntry::Kind::kernel;
+    const bool kernel = !entry.transfers();
     text += json["kind"].get<std::string>() + "," + name(entry.place) + "," + std::to_string(entry.substep) + ",";
     text +=
         std::string(kernel ? stage_name(entry) : "") + "," + std::string(kernel ? kernel_name(entry) : buffer_name(entry)) + ",";

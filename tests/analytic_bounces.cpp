@@ -95,19 +95,16 @@ TEST_CASE("A11: a thousand bounces without loss, with a force besides gravity") 
   }
 }
 
-TEST_CASE("what comes too slowly to bounce is no flight") {
+TEST_CASE("what comes too slowly to bounce does not") {
   // 1 mm above a floor: the fall of a step is further than 1 % of the ball, and far too slow
   for (const double speed : {0.0, 0.2, 0.6}) {
     Run run({Precision::f64}, {0, -gravity, 0}, 4);
     run.add(floor_plane(0.5));
     BodyDef def = ball(0.25, 1, {0, 0.251, 0}, 0.5);
     def.velocity = {0, -speed, 0};
-    run.add(def);
+    const BodyId id = run.add(def);
     run.step(1.0 / 60);
-    bool looked_for = false;
-    for (const PlanEntry& entry : run.stepper.plan().entries)
-      looked_for |= entry.kind == PlanEntry::Kind::kernel && kernel_name(entry).starts_with("contact_impact");
-    CHECK(looked_for == (speed > run.stepper.settings().restitution_threshold));
+    CHECK((run.world.velocity(id)->y > 0.1) == (speed > run.stepper.settings().restitution_threshold));
   }
 }
 

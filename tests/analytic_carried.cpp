@@ -68,7 +68,8 @@ TEST_CASE("carried: what creeps falls with the third power of the sub-step") {
     run.step(dt, std::lround(5 / dt));
     return std::fabs(from_axis(run, box) - start);
   };
-  CHECK(order(creep(1.0 / 60), creep(1.0 / 120), 2) > 2.8);
+  const double coarse = creep(1.0 / 60), fine = creep(1.0 / 120);
+  CHECK(((coarse < 1e-9 && fine < 1e-9) || order(coarse, fine, 2) > 2.8));
 }
 
 TEST_CASE("carried: what stands on a rider, and what hangs together, stays too") {

@@ -91,7 +91,8 @@ inline bool closes_loops(Kernel kernel) { return schema(kernel).domain == Domain
 inline std::vector<Call> calls(int sub_steps) {
   std::vector<Call> all;
   for (int i = 0; i < sub_steps; i++)
-    for (const Call& call : step_calls) all.push_back({i + 1 < sub_steps ? driven(call.kernel) : call.kernel, call.info});
+    for (const Call& call : step_calls)
+      all.push_back({i + 1 < sub_steps ? driven(call.kernel) : call.kernel, call.info == 0 && i > 0 ? 2 : call.info});
   all.insert(all.end(), std::begin(last_calls), std::end(last_calls));
   all.insert(all.end(), std::begin(drag_calls), std::end(drag_calls));
   all.insert(all.end(), std::begin(seed_calls), std::end(seed_calls));

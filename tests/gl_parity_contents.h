@@ -50,7 +50,7 @@ inline constexpr Mood moods[] = {
 template <class Scalar> struct State {
   std::array<std::vector<Scalar>, buffer_count> reals;
   std::array<std::vector<std::uint32_t>, buffer_count> indices;  // ends: a and b of slot 0, of slot 1, ...
-  std::array<InfoOf<Scalar>, 2> infos;                           // biased, relax
+  std::array<InfoOf<Scalar>, 3> infos;                           // biased of a step's first sub-step, relax, biased of others
   std::vector<Range> contact_colours, joint_colours;             // in slots
   std::uint32_t tree_colours = 0;                                // of contacts and joints with trees, which come first
   Forest trees;                                                  // of joints of their own
@@ -93,7 +93,7 @@ template <class Scalar> class Maker {
   void assemble(std::span<const TreeNode> tree);
   void infos();
 
-  static constexpr std::uint32_t colour_count = 3, contact_blocks = 8, joint_blocks = 4;
+  static constexpr std::uint32_t colour_count = 4, contact_blocks = 8, joint_blocks = 4;
   static constexpr std::uint32_t tree_colour_count = 2, tree_blocks = 2;
   static constexpr std::uint32_t coloured_joints = (colour_count * joint_blocks + tree_colour_count * tree_blocks) * 32;
 
@@ -156,6 +156,10 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   at[8] = Scalar(rarely() ? 0 : real(0, 1.2));
   at[9] = Scalar(at[8] * Scalar(real(0.5, 1)));
   at[10] = Scalar(rarely() ? 0 : real(0, 1));
+  at[11] = Scalar(rarely() ? real(0, 1.0 / 240) : -double(below(2)));  // meets within the sub-step, rests, hangs on joints
+  for (int i = 16; i < 19; i++) at[i] = Scalar(either(1));  // from one body to the other
+  at[19] = Scalar(rarely() ? 2 : below(2));                 // its rows act no longer, stand, were found anew
+  for (int i = 20; i < 24; i++) at[i] = Scalar(below(5));   // which point each was
 }
 
 template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
@@ -302,10 +306,11 @@ template <class Scalar> void Maker<Scalar>::trees() {
 }
 
 template <class Scalar> void Maker<Scalar>::infos() {
-  for (int phase = 0; phase < 2; phase++) {
+  for (int phase = 0; phase < 3; phase++) {
     const bool relax = phase == 1;
     const double h = 1.0 / 240;
     InfoOf<Scalar> info;
+    info.begins = Scalar(phase == 0 ? 1 : 0);
     info.h = Scalar(h);
     info.inverse_h = Scalar(1 / h);
     info.gravity_x = Scalar(0.3);
@@ -327,12 +332,14 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.loop_give = Scalar(1e-5);
     info.cross_share = Scalar(0.9);
     info.row_mass_most = Scalar(1000);
+    info.seen_turn = Scalar(1);
+    info.strayed_turn = Scalar(0.1);
     info.idle_speed = Scalar(0.5);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.spin_floor = Scalar(6e-5);
     info.tree_damping = Scalar(0.25);
-    info.restitution_threshold = Scalar(1);
+    info.restitution_threshold = Scalar(mood_.speed / 10);
     info.rounding = Scalar(1e-3);
     info.substeps = Scalar(3);
     info.largest_state = Scalar(1e4);  // some bodies are beyond it

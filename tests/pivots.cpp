@@ -131,36 +131,41 @@ TEST_CASE("pivots: a hinge's limit stops, or throws back, at the instant at whic
 }
 
 TEST_CASE("pivots: a hinge at its limit is a wall for what presses it there") {
-  for (const Mode& mode : precisions()) {
-    Run run(mode, {}, 4);
-    BodyDef rod, ball;
-    rod.shapes = {ShapeDef::capsule(0.05, 0.45)};
-    rod.mass = 2;
-    rod.pose.position = {0, -0.5, 0};
-    JointDef joint;
-    joint.a = run.world.ground();
-    joint.b = run.add(rod);
-    const Quat to_z = exponential({0, -std::acos(0.0), 0});
-    joint.frame_a = {{}, to_z};
-    joint.frame_b = {{0, 0.5, 0}, to_z};
-    joint.freedom = AngleFreedom::hinge(0, 2);
-    REQUIRE(run.world.create_joint(joint));
-    ball.shapes = {ShapeDef::sphere(0.2)};
-    ball.mass = 100;
-    ball.pose.position = {1, -0.6, 0};
-    ball.velocity = {-2, 0, 0};
-    const BodyId heavy = run.add(ball);
-    double least = 1, angle = 0;
-    for (int i = 0; i < 120; i++) {
-      run.step(1.0 / 60);
-      least = std::min(least, run.position(heavy).x);
-      angle = std::min(angle, run.position(joint.b).x);
+  // From nine places, since the limit answers a blow in the sub-step after it: by then the ball is in by the way of up to one, which is
+  // pushed out again.
+  constexpr double speed = 2, late = speed / 60 / 4;  // [m/s], [m]
+  for (const Mode& mode : precisions())
+    for (int place = 0; place < 9; place++) {
+      Run run(mode, {}, 4);
+      BodyDef rod, ball;
+      rod.shapes = {ShapeDef::capsule(0.05, 0.45)};
+      rod.mass = 2;
+      rod.pose.position = {0, -0.5, 0};
+      JointDef joint;
+      joint.a = run.world.ground();
+      joint.b = run.add(rod);
+      const Quat to_z = exponential({0, -std::acos(0.0), 0});
+      joint.frame_a = {{}, to_z};
+      joint.frame_b = {{0, 0.5, 0}, to_z};
+      joint.freedom = AngleFreedom::hinge(0, 2);
+      REQUIRE(run.world.create_joint(joint));
+      ball.shapes = {ShapeDef::sphere(0.2)};
+      ball.mass = 100;
+      ball.pose.position = {1 + place * 1e-3, -0.6, 0};
+      ball.velocity = {-speed, 0, 0};
+      const BodyId heavy = run.add(ball);
+      double least = 1, angle = 0;
+      for (int i = 0; i < 120; i++) {
+        run.step(1.0 / 60);
+        least = std::min(least, run.position(heavy).x);
+        angle = std::min(angle, run.position(joint.b).x);
+      }
+      CAPTURE(mode.name());
+      CAPTURE(place);
+      CHECK(least >= 0.25 - late);
+      CHECK(angle >= -late);
+      CHECK(std::fabs(run.world.velocity(heavy)->x) <= 0.25 * speed);  // it stopped there
     }
-    CAPTURE(mode.name());
-    CHECK(least >= 0.25 - 2e-3);
-    CHECK(angle >= -2e-3);
-    CHECK(std::fabs(run.world.velocity(heavy)->x) <= 0.05);  // it stopped there
-  }
 }
 
 TEST_CASE("pivots: hinges and pins side by side have the same bits everywhere") {

@@ -24,7 +24,7 @@ std::vector<const PlanEntry*> transfers(const StepPlan& plan, PlanEntry::Kind ki
 /// Until contacts stay the same for a while; how many they are.
 std::uint32_t come_to_rest(World& world, Stepper& stepper) {
   std::uint32_t contacts = 0;
-  for (int steps = 0, same = 0; steps < 600 && same < 20; steps++) {
+  for (int steps = 0, same = 0; steps < 1200 && same < 60; steps++) {
     const std::uint32_t now = stepper.step(world, frame).contacts;
     same = now == contacts ? same + 1 : 0;
     contacts = now;
@@ -52,14 +52,16 @@ TEST_CASE("what the plan of a world says that a step moves, a first step moves")
         REQUIRE_MESSAGE(bool(report), report.error.message);
         REQUIRE(report.contacts == contacts);
         const std::uint64_t down = report.transfer_bytes - report.upload_bytes;
-        if (std::string_view(name) == "ragdolls") {  // contacts without trees could come, and do not
+        // what could come and does not: contacts without trees, and impacts, whose bodies would have to go up once more
+        const bool foreseen = std::string_view(name) == "ragdolls" || (mix.places[0] == Place::gl && mix.places[2] == Place::cpu);
+        if (foreseen) {
           CHECK(report.upload_bytes <= all.up);
           CHECK(down <= all.down);
         } else {
           CHECK(report.upload_bytes == all.up);
           CHECK(down == all.down);
         }
-        const bool some = std::ranges::any_of(plan.entries, [](const PlanEntry& e) { return e.kind != PlanEntry::Kind::kernel; });
+        const bool some = std::ranges::any_of(plan.entries, [](const PlanEntry& e) { return e.transfers(); });
         CHECK((all.up + all.down > 0) == some);
         const std::string sums = "transfers: up to " + std::to_string(all.up) + " bytes to the device";
         CHECK((to_text(plan).find(sums) != std::string::npos) == some);

@@ -39,7 +39,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
     INFO("entry " << i << ": " << std::string(kernel_name(e)) << std::string(buffer_name(e)) << " on "
                   << std::string(name(e.place)));
     CHECK(e.substep < std::max(signature.substeps, 1u));
-    if (e.kind != PlanEntry::Kind::kernel) {
+    if (e.transfers()) {
       CHECK((e.place == Place::gl) == (e.kind == PlanEntry::Kind::upload));
       CHECK_FALSE(scratch_of_solver(e.buffer));
       if (e.kind == PlanEntry::Kind::download) CHECK((e.buffer < Buffer::table_buffers || e.buffer == Buffer::island_labels));
@@ -58,10 +58,15 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
       continue;
     }
 
-    const KernelSchema& k = schema(e.kernel);
-    CHECK(e.place == (k.stage == Stage::islands ? Place::gl : signature.places[std::size_t(k.stage)]));
+    const std::span<const Access> accessed = accesses(e);
+    if (e.kind == PlanEntry::Kind::kernel) {
+      const Stage of = schema(e.kernel).stage;
+      CHECK(e.place == (of == Stage::islands ? Place::gl : signature.places[std::size_t(of)]));
+    } else {
+      CHECK(e.place == Place::cpu);
+    }
     bool hazard = false;
-    for (const Access& a : k.accesses) {
+    for (const Access& a : accessed) {
       if (scratch_of_solver(a.buffer)) {
         const auto [home, first] = homes.emplace(a.buffer, e.place);
         CHECK_MESSAGE(home->second == e.place, text_of(a.buffer) << " is used in two places");
@@ -80,7 +85,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
       written.clear();
       read.clear();
     }
-    for (const Access& a : k.accesses) {
+    for (const Access& a : accessed) {
       if (e.place == Place::gl) (a.write ? written : read).insert(a.buffer);
       if (!a.write) continue;
       Holder& h = holders[a.buffer];
@@ -142,22 +147,25 @@ TEST_CASE("all on the cpu: no transfer, no barrier") {
   PlanSignature s;
   s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
   for (const PlanEntry& e : make_plan(s).entries) {
-    CHECK(e.kind == PlanEntry::Kind::kernel);
+    CHECK_FALSE(e.transfers());
     CHECK_FALSE(e.barrier);
   }
 }
 
-TEST_CASE("all on gl: each buffer goes up at most once, and nothing comes down before the end") {
+// The narrow phase is the host's: in each sub-step it reads where bodies are and how they move, and writes contacts.
+TEST_CASE("all on gl: but for what the narrow phase needs, each buffer goes up at most once, and comes down in the end") {
   PlanSignature s;
   s.places.fill(Place::gl);
   s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
+  constexpr std::array meets{Buffer::pose, Buffer::motion, Buffer::delta, Buffer::contact};
   std::set<Buffer> up;
   bool coming_down = false;
   for (const PlanEntry& e : make_plan(s).entries) {
-    if (e.kind == PlanEntry::Kind::upload) CHECK(up.insert(e.buffer).second);
+    const bool narrow = e.transfers() && std::ranges::find(meets, e.buffer) != meets.end();
+    if (e.kind == PlanEntry::Kind::upload && !narrow) CHECK(up.insert(e.buffer).second);
     if (e.kind == PlanEntry::Kind::download)
-      coming_down = true;
-    else
+      coming_down |= !narrow;
+    else if (!narrow && e.kind != PlanEntry::Kind::collide)
       CHECK_FALSE(coming_down);
   }
 }
@@ -184,7 +192,7 @@ TEST_CASE("the bytes of a step are those of its transfers") {
     Stepper stepper(mix.settings());
     run(s.world, stepper, 1);
     const bool transfers = std::any_of(stepper.plan().entries.begin(), stepper.plan().entries.end(),
-                                       [](const PlanEntry& e) { return e.kind != PlanEntry::Kind::kernel; });
+                                       [](const PlanEntry& e) { return e.transfers(); });
     const bool mixed_or_gl = std::any_of(mix.places.begin(), mix.places.end(), [](Place p) { return p == Place::gl; });
     const StepReport& report = stepper.step(s.world, frame);
     CHECK((report.transfer_bytes > 0) == transfers);

@@ -3,7 +3,7 @@
 
     tools/wild_report.py FILE.json [MORE.json...]    of a family, engine and precision in several files the last one counts
     tools/wild_report.py --out FOLDER FILE.json      writes FOLDER/wild.md and FOLDER/img/wild.svg instead
-    tools/wild_report.py --made "COMMAND" FILE.json  what the page says that made it
+    tools/wild_report.py --made "COMMAND" FILE.json  what the page says that made it; --on "MACHINE": where
 """
 import argparse
 import json
@@ -184,10 +184,10 @@ def peers_line(runs):
             ", ".join(f"{p['name']} ({p['engine']} {p['version']})" for p in peers.values()) + ".", ""]
 
 
-def generated_part(runs, summaries, made, picture):
+def generated_part(runs, summaries, made, on, picture):
     measures, families = runs[0]["measures"], runs[0]["families"]
     own = [s for s in summaries if s["engine"] == "pcphys"]
-    lines = [BEGIN, "", f"Made by `{made}` with pcphys {runs[0]['version']} on {machine()}. "
+    lines = [BEGIN, "", f"Made by `{made}` with pcphys {runs[0]['version']} on {on}. "
              f"{sum(s['runs'] for s in own)} scenes were played on pcphys, {sum(s['broken'] for s in own)} are broken.", ""]
     lines += peers_line(runs)
     lines += table(["family", "what"], [[f["name"], f["description"]] for f in families])
@@ -213,6 +213,7 @@ def main():
     parser.add_argument("files", nargs="+", type=Path, help="JSON of `pcphys wild`")
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of wild.md and img/wild.svg")
     parser.add_argument("--made", default="scripts/wild", help="the command that made the page")
+    parser.add_argument("--on", default=machine(), help="the machine that it ran on")
     arguments = parser.parse_args()
     runs = [json.loads(path.read_text()) for path in arguments.files]
     order = [family["name"] for family in runs[0]["families"]]
@@ -220,7 +221,7 @@ def main():
     summaries = sorted(last.values(), key=lambda s: (order.index(s["family"]), s["engine"] != "pcphys"))
     arguments.out.mkdir(parents=True, exist_ok=True)
     picture = draw(summaries, arguments.out / "img" / "wild.svg")
-    write_page(arguments.out / "wild.md", generated_part(runs, summaries, arguments.made, picture))
+    write_page(arguments.out / "wild.md", generated_part(runs, summaries, arguments.made, arguments.on, picture))
 
 
 if __name__ == "__main__":

@@ -41,6 +41,7 @@ void Phantoms::read(const WorldState& state, std::vector<Body>& bodies) const {
     b.velocity = state.tables.get3(Buffer::motion, row, 0);
     b.angular_velocity = spin_of(state, row, b.pose.orientation);
     b.contacts = 0;
+    b.pushed = 0;
   }
 }
 
@@ -83,10 +84,7 @@ double Phantoms::gap_of(const WorldState& state, double h, const TracedContact& 
       from_b{b, b1.pose, -b1.velocity, -b1.angular_velocity};
   least = std::min(least, least_distance(from_a, from_b, h, near));
   // Who is pushed several times in a sub-step goes ways that neither end of it tells.
-  if (a1.contacts > 1 || b1.contacts > 1) {
-    const double astray = length(a1.velocity - a0.velocity) + length(b1.velocity - b0.velocity);
-    least -= astray * h;
-  }
+  if (a1.contacts > 1 || b1.contacts > 1) least -= (a1.pushed + b1.pushed) * h;
   return least <= near ? 0 : least / near;
 }
 
@@ -112,8 +110,11 @@ void Phantoms::substep(const WorldState& state, double h, std::span<const Traced
   normals_.clear();
   for (const TracedContact& c : contacts) {
     normals_.push_back(normal_impulse(c));
-    if (normals_.back() > 0)
-      for (const std::uint32_t row : rows_of(c)) now_[row].contacts++;
+    if (normals_.back() <= 0) continue;
+    for (const std::uint32_t row : rows_of(c)) {
+      now_[row].contacts++;
+      now_[row].pushed += normals_.back() * state.tables.get(Buffer::motion, row, 3);
+    }
   }
   for (std::size_t i = 0; i < contacts.size(); i++) {
     const TracedContact& c = contacts[i];

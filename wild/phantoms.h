@@ -28,7 +28,8 @@ class Phantoms final : public ContactTrace {
   struct Body {
     Pose pose;
     Vec3 velocity, angular_velocity, start_velocity;
-    int contacts = 0;  // of this sub-step
+    int contacts = 0;   // of this sub-step
+    double pushed = 0;  // by all of them, along their normals [m/s]
   };
   void read(const WorldState& state, std::vector<Body>& bodies) const;
   double normal_impulse(const TracedContact& contact);

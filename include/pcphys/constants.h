@@ -62,6 +62,11 @@ inline constexpr double settled_load = 1.5, settled_friction = 0.5;
 inline constexpr double least_load = 0.01;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together. They seldom do.
 inline constexpr double settling_pace = 1.5;
+/// A manifold stands until its bodies have moved against each other by this share of the smaller one's thickness.
+inline constexpr double manifold_share = 0.01;
+/// Where bodies that both answer move along each other by more than this share in a sub-step, or turn into each other, their contact is an
+/// impact: nothing of it lasts.
+inline constexpr double quick_share = 0.1;
 /// Contacts are kept up to a gap of this share of the smaller shape's radius (of the sphere that holds it), so that what happens is the
 /// same at any size.
 inline constexpr double margin_share = 0.02;
@@ -133,6 +138,10 @@ inline constexpr double row_mass_most = 100;
 inline constexpr double idle_speed = 0.5;
 /// Contacts keep how they reach into a joint tree, from sub-step to sub-step of a step, until its bodies may have turned by this [rad].
 inline constexpr double kept_turn = 0.005;
+/// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by `seen_turn`. Newton's method there is not to be
+/// trusted where it more than doubles the energy of the motion within the tree, as after a blow or in a whip that sub-steps are too long for: its
+/// steps are taken back, and bodies are seen ahead until `strayed_turn` [rad].
+inline constexpr double seen_turn = 1, strayed_turn = 0.1;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

@@ -37,7 +37,7 @@ enum class Domain : std::uint8_t;
 struct OwnKernel;
 
 struct PlanEntry {
-  enum class Kind : std::uint8_t { kernel, upload, download };
+  enum class Kind : std::uint8_t { kernel, upload, download, collide };  // collide: the narrow phase of a sub-step, on the host
   Kind kind = Kind::kernel;
   Place place = Place::cpu;
   Kernel kernel{};  // of a kernel
@@ -51,6 +51,7 @@ struct PlanEntry {
   /// Of a transfer that `Stepper::plan_for` names: the whole buffer, in that world. 0 in plans of no world (`Stepper::plan`), which
   /// stand for steps of any size.
   std::uint64_t bytes = 0;
+  bool transfers() const { return kind == Kind::upload || kind == Kind::download; }
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
 };
 

@@ -110,9 +110,11 @@ template <class Scalar> void Detector::bound(const WorldState& s, double dt, con
   }
   float* const columns = reinterpret_cast<float*>(columns_.data());
   find_drawn(dt);
+  dt_ = dt;
+  fall_ = length(s.gravity) * dt * dt;
   narrow_lanes<float>(options.lanes)
-      .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt),
-              float(length(s.gravity) * dt * dt), largest_turn, reach_.data(), tight_.data()});
+      .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt), float(fall_), largest_turn,
+              reach_.data(), tight_.data()});
   scratch.looks.resize(count);
   for (std::uint32_t i = 0; i < count; i++)
     scratch.looks[i] = {Scalar(margins_[i]), reach_[i], proxies_[i].kind, proxies_[i].responds};

@@ -152,6 +152,8 @@ void Detector::rebuild(const WorldState& s) {
   moving_.resize((moving_.size() + lanes - 1) / lanes * lanes, 0);
   listed_margin_ = -1;
   thinnest_ = std::numeric_limits<float>::infinity();
+  levers_.assign(s.bodies.size(), 0);
+  ways_.assign(s.bodies.size(), {});
   const std::vector<bool> jointed = jointed_rows(s);
   for (std::uint32_t i = 0; i < s.shapes.size(); i++) {
     const ShapeRecord& shape = s.shapes[i];
@@ -171,6 +173,7 @@ void Detector::rebuild(const WorldState& s) {
                    !s.stands(row),
                    shape.def.convex.data()};
     bodies_[i] = row;
+    levers_[row] = std::max(levers_[row], across + any);
     round_ |= shape.def.kind == ShapeKind::sphere || shape.def.kind == ShapeKind::capsule;
     if (shape.def.kind == ShapeKind::plane || shape.def.kind == ShapeKind::hull) odd_.push_back(i);
     if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
@@ -181,11 +184,12 @@ void Detector::rebuild(const WorldState& s) {
 
 std::size_t Detector::memory_bytes() const {
   const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
-  std::size_t sum = of(proxies_, tight_, margins_, reach_, twists_, odd_, moving_, bodies_, struck_, went_, near_, hints_,
-                       next_hints_, standing_, next_.keys, next_.ends, next_.features);
-  sum += of(scratch_f_.shapes, scratch_f_.looks, scratch_f_.flights, scratch_d_.shapes, scratch_d_.looks, scratch_d_.flights);
-  for (const AlignedBytes* bytes : {&columns_, &rows_, &scratch_f_.rows, &scratch_f_.twists, &scratch_f_.contacts,
-                                    &scratch_d_.rows, &scratch_d_.twists, &scratch_d_.contacts})
+  std::size_t sum = of(proxies_, tight_, margins_, reach_, twists_, odd_, moving_, bodies_, went_, near_, hints_, next_hints_,
+                       standing_, standings_, looked_, origins_, levers_, ways_, sent_, renewed_, struck_, unseen_, times_struck_,
+                       on_standing_, inner_, soonest_, gone_, next_.keys, next_.ends, next_.features);
+  sum += of(scratch_f_.shapes, scratch_f_.looks, scratch_d_.shapes, scratch_d_.looks);
+  for (const AlignedBytes* bytes :
+       {&columns_, &rows_, &scratch_f_.rows, &scratch_f_.contacts, &scratch_d_.rows, &scratch_d_.contacts})
     sum += bytes->capacity();
   return sum + pairs_.memory_bytes();
 }
@@ -304,11 +308,12 @@ void Detector::put_back(WorldState& s) {
   std::swap(s.contacts, next_);
 }
 
-Status Detector::find_contacts(WorldState& s, double dt, const Options& options, Found& found) {
+Status Detector::find_contacts(WorldState& s, const Options& options, Found& found) {
   replaced_ = false;
+  gone_.clear();  // of a step that could not be made
   if (!possible_ && s.contact_rows() == 1) return {};
-  return s.tables.precision() == Precision::f32 ? narrow_all(s, dt, options, scratch<float>(), found)
-                                                : narrow_all(s, dt, options, scratch<double>(), found);
+  return s.tables.precision() == Precision::f32 ? narrow_all(s, options, scratch<float>(), found)
+                                                : narrow_all(s, options, scratch<double>(), found);
 }
 
 }  // namespace pcphys

@@ -16,6 +16,7 @@
 #include "collision/pair_cache.h"
 #include "collision/pair_filter.h"
 #include "collision/pair_lanes.h"
+#include "collision/standing.h"
 #include "collision/twist.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
@@ -41,9 +42,8 @@ class Detector {
     bool rolling = false;                     // some contact resists rolling or turning
     bool placed = false;                      // some is of a body that was just placed
     bool changed = false;                     // other pairs touch than in the last step
+    bool faces = false;                       // some have more than one point, so that something may stand on something
     std::uint32_t kept = 0, kept_points = 0;  // of contacts and points, those of bodies that sleep: as they were
-    /// Some contact has more than one point, so that something may stand on something.
-    bool faces() const { return points - kept_points > contacts - kept; }
   };
 
   /// Broad phase. Errors (too many pairs, a pose that is not finite) leave the world as it was.
@@ -51,7 +51,26 @@ class Detector {
   /// Rows of bodies, ascending, that in the contacts to come touch nothing that stands or is driven. They must stay where they are until then.
   void let_through(std::span<const std::uint32_t> bodies) { through_ = bodies; }
   /// Narrow phase: replaces the world's contacts.
-  Status find_contacts(WorldState& state, double dt, const Options& options, Found& found);
+  Status find_contacts(WorldState& state, const Options& options, Found& found);
+  /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by more than a share of
+  /// what they were made for, and of shapes that are apart whether, when and how they meet in it. `contacts`: rows, 0 among them (padding);
+  /// those of one level (octave) come together, from its `first` sub-step of the step on.
+  void meet(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h,
+            const Options& options);
+  /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for others. `last`: none
+  /// waits any longer.
+  void meet_again(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool last, double h,
+                  const Options& options);
+  /// Whether impacts wait for others that come before them.
+  bool waits() const { return waiting_ > 0; }
+  /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before; and of impacts that may
+  /// act, since their bodies were struck after they were looked for last.
+  std::span<const std::uint32_t> renewed() const { return renewed_; }
+  std::span<const std::uint32_t> struck() const { return unseen_; }
+  /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points see it [m].
+  std::span<const Vec3> origins() const { return origins_; }
+  /// After the step: contacts that came apart in it have no points.
+  void let_go(WorldState& state);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
   /// After the step: whether some body went further than it was looked for, so far that it could be past what stands.
@@ -97,11 +116,8 @@ class Detector {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
     AlignedBytes rows;                      // of shapes: narrow_bounds.inl
     std::vector<Look<Scalar>> looks;        // of shapes
-    AlignedBytes twists;                    // of bodies, for flights in double
     PairLanes<Scalar> lanes;
-    AlignedBytes contacts;                // the table of the next step
-    std::vector<Flight<Scalar>> flights;  // in the order of the pairs
-    std::size_t flight = 0;               // the next of them
+    AlignedBytes contacts;  // the table of the next step
   };
 
   /// A pair of which a contact comes.
@@ -139,8 +155,7 @@ class Detector {
   template <class Scalar> void find_twists(const WorldState& state, const Options& options);
   void find_drawn(double dt);
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  template <class Scalar>
-  Status narrow_all(WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  template <class Scalar> Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
   /// Takes over contacts of the last step, from the first row to before the last.
   template <class Scalar>
   void keep(const WorldState& state, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found);
@@ -150,10 +165,18 @@ class Detector {
   template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
   /// The manifold of a marked pair. False where no contact comes of it.
   template <class Scalar>
-  bool touches(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
+  bool touches(const WorldState& state, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                Touch<Scalar>& touch);
-  /// Whether some point is within the margin, or would close within the step as the bodies move now.
-  template <class Scalar> bool closes(const WorldState& state, double dt, Pair shapes, const Manifold<Scalar>& manifold) const;
+  template <class Scalar>
+  Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
+                 Touch<Scalar>& touch) const;
+  /// Of a contact whose shapes are far apart: the gap that they have to come across, and how far each comes by itself [m].
+  struct Distant {
+    std::uint32_t row;
+    double gap, comes[2];
+  };
+  Distant distant(std::uint32_t row, const Standing& standing, const Vec3& normal) const;
+  void drop_distant(ContactColumns& contacts, AlignedBytes& table, std::size_t row_bytes);
   /// The shapes of a pair in the order of the contact's bodies.
   Pair in_order(std::uint32_t pair) const;
   template <class Scalar> Scalar look_margin(Pair shapes) const;
@@ -165,18 +188,21 @@ class Detector {
   double margin(std::uint32_t a, std::uint32_t b) const { return std::min(margins_[a], margins_[b]); }
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
-  /// Pairs that move fast for their size, or may bounce: when and how they meet (flights.cpp).
-  template <class Scalar> void look_ahead(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  template <class Scalar>
-  void begin_strikes(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
-  /// Whether a contact comes of it, once all flights are known.
-  template <class Scalar>
-  bool settle(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch,
-              const Sight<Scalar>& view, Flight<Scalar>& flight);
-  template <class Scalar>
-  void fly(const WorldState& state, double dt, const Options& options, const Scratch<Scalar>& scratch, const Sight<Scalar>& view,
-           Flight<Scalar>& flight);
   template <class Scalar> Scratch<Scalar>& scratch();
+  template <class Scalar> struct Substep;
+  template <class Scalar> struct Meeting;
+  template <class Scalar> void meet_in(const Substep<Scalar>& look);
+  template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
+  template <class Scalar> void find_sent(const Substep<Scalar>& look);
+  template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
+  template <class Scalar> static Scalar depth(const Meeting<Scalar>& x);
+  template <class Scalar> bool covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const;
+  template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among);
+  template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
+  template <class Scalar> void meet_struck(const Substep<Scalar>& look);
+  template <class Scalar> void mark_struck(const Substep<Scalar>& look, std::size_t seen);
+  template <class Scalar> void find_unseen(const Substep<Scalar>& look, bool first);
+  float went(std::uint32_t body) const { return ways_[body].went; }
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   std::uint64_t joint_changes_ = 0;
@@ -198,8 +224,23 @@ class Detector {
   std::vector<std::uint32_t> moving_;  // rows of bodies that do not stand; whole lanes
   std::vector<std::uint32_t> bodies_;  // rows, of shapes; whole lanes
   std::uint32_t movers_ = 0;           // bodies that do not stand
+  double dt_ = 0, fall_ = 0;           // the step [s], and how far gravity moves what rests in it, with a margin [m]
   double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
-  std::vector<float> struck_;          // of bodies: when they first meet something in flight; dt: not in this step [s]
+  std::vector<Standing> standings_;    // of contacts, by row
+  std::vector<Moved> looked_;          // and how their bodies had moved when they were looked at, where that was within the step
+  std::vector<Vec3> origins_;          // see there
+  std::vector<float> levers_;          // of bodies: how far a turn of one radian moves any point of their shapes, at most [m]
+  std::vector<Way> ways_;              // of bodies
+  std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
+  std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
+  std::vector<std::uint32_t> renewed_, struck_, unseen_, on_standing_, inner_;  // places in the contacts of a sub-step
+  std::vector<float> times_struck_;                                             // of bodies, when impacts were looked for last
+  std::vector<double> soonest_;                   // of bodies: when in the sub-step the first impact is [s]
+  std::uint32_t waiting_ = 0;                     // impacts
+  std::vector<std::vector<std::uint32_t>> anew_;  // by level: rows that were renewed in the sub-step before
+  std::vector<Distant> distant_;                  // in ascending order of their rows
+  std::vector<char> sent_elsewhere_;              // bodies that contacts may send elsewhere than they go by themselves
+  std::vector<std::uint32_t> gone_;               // rows that came apart in the step
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;               // some body has

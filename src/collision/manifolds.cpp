@@ -2,48 +2,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
 #include "collision/detector.h"
 #include "collision/flights.h"
+#include "collision/meeting.h"
 #include "collision/view.h"
 
 namespace pcphys {
 namespace {
 
-/// Whether a gap between bodies that move as they do now closes within the step. One between bodies that slide past each other by
-/// more than `extent` before it closes does not: they would meet only if their contact plane had no end.
-template <class Scalar>
-bool gaps_close(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const float* apart, double margin, double dt,
-                double fall, double extent) {
-  const float n[3] = {float(m.normal[0]), float(m.normal[1]), float(m.normal[2])};
-  for (std::uint32_t i = 0; i < m.count; i++) {
-    const double gap = double(m.points[i].separation) - margin;
-    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    const Passing<float> p = passing(a, b, n, r, apart);
-    const double closing = std::max(0.0, double(p.closing));
-    if (gap > fall + closing * dt) continue;
-    const double until = closing * dt > gap ? gap / closing : dt;
-    if (double(p.sliding) * until <= extent) return true;
-  }
-  return false;
-}
+template <class Scalar> Vec3 to_vec3(const Scalar* v) { return {double(v[0]), double(v[1]), double(v[2])}; }
 
 /// Whether some contact is of a body that was just placed and settles still after this step has begun.
 bool some_settles(const WorldState& s, std::span<const std::array<std::uint32_t, 2>> ends) {
   return std::ranges::any_of(ends, [&](const auto& e) { return s.settles(e[0]) || s.settles(e[1]); });
-}
-
-/// The largest speed at which a gap closes [m/s].
-template <class Scalar> double fastest(const Manifold<Scalar>& m, const Twist& a, const Twist& b, const Scalar* apart) {
-  float n[3], d[3], most = 0;
-  for (int k = 0; k < 3; k++) n[k] = float(m.normal[k]), d[k] = float(apart[k]);
-  for (std::uint32_t i = 0; i < m.count; i++) {
-    const float r[3] = {float(m.points[i].p[0]), float(m.points[i].p[1]), float(m.points[i].p[2])};
-    most = std::max(most, passing(a, b, n, r, d).closing);
-  }
-  return double(most);
 }
 
 }  // namespace
@@ -65,9 +40,6 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
   PairLanes<Scalar>& lanes = scratch.lanes;
   lanes.begin(pairs_.pairs().size(), near_.size());
   marks_.clear(pairs_.pairs().size());
-  std::size_t flight = 0;
-  scratch.flights.push_back({});  // none comes after it
-  scratch.flights.back().pair = 0xffffffffu;
   const Look<Scalar>* looks = scratch.looks.data();
   const Pair* pairs = pairs_.pairs().data();
   const bool native = options.narrow == NarrowPhase::native;
@@ -76,38 +48,16 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
     if (!looks[a].responds) std::swap(a, b);  // as in_order
     const Look<Scalar>&x = looks[a], &y = looks[b];
     const PairKind kind = pair_kind(x.kind, y.kind);
-    const bool flies = scratch.flights[flight].pair == i;
-    flight += flies;
-    if (!flies && native && kind != PairKind::other)
+    if (native && kind != PairKind::other)
       lanes.add(kind, i, a, b, std::min(x.margin, y.margin) + Scalar(x.reach + y.reach));
     else
       lanes.leave(i), marks_.set(i);
   }
-  scratch.flights.pop_back();
   lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.rows.data()), marks_);
 }
 
 template <class Scalar>
-bool Detector::closes(const WorldState& s, double dt, Pair shapes, const Manifold<Scalar>& manifold) const {
-  const double margin = this->margin(shapes.a, shapes.b);
-  for (std::uint32_t i = 0; i < manifold.count; i++)
-    if (double(manifold.points[i].separation) <= margin) return true;
-  if (manifold.count == 0) return false;
-  const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
-  Scalar d[3] = {0, 0, 0};
-  BodyReader<Scalar>(s.tables).shift(a.body, b.body, d);
-  const float apart[3] = {float(d[0]), float(d[1]), float(d[2])};
-  if (draws_ && a.responds != b.responds) {  // what stands is met by whatever is sent there
-    const double far = margin + double(drawn_[a.responds ? a.body : b.body]);
-    for (std::uint32_t i = 0; i < manifold.count; i++)
-      if (double(manifold.points[i].separation) <= far) return true;
-  }
-  return gaps_close(manifold, twists_[a.body], twists_[b.body], apart, margin, dt, length(s.gravity) * dt * dt,
-                    a.radius + b.radius);
-}
-
-template <class Scalar>
-bool Detector::touches(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
+bool Detector::touches(const WorldState& s, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                        Touch<Scalar>& touch) {
   const Pair shapes = in_order(pair);
   const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
@@ -116,19 +66,96 @@ bool Detector::touches(const WorldState& s, double dt, const Options& options, S
   touch.manifold = round_ ? scratch.lanes.manifold(pair) : nullptr;
   if (!touch.manifold) {
     const Sight<Scalar> view = sight(s, scratch, pair);
-    if (scratch.flight < scratch.flights.size() && scratch.flights[scratch.flight].pair == pair) {
-      Flight<Scalar>& f = scratch.flights[scratch.flight++];
-      touch.manifold = &f.manifold;
-      if (!settle(s, dt, options, scratch, view, f)) return false;
-      touch.impact = f.impact;
-      return true;
-    }
     touch.manifold = &touch.own;
     find(options, view, scratch.shapes[shapes.a], view.there, pair, touch.own);
   }
-  if (!closes(s, dt, shapes, *touch.manifold)) return false;
-  to_light_side(*touch.manifold, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
-  return true;
+  return touch.manifold->count > 0;
+}
+
+/// Whether a contact of the last step pushed.
+template <class Scalar> bool holds(const Scalar* contact) {
+  return contact[3] > 0 && std::max({contact[20], contact[21], contact[22], contact[23]}) > 0;
+}
+
+/// How a pair stands when the step begins, whose contact held something in the last one or not. Rows of shapes that are apart are of no
+/// manifold yet.
+template <class Scalar>
+Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
+                         Touch<Scalar>& touch) const {
+  const Sight<Scalar> view = sight(s, scratch, pair);
+  Manifold<Scalar>& m = *touch.manifold;
+  Standing c;
+  c.shapes[0] = view.shapes[0], c.shapes[1] = view.shapes[1];
+  c.rows[0] = touch.rows[0], c.rows[1] = touch.rows[1];
+  c.thick = thickness(c.shapes[0], c.shapes[1]);
+  c.jointed = touch.impact < 0;
+  c.hint = hints_[pair];
+  c.gap = std::min(double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)), double(least_separation(m)));
+  const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
+  const double near = near_of(double(c.thick), far, double(std::numeric_limits<Scalar>::epsilon()));
+  c.touches = c.acts = c.gap <= (held ? seam_share * double(c.thick) : near);
+  for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
+  if (c.touches)
+    to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
+  else
+    m.count = 0;
+  return c;
+}
+
+/// Shapes that are further apart than they are thick: how far each comes towards the other by its own motion, unless something sends it
+/// elsewhere.
+Detector::Distant Detector::distant(std::uint32_t row, const Standing& c, const Vec3& normal) const {
+  const auto comes = [&](int side) {
+    const Proxy& p = proxies_[c.shapes[side]];
+    const Twist& t = twists_[c.rows[side]];
+    const double along = normal.x * double(t.v[0]) + normal.y * double(t.v[1]) + normal.z * double(t.v[2]);
+    const double turns = std::min(double(t.across) * dt_, double(largest_turn)) * double(p.lever_across) +
+                         std::min(double(t.turn) * dt_, double(largest_turn)) * double(p.lever_any);
+    return (side == 0 ? along : -along) * dt_ + turns + (p.responds ? fall_ : 0);
+  };
+  return {row, c.gap - margin(c.shapes[0], c.shapes[1]), {comes(0), comes(1)}};
+}
+
+/// Bodies of a contact are of one island and need one another's sub-steps. So distant pairs are none that do not come together, wherever
+/// contacts with others may send their bodies.
+void Detector::drop_distant(ContactColumns& contacts, AlignedBytes& table, std::size_t row_bytes) {
+  if (distant_.empty()) return;
+  sent_elsewhere_.assign(levers_.size(), false);
+  const auto note = [&](std::uint32_t row) {
+    for (const std::uint32_t body : contacts.ends[row]) sent_elsewhere_[body] = true;
+  };
+  std::size_t next = 0;
+  for (std::uint32_t row = 1; row < contacts.keys.size(); row++) {
+    const bool far = next < distant_.size() && distant_[next].row == row;
+    if (!far || distant_[next].comes[0] + distant_[next].comes[1] >= distant_[next].gap) note(row);
+    next += far;
+  }
+  std::size_t kept = 1;
+  next = 0;
+  for (std::uint32_t row = 1; row < contacts.keys.size(); row++) {
+    if (next < distant_.size() && distant_[next].row == row) {
+      const Distant& d = distant_[next++];
+      const auto comes = [&](int side) {
+        const std::uint32_t body = contacts.ends[row][std::size_t(side)];
+        return sent_elsewhere_[body] ? double(reach_[standings_[row].shapes[side]]) : d.comes[side];
+      };
+      if (comes(0) + comes(1) < d.gap) continue;
+    }
+    if (kept != row) {
+      contacts.keys[kept] = contacts.keys[row];
+      contacts.ends[kept] = contacts.ends[row];
+      contacts.features[kept] = contacts.features[row];
+      standings_[kept] = standings_[row];
+      origins_[kept] = origins_[row];
+      std::copy_n(table.data() + row * row_bytes, row_bytes, table.data() + kept * row_bytes);
+    }
+    kept++;
+  }
+  contacts.keys.resize(kept);
+  contacts.ends.resize(kept);
+  contacts.features.resize(kept);
+  standings_.resize(kept);
+  origins_.resize(kept);
 }
 
 template <class Scalar>
@@ -143,13 +170,15 @@ void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t
   if (scratch.contacts.size() < end) scratch.contacts.resize(end);
   const std::byte* contacts = s.tables.bytes(Buffer::contact).data();
   std::copy(contacts + first * bytes, contacts + last * bytes, scratch.contacts.data() + row * bytes);
+  standings_.resize(row + last - first);
+  for (std::size_t i = first; i < last; i++) origins_.push_back(BodyReader<Scalar>(s.tables).position(s.contacts.ends[i][0]));
   found.kept += last - first;
   for (; first < last; first++)
     found.kept_points += std::uint32_t(s.tables.data<Scalar>(Buffer::contact)[first * reals_of(Buffer::contact) + 3]);
 }
 
 template <class Scalar>
-Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch, Found& found) {
+Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   const auto pairs = pairs_.pairs();
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
   const Scalar* before = s.tables.data<Scalar>(Buffer::contact);
@@ -158,15 +187,16 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   next_.keys.resize(1);
   next_.ends.resize(1);
   next_.features.resize(1);
-  const double fall = length(s.gravity) * dt * dt;
+  standings_.resize(1);
+  origins_.resize(1);
+  for (std::vector<std::uint32_t>& rows : anew_) rows.clear();
+  distant_.clear();
   std::uint32_t old = 1;
   hints_.resize(pairs.size());
   found = {};
   found.pairs = std::uint32_t(pairs.size());
   list_near();
-  look_ahead(s, dt, options, scratch);
   if (round_) sort_out(options, scratch);
-  scratch.flight = 0;
   const BodyReader<Scalar> bodies(s.tables);
   Touch<Scalar> touch;
   touched_.clear();
@@ -182,11 +212,15 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     }
   };
   const auto add = [&](std::uint32_t i) {
-    if (!touches(s, dt, options, scratch, i, touch)) return;
+    if (!touches(s, options, scratch, i, touch)) return;
     const auto [a, b] = pairs[i];
     const auto [row_a, row_b] = touch.rows;
-    const Manifold<Scalar>& manifold = *touch.manifold;
+    Manifold<Scalar>& manifold = *touch.manifold;
+    found.faces |= manifold.count > 1;
     const ContactKey key{a, b};
+    while (old < before_rows && s.contacts.keys[old] < key) old++;
+    const bool was_there = old < before_rows && s.contacts.keys[old] == key;
+    const Standing standing = stand<Scalar>(s, scratch, i, was_there && holds(before + old * reals), touch);
     if (kept < before_rows) keep_until(&key);
     const std::size_t row = next_.keys.size();
     next_.keys.push_back(key);
@@ -199,20 +233,22 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
       for (const std::uint32_t body : touch.rows)
         if (parts_[body] == Part::sleeps) touched_.push_back(body);
     const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
+    standings_.resize(row + 1);
+    standings_[row] = standing;
+    if (!standing.touches && standing.gap > margin(a, b) + double(standing.thick))
+      distant_.push_back(distant(std::uint32_t(row), standing, to_vec3(manifold.normal)));
+    origins_.push_back(bodies.position(row_a));
     write_contact(manifold, of_a, of_b, out, features.data());
     out[31] = Scalar(touch.impact);
-    while (old < before_rows && s.contacts.keys[old] < key) old++;
-    if (old < before_rows && s.contacts.keys[old] == key)
+    bodies.shift(row_a, row_b, out + 36);
+    if (standing.touches && was_there)
       remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out, features.data());
     found.points += manifold.count;
     found.friction |= out[28] > 0 || out[29] > 0;
+    standings_[row].bounces = out[30] > 0;
     found.restitution |= out[30] > 0;
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts = found.impacts || touch.impact > 0;
-    if (found.impacts || touch.impact < 0 || !(out[30] > 0)) return;
-    Scalar apart[3] = {0, 0, 0};
-    bodies.shift(row_a, row_b, apart);
-    found.impacts = fastest(manifold, twists_[row_a], twists_[row_b], apart) + fall / dt >= options.least_bounce;
+    found.impacts |= touch.impact >= 0;
   };
   if (round_)
     marks_.each(add);
@@ -220,7 +256,9 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
     for (const std::uint32_t i : near_) add(i);
   keep_until(nullptr);
   found.points += found.kept_points;
+  drop_distant(next_, scratch.contacts, reals * sizeof(Scalar));
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
+  looked_.resize(next_.keys.size());
   found.placed = s.settling > 0 && some_settles(s, next_.ends);
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));
@@ -230,7 +268,7 @@ Status Detector::narrow_all(WorldState& s, double dt, const Options& options, Sc
   return {};
 }
 
-template Status Detector::narrow_all(WorldState&, double, const Options&, Scratch<float>&, Found&);
-template Status Detector::narrow_all(WorldState&, double, const Options&, Scratch<double>&, Found&);
+template Status Detector::narrow_all(WorldState&, const Options&, Scratch<float>&, Found&);
+template Status Detector::narrow_all(WorldState&, const Options&, Scratch<double>&, Found&);
 
 }  // namespace pcphys

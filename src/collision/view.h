@@ -127,7 +127,7 @@ void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Sc
   for (int k = 20; k < 28; k++) out[k] = 0;
   for (int k = 0; k < 2; k++) out[28 + k] = combine(material_a[3], material_b[3], material_a[k], material_b[k]);
   out[30] = combine(material_a[6], material_b[6], material_a[2], material_b[2]);
-  for (int k = 31; k < 36; k++) out[k] = 0;
+  for (int k = 31; k < 44; k++) out[k] = 0;
 }
 
 /// Hands on the impulses of the last step's manifold: point by point to the same feature; what is left over to

@@ -46,40 +46,24 @@ template <class Scalar> bool touches(const WorldState& s, std::uint32_t contact)
 }
 
 /// The mean of the points by their impulses; of a contact without any the deepest one.
-struct MeanPoint {
-  Vec3 arm;
-  double gap = 0;  // as the step began
-};
-template <class Scalar> MeanPoint mean_point(const Scalar* touch, const Scalar* found) {
-  MeanPoint mean, deepest;
-  double whole = 0;
+template <class Scalar> Vec3 mean_point(const Scalar* touch, const Scalar* found) {
+  Vec3 mean, deepest;
+  double whole = 0, least = 0;
   for (int i = 0; i < int(found[3]); i++) {
-    const MeanPoint point{vec3(found + 4 + 4 * i), double(found[7 + 4 * i])};
-    const double impulse = double(touch[i]);
-    mean = {mean.arm + impulse * point.arm, mean.gap + impulse * point.gap};
+    const Vec3 point = vec3(found + 4 + 4 * i);
+    const double impulse = double(touch[i]), gap = double(found[7 + 4 * i]);
+    mean = mean + impulse * point;
     whole += impulse;
-    if (i == 0 || point.gap < deepest.gap) deepest = point;
+    if (i > 0 && gap >= least) continue;
+    deepest = point;
+    least = gap;
   }
-  return whole > 0 ? MeanPoint{(1 / whole) * mean.arm, mean.gap / whole} : deepest;
+  return whole > 0 ? (1 / whole) * mean : deepest;
 }
 
-/// Where they met: the point goes with the lighter body (contact_prepare.inl) until the gap closes.
 template <class Scalar> Vec3 meeting_point(const WorldState& s, std::uint32_t contact, const EventRecorder::Before& before) {
-  const auto [a, b] = s.contacts.ends[contact];
-  const Scalar* found = row_of<Scalar>(s, Buffer::contact, contact);
-  const MeanPoint mean = mean_point(row_of<Scalar>(s, Buffer::touch, contact), found);
-  const Scalar* pose = row_of<Scalar>(before.poses ? *before.poses : s.tables.bytes(Buffer::pose), Buffer::pose, a);
-  const Vec3 point = vec3(pose) + vec3(pose + 8) + mean.arm;
-  if (!before.motion) return point;
-  const Scalar *of_a = row_of<Scalar>(*before.motion, Buffer::motion, a),
-               *of_b = row_of<Scalar>(*before.motion, Buffer::motion, b);
-  const double light_a = double(of_a[3]), light_b = double(of_b[3]);
-  const double share = light_b > 0 ? light_b / (light_a + light_b) : 0;  // of the way between them that a's arm takes
-  const Vec3 v_a = vec3(of_a), v_b = vec3(of_b);
-  const double closing = dot(vec3(found), v_a - v_b);
-  double until = double(found[31]);  // impact_time
-  if (!(until > 0)) until = mean.gap > 0 && closing > 0 ? std::min(mean.gap / closing, before.dt) : 0;
-  return point + until * (v_a + share * (v_b - v_a));
+  return before.origins[contact] +
+         mean_point(row_of<Scalar>(s, Buffer::touch, contact), row_of<Scalar>(s, Buffer::contact, contact));
 }
 
 /// Places of shapes are used again: whether these are the ones that touched.

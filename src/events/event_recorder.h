@@ -16,10 +16,9 @@ class EventRecorder {
   static bool of_contacts(const StepSettings& s) { return s.contact_events || s.hit_events; }
   static bool wanted(const StepSettings& s) { return of_contacts(s) || s.body_events; }
 
-  /// Buffers as the step began with them; null where it left them alone.
   struct Before {
-    const AlignedBytes *poses, *motion;
-    double dt;  // of the step [s]
+    const AlignedBytes* poses;      // as the step began with them; null where it left them alone
+    std::span<const Vec3> origins;  // Detector::origins
   };
   /// Before a step, which may fail. Who touches is remembered.
   void clear() { begun_.clear(), ended_.clear(), hits_.clear(), moved_.clear(), slept_.clear(), woken_.clear(); }

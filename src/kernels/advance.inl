@@ -28,5 +28,6 @@ PC_FN void pc_kernel(PC_IO Index i) {
   PC_SCATTER(pose, i, 2u, p.place_low);
   PC_SCATTER(pose, i, 3u, p.turned_low);
   PC_SCATTER(delta, i, 0u, moved);
+  PC_SCATTER(delta, i, 2u, pc_quad(pc_zero3(), PC_REAL(0.0)));
   PC_SCATTER(delta, i, 1u, pc_quad(rotated.v, rotated.s));
 }

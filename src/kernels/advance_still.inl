@@ -9,5 +9,6 @@ PC_FN void pc_kernel(PC_IO Index i) {
   moved.v = pc_add(moved.v, pc_move(PC_PASS p, linear));
   PC_SCATTER(pose, i, 0u, p.place); PC_SCATTER(pose, i, 2u, p.place_low);
   PC_SCATTER(delta, i, 0u, moved);
+  PC_SCATTER(delta, i, 2u, pc_quad(pc_zero3(), PC_REAL(0.0)));
 }
 #undef PC_STILL

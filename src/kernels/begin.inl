@@ -35,4 +35,5 @@ PC_FN void pc_kernel(PC_IO Index i) {
 #endif
   PC_SCATTER(delta, i, 0u, pc_quad(pc_zero3(), PC_REAL(0.0)));
   PC_SCATTER(delta, i, 1u, pc_quad(pc_zero3(), PC_REAL(0.0)));
+  PC_SCATTER(delta, i, 2u, pc_quad(pc_zero3(), PC_REAL(0.0)));
 }

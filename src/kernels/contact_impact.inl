@@ -5,8 +5,8 @@
 // it changed the velocity by J / m and the position by (h - t) J / m: so J acts on u whole and the position goes
 // back by t J / m. For a single contact that is exact, energy and all; several follow one another, colour by colour.
 // The rows of one manifold that close are solved together. What is left (slow approaches, several impacts of one body
-// in one sub-step that block each other, bodies on joints) is contact_solve's and contact_restitution's; but shapes that
-// meet in flight, whose arms mean nothing before they do, are left to this kernel for the whole step.
+// in one sub-step that block each other) is contact_solve's, what is on joints tree_contact_solve's; but shapes that meet in
+// flight, whose arms mean nothing before they do, are left to this kernel for the whole step.
 #define PC_SOME_ROWS
 #include "contact_rows.inl"
 #include "contact_response.inl"
@@ -18,8 +18,8 @@
 #include "contact_turned.inl"
 #include "contact_calming.inl"
 
-// u_aim: the velocity u that the row is to leave with; closes: 1 or 0; bounces: 1 where it closes fast
-struct Closing { Real t; Real u_aim; Real closes; Real bounces; };
+// u_aim: the velocity u that the row is to leave with; closes: 1 or 0
+struct Closing { Real t; Real u_aim; Real closes; };
 PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Real e, Mask always) {
   Real h = PC_INFO(h); Real zero = PC_REAL(0.0);
   precise Real half_change = acceleration * h * PC_REAL(0.5); precise Real v = u - half_change;
@@ -32,12 +32,14 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   // what rests approaches with what the forces give it in a sub-step
   precise Real slow = PC_INFO(restitution_threshold) + pc_abs(acceleration) * h; Mask fast = impact < -slow;
   precise Real most = h * PC_REAL(1.00001);  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
-  Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < zero, zero, most));
+  // what moves fast and overlaps is pushed apart as the solver would (in the first sweep: its rate is 0 in later ones)
+  precise Real rate = -s * PC_INFO(contact_rate); Real push = pc_select(always, pc_clamp(rate, zero, PC_INFO(push_speed)), zero);
+  Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < push, zero, most));
   Mask now = ahead < most;
-  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < zero)));
-  Real bounce = pc_select(fast, e, zero);
-  precise Real aim = half_change - acceleration * t - bounce * impact;
-  Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); r.bounces = pc_select(fast, r.closes, zero); return r;
+  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < push)));
+  Real bounce = pc_select(fast, e, zero); precise Real thrown = -bounce * impact;
+  precise Real aim = half_change - acceleration * t + pc_max(thrown, push);
+  Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); return r;
 }
 PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
 // What a row asks for, as a change of its impulse.
@@ -52,33 +54,25 @@ PC_FN Acceleration pc_acceleration(PC_IO Index i, BodyState b) {
   precise Real response = b.response; r.turn = pc_scale(pc_sym_mul(b.inertia, turn.v), response); return r;
 }
 
-// The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise).
-PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits, Real strike) {
-  Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
-  Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
-  precise Real back = -t; Vec3 shift = pc_scale(dv, back);
+PC_FN void pc_shift_place(PC_IO Index i, Mask these, Vec3 shift) {
   Quad place = PC_GATHER(pose, i, 0u); Quad low = PC_GATHER(pose, i, 2u); Quad moved = PC_GATHER(delta, i, 0u);
   TwoSum p = pc_two_sum(place.v, pc_add(low.v, shift));
-  PC_SCATTER_IF(moves, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(moves, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
-  Quad turned = PC_GATHER(delta, i, 1u);
-  PC_SCATTER_IF(moves, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s)); precise Real struck = turned.s + strike; PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
+  PC_SCATTER_IF(these, pose, i, 0u, pc_quad(p.sum, place.s)); PC_SCATTER_IF(these, pose, i, 2u, pc_quad(pc_snap3(p.low), low.s));
+  PC_SCATTER_IF(these, delta, i, 0u, pc_quad(pc_add(moved.v, shift), moved.s));
+}
+
+// The body goes back by what the impulse moves it before the impact; the impulse is no force (see synchronise).
+PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t, Mask hits) {
+  Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
+  Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
+  precise Real back = -t;
+  Quad hit = PC_GATHER(delta, i, 2u); PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(hit.v.x, pc_max(t, PC_TINY)), hit.v.y, hit.v.z), hit.s));
+  pc_shift_place(PC_PASS i, moves, pc_scale(dv, back));
+  Quad turned = PC_GATHER(delta, i, 1u); precise Real struck = turned.s + PC_REAL(1.0);
+  PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
   Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
   PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
   PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
-}
-
-// A body that flies against one that stands and turns far within the sub-step meets it with its centre behind the point:
-// which of its corners comes first is chance, and rows know small turns only. So nothing gets past.
-PC_FN Mask pc_whirls(PC_IO BodyState a, BodyState b) {
-  Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b); Real h = PC_INFO(h);
-  precise Real turn = (pc_dot(wa, wa) + pc_dot(wb, wb)) * h * h; return turn > PC_REAL(0.06);
-}
-PC_FN Arms pc_arms_at(PC_IO Slot m, Vec3 moved_a, Vec3 moved_b, Vec3 n, Mask central) {
-  Arms r = pc_arms(PC_PASS m, moved_a, moved_b);
-  r.a = pc_select3(central, pc_scale(n, pc_dot(n, r.a)), r.a); r.b = pc_select3(central, pc_scale(n, pc_dot(n, r.b)), r.b); return r;
-}
-PC_FN Real pc_impact_mass(Real mass, Real light, Mask central) {
-  return pc_select(central, pc_select(mass > PC_REAL(0.0), pc_inverse_or_zero(light), PC_REAL(0.0)), mass);
 }
 
 // What has bounced does not bounce again at the end of the step: its place holds the impulse (contact_touch) in place of the approach.
@@ -111,13 +105,6 @@ PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   return pc_madd(come, relative, until);
 }
 
-// Gaps: of the centre, and by how the bodies turned.
-PC_FN Shift pc_gap_shift(Vec3 n, Vec3 t1, Vec3 t2, Arms arms, Quad moved_a, Quad moved_b, Quad turned_a, Quad turned_b) {
-  Vec3 shift_a = pc_add(moved_a.v, pc_cross(turned_a.v, arms.a)); Vec3 shift_b = pc_add(moved_b.v, pc_cross(turned_b.v, arms.b));
-  Vec3 turn = pc_sub(turned_b.v, turned_a.v);
-  Shift r; r.n = pc_dot(n, pc_sub(shift_b, shift_a)); r.turn1 = pc_dot(t1, turn); r.turn2 = pc_dot(t2, turn); return r;
-}
-
 // What approaches no faster than the threshold does not bounce: |v*| is at most |u| + |A| h / 2, and has to be |A| h above it.
 // Then the gap closes by at most |u| h + |A| h^2 / 8, less than 5 / 4 |u| h.
 PC_FN Mask pc_closes_fast(PC_IO Slot m, Twist v, Shift shift, uint i, Mask before) {
@@ -133,18 +120,12 @@ PC_FN Mask pc_may_hit(PC_IO Slot m) {
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, pc_zero3(), pc_impact_path(PC_PASS m, n, pc_sub(b.v, a.v), pc_sub(moved_b.v, moved_a.v)));
   Twist v = pc_twist(a, b, arms, n, t1, t2);
-  Shift shift = pc_gap_shift(n, t1, t2, arms, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
+  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
   Mask fast = pc_impact_always(PC_PASS m);
   fast = pc_closes_fast(PC_PASS m, v, shift, 0u, fast); fast = pc_closes_fast(PC_PASS m, v, shift, 1u, fast);
   fast = pc_closes_fast(PC_PASS m, v, shift, 2u, fast); fast = pc_closes_fast(PC_PASS m, v, shift, 3u, fast);
   return fast;
 }
-// How often the two bodies were struck in this step: as often as when they were last looked at, and nothing has changed.
-PC_FN Real pc_struck(PC_IO Slot m) {
-  Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 1u); Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 1u);
-  precise Real both = a.s + b.s; return both;
-}
-
 PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Real zero = PC_REAL(0.0);
   Real e = PC_LD(contact_rows, m, ROW_E);
@@ -157,18 +138,16 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Vec3 relative = pc_sub(b.v, a.v); Vec3 come = pc_sub(moved_b.v, moved_a.v);
   Vec3 path = pc_impact_path(PC_PASS m, n, relative, come);
   Mask both_move = pc_and(a.inverse_mass > zero, b.inverse_mass > zero); Mask both_fly = pc_and(always, both_move);
-  Mask whirls = pc_and(pc_and(always, pc_whirls(PC_PASS a, b)), pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY);
-  Arms arms = pc_arms_at(PC_PASS m, pc_zero3(), path, n, whirls);
+  Arms arms = pc_arms(PC_PASS m, pc_zero3(), path);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
 
-  Real a0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A)); Real a1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 1u)); Real a2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 2u)); Real a3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_A + 3u));
-  Real b0 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B)); Real b1 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 1u)); Real b2 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 2u)); Real b3 = pc_select(whirls, zero, PC_LD(contact_rows, m, ROW_B + 3u));
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
+  Real b0 = PC_LD(contact_rows, m, ROW_B); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   precise Real u0 = v.vn + b0 * v.w1 - a0 * v.w2; precise Real u1 = v.vn + b1 * v.w1 - a1 * v.w2;
   precise Real u2 = v.vn + b2 * v.w1 - a2 * v.w2; precise Real u3 = v.vn + b3 * v.w1 - a3 * v.w2;
 
   // gaps, and accelerations in the contact frame
-  Quad turned_a = PC_GATHER(delta, ia, 1u); Quad turned_b = PC_GATHER(delta, ib, 1u);
-  Shift shift = pc_gap_shift(n, t1, t2, arms, moved_a, moved_b, turned_a, turned_b); Real shift_n = shift.n; Real turn1 = shift.turn1; Real turn2 = shift.turn2;
+  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u)); Real shift_n = shift.n; Real turn1 = shift.turn1; Real turn2 = shift.turn2;
   Acceleration pull_a = pc_acceleration(PC_PASS ia, a); Acceleration pull_b = pc_acceleration(PC_PASS ib, b);
   Vec3 pull = pc_sub(pc_add(pull_b.a, pc_cross(pull_b.turn, arms.b)), pc_add(pull_a.a, pc_cross(pull_a.turn, arms.a)));
   Vec3 spin_up = pc_sub(pull_b.turn, pull_a.turn); Real pull_n = pc_dot(n, pull); Real up1 = pc_dot(t1, spin_up); Real up2 = pc_dot(t2, spin_up);
@@ -182,7 +161,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
   // two that fly and were sent elsewhere on their way do not meet as was found
   Real until = pc_min(pc_min(pc_until(PC_PASS c0), pc_until(PC_PASS c1)), pc_min(pc_until(PC_PASS c2), pc_until(PC_PASS c3)));
-  Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Arms found = pc_arms(PC_PASS m, pc_zero3(), pc_ld3_rows(PC_PASS m, ROW_PATH)); precise Real size = pc_dot(found.a, found.a) + pc_dot(found.b, found.b);
+  Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Vec3 found_a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 found_b = pc_ld3_rows(PC_PASS m, ROW_ARM_B); precise Real size = pc_dot(found_a, found_a) + pc_dot(found_b, found_b);
   Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
   Mask hits = pc_and(mine, here > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
@@ -190,12 +169,11 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   // effective masses at the arms of the impact
   Responses r = pc_free_responses(a, b, arms.a, arms.b, n, t1, t2); r.these = hits;
   pc_renew_masses(PC_PASS m, r);
-  precise Real light = a.inverse_mass + b.inverse_mass;
-  m0 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS), light, whirls); m1 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 1u), light, whirls);
-  m2 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 2u), light, whirls); m3 = pc_impact_mass(PC_LD(contact_rows, m, ROW_MASS + 3u), light, whirls);
+  m0 = PC_LD(contact_rows, m, ROW_MASS); m1 = PC_LD(contact_rows, m, ROW_MASS + 1u);
+  m2 = PC_LD(contact_rows, m, ROW_MASS + 2u); m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
   // all rows that close, together: equal shares of what stops their mean, then rounds of what each asks for
-  Real d01 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D)); Real d02 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 1u)); Real d03 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 2u));
-  Real d12 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 3u)); Real d13 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 4u)); Real d23 = pc_select(whirls, light, PC_LD(contact_rows, m, ROW_D + 5u));
+  Real d01 = PC_LD(contact_rows, m, ROW_D); Real d02 = PC_LD(contact_rows, m, ROW_D + 1u); Real d03 = PC_LD(contact_rows, m, ROW_D + 2u);
+  Real d12 = PC_LD(contact_rows, m, ROW_D + 3u); Real d13 = PC_LD(contact_rows, m, ROW_D + 4u); Real d23 = PC_LD(contact_rows, m, ROW_D + 5u);
   precise Real own = c0.closes * pc_inverse_or_zero(m0) + c1.closes * pc_inverse_or_zero(m1) + c2.closes * pc_inverse_or_zero(m2) + c3.closes * pc_inverse_or_zero(m3);
   precise Real coupled = c0.closes * (c1.closes * d01 + c2.closes * d02 + c3.closes * d03) + c1.closes * (c2.closes * d12 + c3.closes * d13) + c2.closes * c3.closes * d23;
   precise Real whole = own + coupled * PC_REAL(2.0);
@@ -213,47 +191,43 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   }
   j0 = pc_select(hits, j0, zero); j1 = pc_select(hits, j1, zero); j2 = pc_select(hits, j2, zero); j3 = pc_select(hits, j3, zero);
 
-  Push push = pc_push(PC_PASS m, j0, j1, j2, j3); push.m1 = pc_select(whirls, zero, push.m1); push.m2 = pc_select(whirls, zero, push.m2);
+  Push push = pc_push(PC_PASS m, j0, j1, j2, j3);
   Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), push.n, PC_REAL(1.0), zero, zero, zero);
-  precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real t = late * pc_inverse_or_zero(push.n);
+  precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real mean = late * pc_inverse_or_zero(push.n);
+  // none comes before one that a body of it had already
+  Quad hit_a = PC_GATHER(delta, ia, 2u); Quad hit_b = PC_GATHER(delta, ib, 2u); Real t = pc_max(mean, pc_max(hit_a.v.x, hit_b.v.x));
 
-  // another sweep is to follow; what is stopped slowly is for the next sub-step
-  Mask strikes = pc_and(hits, pc_max(pc_max(c0.bounces, c1.bounces), pc_max(c2.bounces, c3.bounces)) > zero);
-  PC_RAISE(strikes, velocity_parts, 2u);
+  // another sweep is to follow, until one changes nothing: else what others do would tell how many there are
+  PC_RAISE(hits, velocity_parts, 2u);
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
-  Arms struck = pc_arms_at(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t), n, whirls);
+  Arms struck = pc_arms(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t));
   BodyState before_a = a; BodyState before_b = b;
   Wrench w = pc_wrench(n, t1, t2, push, f.change1, f.change2, f.change_twist);
   // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not close all at once: the
   // impulse leaves no more energy than e allows
+  precise Real parts = -pc_min(pc_min(s0, s1), pc_min(s2, s3)) * PC_INFO(contact_rate); Mask pushed = pc_and(always, parts > pc_noise(PC_PASS relative));
   Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b)));
   precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, w.impulse, w.couple);
-  Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
+  Real share = pc_select(pushed, PC_REAL(1.0), pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0)));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
   pc_keep_impact(PC_PASS m, 0u, j0, share); pc_keep_impact(PC_PASS m, 1u, j1, share); pc_keep_impact(PC_PASS m, 2u, j2, share); pc_keep_impact(PC_PASS m, 3u, j3, share);
   // (what rounding leaves of an approach closes anywhere)
   precise Real nearing = -pc_dot(n, relative); Real met = PC_LD(contact_rows, m, ROW_MET);
   Mask anew = pc_or(met < PC_TINY, nearing > pc_noise(PC_PASS relative)); PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, always), anew), t, met));
-  Real strike = pc_select(strikes, PC_REAL(1.0), zero);
-  pc_set_back(PC_PASS ia, before_a, a, t, hits, strike); pc_set_back(PC_PASS ib, before_b, b, t, hits, strike);
+  pc_set_back(PC_PASS ia, before_a, a, t, hits); pc_set_back(PC_PASS ib, before_b, b, t, hits);
 }
 
-// A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at bodies that were struck since
-// it looked last.
-PC_FN Mask pc_unseen(PC_IO Slot m) {
-  Mask flight = pc_impact_always(PC_PASS m); Real kept = PC_LD(contact_rows, m, ROW_SEEN); Real struck = pc_struck(PC_PASS m);
-  PC_ST(contact_rows, m, ROW_SEEN, pc_select(flight, kept, struck));
-  precise Real since = struck - pc_select(flight, PC_REAL(0.0), kept); return pc_abs(since) > PC_REAL(0.5);
+// A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at what the sweep before has struck, as the
+// host has marked it (Detector::mark_struck).
+PC_FN Mask pc_was_struck(PC_IO Slot m) {
+  Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 2u);
+  Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 2u);
+  return pc_max(a.v.y, b.v.y) > PC_REAL(0.5);
 }
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask mine = pc_impact_mine(PC_PASS m); Mask again = PC_INFO(load_ahead) > PC_REAL(0.5);
+  Mask mine = pc_impact_mine(PC_PASS m);
+  if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) mine = pc_and(mine, pc_was_struck(PC_PASS m));  // lint: allow (the same for all lanes)
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
-  if (PC_ANY(again)) {  // lint: allow (the same for all)
-    mine = pc_and(mine, pc_unseen(PC_PASS m));
-    if (!PC_ANY(mine)) return;  // lint: allow (nothing has changed)
-  } else {
-    PC_ST(contact_rows, m, ROW_MET, pc_select(pc_impact_always(PC_PASS m), PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MET)));
-  }
   if (PC_ANY(pc_and(mine, pc_may_hit(PC_PASS m)))) pc_hit(PC_PASS m, mine);  // lint: allow (nothing to do otherwise)
 }
 #undef PC_SOME_ROWS

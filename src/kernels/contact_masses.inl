@@ -17,6 +17,14 @@ struct Responses {
   Sym3 a;                    // of the turning to couples
 };
 
+// The smaller of the responses along the normal and along the tangents, of which it is the harmonic mean, whichever way they point. Zero
+// says that the contact is left alone.
+PC_FN Real pc_least_response(Sym3 l) {
+  precise Real det = l.xx * l.yy - l.xy * l.xy;
+  precise Real trace = l.xx + l.yy;
+  precise Real tangents = PC_REAL(2.0) * det * pc_inverse_or_zero(trace);
+  return pc_min(l.zz, pc_max(tangents, PC_REAL(0.0)));
+}
 // Effective masses and the responses between rows; `w0` to `w3`: 1 where the point exists.
 PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2, Real w3) {
 #ifndef PC_FRICTIONLESS
@@ -30,7 +38,7 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
   pc_st_mass(ROW_C + 3u, r.w1.x); pc_st_mass(ROW_C + 4u, r.w1.y); pc_st_mass(ROW_C + 5u, r.a.xz);
   pc_st_mass(ROW_C + 6u, r.w2.x); pc_st_mass(ROW_C + 7u, r.w2.y); pc_st_mass(ROW_C + 8u, r.a.yz);
 #endif
-  pc_st_mass(ROW_K, pc_min(r.l.zz, pc_min(r.l.xx, r.l.yy)));
+  pc_st_mass(ROW_K, pc_least_response(r.l));
 
   // normal rows: u_i = K [1, b_i, -a_i] and their products
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);

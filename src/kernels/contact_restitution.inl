@@ -1,5 +1,5 @@
-// After the last sub-step: rows that were pressed in this step and approached faster than the threshold
-// leave with e times their approach speed (restitution e: the mean of the two bodies', as the original).
+// After the last sub-step, of contacts of trees that are too large for tree_contact_solve: rows that were pressed in this step and approached
+// faster than the threshold leave with e times their approach speed (restitution e: the mean of the two bodies', as the original).
 // The load that this adds allows more friction, so a bouncing manifold's friction is solved once more:
 // in all mu (1 + e) times the impulse that stopped it, Newton's and Coulomb's laws together.
 // These impulses are not remembered: they are of an instant, warm starting is for what lasts.
@@ -21,8 +21,14 @@ PC_FN Mask pc_bounces(PC_IO Slot m, uint i) {
   return pc_and(PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_APPROACH + i) < threshold);
 }
 
+PC_FN void pc_note_bounce(PC_IO Slot m, uint i, Real bounce) {
+  precise Real all = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) + bounce;
+  PC_ST(contact_impulses, m, IMPULSE_LARGEST + i, all);
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask some = pc_or(pc_or(pc_bounces(PC_PASS m, 0u), pc_bounces(PC_PASS m, 1u)), pc_or(pc_bounces(PC_PASS m, 2u), pc_bounces(PC_PASS m, 3u)));
+  Real impact = PC_LD(contact_rows, m, ROW_IMPACT); some = pc_and(some, pc_and(impact < PC_REAL(-0.5), impact > PC_REAL(-1.5)));  // of bodies on joints: contact_impact has seen to the others
   if (!PC_ANY(pc_and(some, PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0)))) return;  // lint: allow (zeros otherwise)
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
@@ -42,8 +48,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real l3 = PC_LD(contact_impulses, m, 3u); Real r3 = pc_restitution_row(PC_PASS v3, PC_LD(contact_rows, m, ROW_APPROACH + 3u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), e, m3);
   Real share = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(r0, r1, r2, r3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
   Real k0 = pc_bounced_row(l0, r0, share); Real k1 = pc_bounced_row(l1, r1, share); Real k2 = pc_bounced_row(l2, r2, share); Real k3 = pc_bounced_row(l3, r3, share);
-  precise Real e0 = k0 - l0; precise Real e1 = k1 - l1; precise Real e2 = k2 - l2; precise Real e3 = k3 - l3;
+  Real one = pc_select(some, PC_REAL(1.0), PC_REAL(0.0));
+  precise Real e0 = (k0 - l0) * one; precise Real e1 = (k1 - l1) * one; precise Real e2 = (k2 - l2) * one; precise Real e3 = (k3 - l3) * one;
 
+  pc_note_bounce(PC_PASS m, 0u, e0); pc_note_bounce(PC_PASS m, 1u, e1); pc_note_bounce(PC_PASS m, 2u, e2); pc_note_bounce(PC_PASS m, 3u, e3);
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
   Mask bounced = push.n > PC_REAL(0.0);
   precise Real load = k0 + k1 + k2 + k3;

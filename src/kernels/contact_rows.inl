@@ -6,7 +6,7 @@
 // Friction acts at the centre: a 2 x 2 block with a circular clamp, and a twist about the normal.
 const uint ROW_N = 0u;         // normal, a to b
 const uint ROW_T = 3u;         // first tangent; the second is n x t1
-const uint ROW_ARM_A = 6u;     // from each centre of mass to the manifold's centre, start of the step
+const uint ROW_ARM_A = 6u;     // from each centre of mass to the manifold's centre, as found
 const uint ROW_ARM_B = 9u;
 const uint ROW_A = 12u;        // a_i along t1
 const uint ROW_B = 16u;        // b_i along t2
@@ -18,10 +18,9 @@ const uint ROW_SHARE = 35u;    // of body a in what the arms must shift by, see 
 const uint ROW_APPROACH = 36u; // below 0: relative normal velocity of each point at the start of the step; above: impulses of contact_impact
 const uint ROW_K = 40u;        // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
 const uint ROW_SCALE = 41u;    // of all effective masses in this sub-step, see pc_mass_scale
-const uint ROW_MET = 41u;      // the same place, where shapes meet in flight, until contact_warm: when in this sub-step they did; 0 before
-const uint ROW_IMPACT = 42u;   // contact_impact's: below 0 none of it, 0 where it bounces, above 0 always
-const uint ROW_PATH = 43u;     // b's way against a until they meet
-const uint ROW_SEEN = 43u;     // the same place, where no shapes meet in flight: how often the bodies had been struck when contact_impact last looked
+const uint ROW_MET = 41u;      // the same place until contact_warm, where shapes meet in flight: when in this sub-step they did; 0 before
+const uint ROW_IMPACT = 42u;   // contact_impact's: below 0 none of it (-1: a body hangs on joints, -2: it acts no longer), 0 where it bounces, above 0 always
+const uint ROW_PATH = 43u;     // b's way against a since the step began, when the rows were found: arms are of there
 #ifndef PC_FRICTIONLESS  // what follows is friction's: where nothing has any, rows end here (frictionless_rows)
 const uint ROW_MU_STATIC = 46u;
 const uint ROW_MU_KINETIC = 47u;

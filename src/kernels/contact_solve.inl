@@ -32,6 +32,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_apply_low(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple, keeps_low);
 }
 #undef pc_kept
+#undef pc_thrown
+#undef pc_lasts
 #undef PC_PRELOAD
+#undef PC_SOME_ACT
 #undef PC_ACTS
 #undef PC_ACTING

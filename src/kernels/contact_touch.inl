@@ -1,14 +1,13 @@
 // After the last sub-step, where a host asks for events: with which impulses the points of a contact were pressed in this step, and how
 // fast they had approached. A row that contact_impact stopped holds its impulses J in the place of its approach; responses give back the
 // speeds that they stopped, (1 + e) v = the change of each row's velocity. Others hold the approach that the step began with, and the
-// largest impulse of a sub-step; contact_restitution adds e times that to what comes fast.
+// largest impulse of a sub-step, with what it bounced by.
 #include "contact_rows.inl"
 #include "contact_together.inl"
 
 PC_FN Real pc_touch_impulse(PC_IO Slot m, uint i, Real approach) {
-  Real largest = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i); precise Real threshold = -PC_INFO(restitution_threshold);
-  precise Real bounced = largest + largest * PC_LD(contact_rows, m, ROW_E); Real held = pc_select(approach < threshold, bounced, largest);
-  precise Real all = held + pc_max(approach, PC_REAL(0.0)); return pc_snap(all);
+  precise Real all = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) + pc_max(approach, PC_REAL(0.0));
+  return pc_snap(all);
 }
 // Of a row without an impact.
 PC_FN Real pc_pressed_speed(PC_IO Slot m, uint i, Real approach) {

@@ -14,13 +14,23 @@
 PC_FN Real pc_mean_held(PC_IO Slot m, uint i, Real mass_scale) { precise Real r = PC_LD(contact_impulses, m, IMPULSE_MEAN + i) * mass_scale; return r; }
 PC_FN Real pc_let_go(Real impulse, Real held) { precise Real r = impulse - held; return r; }
 #define pc_kept(i) pc_mean_held(PC_PASS m, i, mass_scale)
-#define PC_PRELOAD , Mask both_move
+// What a row that bounces asks for: to leave with `back`, above 0.
+PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real bounce = mass * (back - vn); return pc_select(back > PC_REAL(0.0), bounce, change); }
+// It was of an instant: nothing of it is remembered.
+PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0.0), PC_REAL(0.0), impulse); }
+#define PC_PRELOAD , Mask both_move, FourRows back
+#define PC_SOME_ACT
 #else
 PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loose; return r; }
 #define pc_kept(i) loose
+#define pc_thrown(change, vn, mass, back) change
+#define pc_lasts(impulse, back) impulse
 #define PC_PRELOAD , Real preload
 #endif
 #ifdef PC_PLACED
+#define PC_SOME_ACT
+#endif
+#ifdef PC_SOME_ACT  // others keep what they have
 #define PC_ACTS , acts
 #define PC_ACTING , Mask acts
 #else
@@ -97,7 +107,12 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   // together later than in the first part of the sub-step, 1 / gap_weight of it, does so elsewhere: its friction is the relax visit's.
   // Where a load is carried already, a gap of a rounding counts as no more than what it is.)
   precise Real gap_rate = pc_max(apart, PC_REAL(0.0)) * PC_INFO(inverse_h); Real mass = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)); precise Real stops = mass * mass_scale;
-  precise Real late = gap_rate * pc_select(load > PC_TINY, PC_REAL(1.0), PC_INFO(gap_weight)); precise Real coming = load - (v.vn + late) * stops;
+#ifdef PC_MEAN
+  Real thrown = pc_max(pc_max(back.r0, back.r1), pc_max(back.r2, back.r3));
+#else
+  Real thrown = PC_REAL(0.0);
+#endif
+  precise Real late = gap_rate * pc_select(load > PC_TINY, PC_REAL(1.0), PC_INFO(gap_weight)); precise Real coming = load - (v.vn + late - thrown) * stops;
 #ifndef PC_MEAN
   precise Real share = mass * preload * pc_inverse_or_zero(coming); precise Real loose = PC_REAL(1.0) - pc_min(share, PC_REAL(1.0));
 #endif
@@ -111,15 +126,15 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 
   // normal rows
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
-  precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_row_change(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u));
+  precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_thrown(pc_row_change(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u)), v0, m0, back.r0);
   Rows now; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Real share_of_all = PC_REAL(1.0);
   if (more) {  // lint: allow (as said)
     Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
     Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
     Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
-    precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_row_change(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u));
-    precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_row_change(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u));
-    precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_row_change(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u));
+    precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_thrown(pc_row_change(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u)), v1, m1, back.r1);
+    precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_thrown(pc_row_change(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u)), v2, m2, back.r2);
+    precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_thrown(pc_row_change(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u)), v3, m3, back.r3);
     Real together = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(e0, e1, e2, e3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
     share_of_all = pc_select(several, together, PC_REAL(1.0));
     now.k1 = pc_row_after(l1, e1, share_of_all); now.k2 = pc_row_after(l2, e2, share_of_all); now.k3 = pc_row_after(l3, e3, share_of_all);
@@ -140,7 +155,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   }
 #endif
 #endif
-#ifdef PC_PLACED
+#ifdef PC_SOME_ACT
   now.k0 = pc_select(acts, now.k0, l0); now.k1 = pc_select(acts, now.k1, l1); now.k2 = pc_select(acts, now.k2, l2); now.k3 = pc_select(acts, now.k3, l3);
 #ifndef PC_FRICTIONLESS
   now.f.next1 = pc_select(acts, now.f.next1, PC_LD(contact_impulses, m, IMPULSE_T)); now.f.next2 = pc_select(acts, now.f.next2, PC_LD(contact_impulses, m, IMPULSE_T + 1u));
@@ -150,16 +165,20 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 #ifndef PC_FRICTIONLESS
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
 #endif
-  PC_ST(contact_impulses, m, 0u, now.k0); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));
+  PC_ST(contact_impulses, m, 0u, pc_lasts(now.k0, back.r0)); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));
   if (more) {  // lint: allow (as said)
-    PC_ST(contact_impulses, m, 1u, now.k1); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));
-    PC_ST(contact_impulses, m, 2u, now.k2); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), now.k2));
-    PC_ST(contact_impulses, m, 3u, now.k3); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), now.k3));
+    PC_ST(contact_impulses, m, 1u, pc_lasts(now.k1, back.r1)); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));
+    PC_ST(contact_impulses, m, 2u, pc_lasts(now.k2, back.r2)); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), now.k2));
+    PC_ST(contact_impulses, m, 3u, pc_lasts(now.k3, back.r3)); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), now.k3));
   }
   precise Real c0 = now.k0 - l0; precise Real c1 = now.k1 - l1; precise Real c2 = now.k2 - l2; precise Real c3 = now.k3 - l3;
   precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3;
   Push push = pc_push(PC_PASS m, c0, c1, c2, c3);
   Wrench w = pc_wrench(n, t1, t2, push, now.f.change1, now.f.change2, now.f.change_twist); Visit r; r.impulse = w.impulse; r.couple = w.couple;
   precise Real held = pc_min(PC_LD(contact_impulses, m, IMPULSE_BEFORE), pressed); Mask touches = pc_max(load, pressed) > PC_REAL(0.0);
-  r.touch = pc_select(touches, pc_max(held, PC_TINY), PC_REAL(0.0)); return r;
+  r.touch = pc_select(touches, pc_max(held, PC_TINY), PC_REAL(0.0));
+#ifdef PC_MEAN
+  r.touch = pc_select(thrown > PC_REAL(0.0), pc_max(r.touch, push.n), r.touch);  // what a bounce leaves is to be read whole (synchronise)
+#endif
+  return r;
 }

@@ -16,7 +16,8 @@ PC_FN Real pc_arm_growth(Vec3 arm, Vec3 frozen, BodyState b) {
 PC_FN Real pc_mass_scale(PC_IO Slot m, Arms arms, BodyState a, BodyState b) {
   Real k = PC_LD(contact_rows, m, ROW_K);
   precise Real now = k + pc_arm_growth(arms.a, pc_ld3_rows(PC_PASS m, ROW_ARM_A), a) + pc_arm_growth(arms.b, pc_ld3_rows(PC_PASS m, ROW_ARM_B), b);
-  precise Real scale = k * pc_inverse_or_zero(now); return scale;
+  precise Real scale = k * pc_inverse_or_zero(now);
+  return pc_select(k > PC_REAL(0.0), scale, PC_REAL(0.0));  // (what grows by a subnormal number would have no inverse on GL)
 }
 
 // A change of load comes through a pile at the pace of the visits: each sub-step undoes a share of what a slow motion of many

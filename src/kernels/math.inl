@@ -45,7 +45,14 @@ PC_FN TwoSum pc_two_sum(Vec3 a, Vec3 b) {
   r.low = Vec3(pc_two_sum_error(a.x, b.x, r.sum.x), pc_two_sum_error(a.y, b.y, r.sum.y), pc_two_sum_error(a.z, b.z, r.sum.z)); return r;
 }
 PC_FN Vec3 pc_negate(Vec3 a) { return Vec3(-a.x, -a.y, -a.z); }
-PC_FN Real pc_inverse_or_zero(Real x) { return pc_select(x > PC_REAL(0.0), pc_div(PC_REAL(1.0), x), PC_REAL(0.0)); }
+// The smallest number that no device flushes.
+#ifdef PC_DOUBLE
+#define PC_LEAST PC_REAL(2.2250738585072014e-308)
+#else
+#define PC_LEAST PC_REAL(1.1754943508222875e-38)
+#endif
+// (what some devices flush has no inverse anywhere)
+PC_FN Real pc_inverse_or_zero(Real x) { return pc_select(x > PC_LEAST, pc_div(PC_REAL(1.0), x), PC_REAL(0.0)); }
 PC_FN Real pc_length(Vec3 a) { return pc_sqrt(pc_dot(a, a)); }
 PC_FN Vec3 pc_unit_or_zero(Vec3 a) { return pc_scale(a, pc_inverse_or_zero(pc_length(a))); }
 
@@ -57,11 +64,6 @@ PC_FN Vec3 pc_unit_or_zero(Vec3 a) { return pc_scale(a, pc_inverse_or_zero(pc_le
 #define PC_TINY PC_REAL(1e-18)
 #endif
 // Anything but zero; what is no number, too.
-#ifdef PC_DOUBLE
-#define PC_LEAST PC_REAL(2.2250738585072014e-308)
-#else
-#define PC_LEAST PC_REAL(1.1754943508222875e-38)
-#endif
 PC_FN Mask pc_nonzero(Real x) { return pc_select(pc_abs(x) < PC_LEAST, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); }
 PC_FN Real pc_snap(Real x) { return pc_select(pc_abs(x) < PC_TINY, PC_REAL(0.0), x); }
 PC_FN Vec3 pc_snap3(Vec3 a) { return Vec3(pc_snap(a.x), pc_snap(a.y), pc_snap(a.z)); }

@@ -10,6 +10,7 @@
 #include "tree_predict.inl"
 #include "tree_joint_kept.inl"
 #include "tree_gap.inl"
+#include "tree_trust.inl"
 
 // Of a limit that is met and throws back, how far its rate lacks of that at which it is to be left; else 0.
 PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
@@ -101,13 +102,26 @@ PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
   PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
-  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
+  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0), PC_INFO(seen_turn)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
+  Real steps = wanted;
+  if (PC_ANY(steps > PC_REAL(0.5))) pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
   for (uint turn = 0u; turn < 4u; turn++) {
     if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
-    if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted);
+    if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted, PC_INFO(seen_turn));
     Real left = pc_left(PC_PASS m, t, PC_REAL(2e-9));
     pc_newton_step(PC_PASS m, t, wanted);
     wanted = pc_min(wanted, left);
+  }
+  if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (as above)
+    Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
+    if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
+    if (PC_ANY(strayed > PC_REAL(0.5))) {  // lint: allow (as above)
+      pc_take_back(PC_PASS m, t, strayed > PC_REAL(0.5));
+      for (uint turn = 0u; turn < 2u; turn++) {
+        pc_tree_residual(PC_PASS m, t, strayed, PC_INFO(strayed_turn));
+        pc_newton_step(PC_PASS m, t, strayed);
+      }
+    }
   }
   PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
   pc_push_gaps(PC_PASS m, t);

@@ -15,6 +15,7 @@
 #include "tree_reach.inl"
 #include "kept_meeting.inl"
 #include "contact_reach.inl"
+#include "row_approach.inl"
 
 // Contacts that hold nothing, and whose points would come no nearer than this speed could close, are left alone in this sub-step: in a pile half of all. What
 // is missed the next sub-step sees.
@@ -81,10 +82,19 @@ PC_FN Mask pc_reaches_same(PC_IO Way w, Slot m, Meeting now, Real before) {
 // it towards the other, has no place to go; with means that hold whatever was pushed before, the two push ever harder.
 PC_FN Real pc_mean_most(PC_IO Meeting now) { precise Real light = now.a.inverse_mass + now.b.inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_INFO(mean_most); return most; }
 
+// The approach that is told of a row (contact_touch) is that of the sub-step in which it first pushes: on its way there a limb is turned by blows
+// elsewhere.
+PC_FN void pc_see_approach(PC_IO Slot m, uint i, Twist v) {
+  Real u = pc_row_approach(PC_PASS m, i, v);
+  Mask waits = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) < PC_TINY;
+  PC_ST(contact_rows, m, ROW_APPROACH + i, pc_select(waits, pc_min(u, PC_REAL(0.0)), PC_LD(contact_rows, m, ROW_APPROACH + i)));
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m); Real one = PC_REAL(1.0); Real none = PC_REAL(0.0);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1); Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2);
+  for (uint i = 0u; i < 4u; i++) pc_see_approach(PC_PASS m, i, now.twist);
   Real most = pc_mean_most(PC_PASS now);
   for (uint i = 0u; i < 4u; i++) {  // the slow means
     Real mean = PC_LD(contact_impulses, m, IMPULSE_MEAN + i); precise Real next = mean + (PC_LD(contact_impulses, m, i) - mean) * PC_INFO(mean_share);

@@ -11,6 +11,33 @@
 #include "tree_reach.inl"
 #include "kept_meeting.inl"
 #include "reach_motion.inl"
+#include "row_approach.inl"
+
+// In the relax visit: with which speed a row is to leave that was pressed in this sub-step and approached fast as it began, before and after what
+// is remembered acted.
+PC_FN Real pc_leaves(PC_IO Slot m, uint i, Twist v, Real fastest) {
+  Real approach = pc_max(pc_row_approach(PC_PASS m, i, v), fastest);
+  precise Real threshold = -PC_INFO(restitution_threshold);
+  Mask bounces = pc_and(PC_LD(contact_impulses, m, i) > PC_REAL(0.0), approach < threshold);
+  precise Real back = -(PC_LD(contact_rows, m, ROW_E) * approach);
+  return pc_select(bounces, back, PC_REAL(0.0));
+}
+PC_FN FourRows pc_bounce(PC_IO Way w, Slot m) {
+  Real none = PC_REAL(0.0);
+  Mask may = pc_and(PC_INFO(load_ahead) > PC_REAL(0.5), PC_LD(contact_rows, m, ROW_E) > none);
+  if (!PC_ANY(may)) return pc_four(none, none, none, none);  // lint: allow (zeros otherwise)
+  Twist v = pc_kept_meeting(PC_PASS w, m).twist;
+  Real fastest = pc_select(may, PC_LD(contact_reach, PC_NODE(m, w.reach), REACH_APPROACH), none);
+  return pc_four(pc_leaves(PC_PASS m, 0u, v, fastest), pc_leaves(PC_PASS m, 1u, v, fastest), pc_leaves(PC_PASS m, 2u, v, fastest), pc_leaves(PC_PASS m, 3u, v, fastest));
+}
+
+// The relax visit goes by rows of where the sub-step began. What has turned on by half a radian answers otherwise: by those rows it would gain energy.
+PC_FN Mask pc_goes_by_rows(PC_IO Meeting now) {
+  Vec3 wa = pc_angular_velocity(now.a);
+  Vec3 wb = pc_angular_velocity(now.b);
+  precise Real turned = pc_max(pc_dot(wa, wa), pc_dot(wb, wb)) * PC_INFO(h) * PC_INFO(h) * PC_INFO(load_ahead);
+  return turned < PC_REAL(0.25);
+}
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   if (!PC_ANY(PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0))) return;  // lint: allow (without mass they do nothing)
@@ -18,13 +45,16 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Meeting now = pc_meeting_now(PC_PASS w, m, ia, ib, n, t1, t2); Twist v = now.twist;
+  Mask acts = pc_goes_by_rows(PC_PASS now);
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
-  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, pc_both_move(PC_PASS w, m));
+  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, pc_both_move(PC_PASS w, m), pc_bounce(PC_PASS w, m), acts);
+  r.impulse = pc_select3(acts, r.impulse, pc_zero3());
+  r.couple = pc_select3(acts, r.couple, pc_zero3());
 
-  Real acts = pc_max(r.touch, pc_max(pc_largest(r.impulse), pc_largest(r.couple)));
-  if (!PC_ANY(acts > PC_REAL(0.0))) return;  // lint: allow (nothing changes nothing)
+  Real changes = pc_max(r.touch, pc_max(pc_largest(r.impulse), pc_largest(r.couple)));
+  if (!PC_ANY(changes > PC_REAL(0.0))) return;  // lint: allow (nothing changes nothing)
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u); Real zero = PC_REAL(0.0); BodyState a = now.a; BodyState b = now.b;
   Vec3 torque_a = pc_add(r.couple, pc_cross(now.arms.a, r.impulse)); Vec3 torque_b = pc_add(r.couple, pc_cross(now.arms.b, r.impulse));
   Real free_a = pc_free_mass(tree_a, a); Real free_b = pc_free_mass(tree_b, b);
@@ -39,6 +69,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 }
 #undef PC_MEAN
 #undef pc_kept
+#undef pc_thrown
+#undef pc_lasts
 #undef PC_PRELOAD
+#undef PC_SOME_ACT
 #undef PC_ACTS
 #undef PC_ACTING

@@ -5,12 +5,31 @@
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_warming.inl"
+#include "contact_shift.inl"
+#include "contact_meeting.inl"
+#include "tree_reach.inl"
+#include "row_approach.inl"
+
+// How fast rows that may bounce approach before anything remembered acts: what that drives together has not come together.
+PC_FN void pc_keep_approach(PC_IO Way w, Slot m, Index ia, Index ib) {
+  if (!PC_ANY(PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0))) return;  // lint: allow (others have no use for it)
+  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N);
+  Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T);
+  Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, pc_cross(n, t1));
+  Real fastest = PC_REAL(0.0);
+  for (uint i = 0u; i < 4u; i++) {
+    Mask real = PC_LD(contact_rows, m, ROW_MASS + i) > PC_REAL(0.0);
+    fastest = pc_select(real, pc_min(fastest, pc_row_approach(PC_PASS m, i, now.twist)), fastest);
+  }
+  PC_ST(contact_reach, PC_NODE(m, w.reach), REACH_APPROACH, fastest);
+}
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m); Real zero = PC_REAL(0.0);
+  Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
+  pc_keep_approach(PC_PASS w, m, ia, ib);
   Wrench wrench = pc_warm_start(PC_PASS m); Real size = pc_max(pc_largest(wrench.impulse), pc_largest(wrench.couple));
   if (!PC_ANY(size > zero)) return;  // lint: allow (nothing changes nothing)
-  Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   Vec3 torque_a = pc_add(wrench.couple, pc_cross(arms.a, wrench.impulse)); Vec3 torque_b = pc_add(wrench.couple, pc_cross(arms.b, wrench.impulse));

@@ -15,21 +15,23 @@ PC_FN void pc_drive_rates(PC_IO Slot n, Slot up) {
   Mask driven = pc_has_drive(PC_PASS n);
   if (!PC_ANY(driven)) return;  // lint: allow (nothing reads them otherwise)
   Vec3 turn = pc_select3(driven, pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)), pc_zero3());
-  pc_st3_drive(PC_PASS n, DRIVE_RATE, turn); PC_ST(tree_drive_rows, n, MOTOR_ON, PC_REAL(2.0)); Mask moves = pc_drive_moves(PC_PASS n);
+  pc_st3_drive(PC_PASS n, DRIVE_RATE, turn);
+  PC_ST(tree_drive_rows, n, MOTOR_ON, pc_select(driven, PC_REAL(2.0), PC_LD(tree_drive_rows, n, MOTOR_ON)));
+  Mask moves = pc_drive_moves(PC_PASS n);
   if (!PC_ANY(moves)) return;  // lint: allow (the world's axes)
   Vec3 along = Vec3(pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 3u), turn), pc_dot(pc_ld3_drive(PC_PASS n, DRIVE_AXIS + 6u), turn));
   pc_st3_drive(PC_PASS n, DRIVE_RATE, pc_select3(moves, along, turn));
 }
 
 // The motor: adds its stiffness where it holds, and answers its impulse at the prediction. `answer`: of both sides about its axis.
-PC_FN Real pc_motor_push(PC_IO Slot n, Vec3 axis, Sym3 loose, Real answer) {
+PC_FN Real pc_motor_push(PC_IO Slot n, Vec3 axis, Sym3 loose, Real answer, Mask driven) {
   Real most = PC_LD(tree_drive_rows, n, MOTOR_MOST); Real on = PC_LD(tree_drive_rows, n, MOTOR_ON); Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
   precise Real beyond = PC_LD(tree_drive_rows, n, DRIVE_RATE) - PC_LD(tree_drive_rows, n, MOTOR_SPEED);
   // not known yet: by what it would take without loads
   precise Real need = pc_abs(beyond) * pc_inverse_or_zero(answer); Real side = pc_select(beyond > zero, -one, one);
   Real state = pc_select(on > PC_REAL(1.5), pc_select(need > most, side, zero), on); Mask holds = pc_and(most > zero, pc_abs(state) < PC_REAL(0.5));
   precise Real lock = PC_INFO(lock_stiffness) * pc_inverse_or_zero(pc_dot(axis, pc_sym_mul(loose, axis))); Real stiffness = pc_select(holds, lock, zero);
-  PC_ST(tree_drive_rows, n, MOTOR_ON, state); PC_ST(tree_drive_rows, n, MOTOR_STIFFNESS, stiffness);
+  PC_ST(tree_drive_rows, n, MOTOR_ON, pc_select(driven, state, on)); PC_ST(tree_drive_rows, n, MOTOR_STIFFNESS, stiffness);
   precise Real pull = stiffness * beyond - state * most; return pull;
 }
 // D with what only damps in it, all axes at once and so without any of the joint's: drive_terms.inl's sigma as a matrix, y^2 (1 + y^2)^-1 with y = h c / m.
@@ -55,7 +57,7 @@ PC_FN Driven pc_with_motor(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose, Mask dr
     precise Real pull = r.push + r.gamma * PC_LD(tree_drive_rows, n, DRIVE_RATE + i);
     freedom = pc_sym_outer(freedom, axis, pc_select(driven, r.gamma, zero)); push = pc_madd(push, axis, pull);
     if (i == 0u) {
-      Real motor = pc_motor_push(PC_PASS n, axis, loose, answer); push = pc_madd(push, axis, motor);
+      Real motor = pc_motor_push(PC_PASS n, axis, loose, answer, driven); push = pc_madd(push, axis, motor);
       freedom = pc_sym_outer(freedom, axis, pc_select(driven, PC_LD(tree_drive_rows, n, MOTOR_STIFFNESS), zero));
     }
   }

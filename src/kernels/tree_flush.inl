@@ -20,6 +20,22 @@ PC_FN void pc_flush_node(PC_IO Slot m, Tree t, uint k) {
   for (uint i = 0u; i < 4u; i++) PC_SCATTER(node_pending, row, i, none);
 }
 
+// A blow is no acceleration (half_changes.inl): what it changes, by more than twice what gravity does, counts as if it had been there before. Bodies
+// that joints hand it on to know nothing of a contact.
+PC_FN void pc_pass_blow(PC_IO Slot n) {
+  Index body = PC_ENDS(tree_ends, n, 0u);
+  Vec3 change = pc_ld3_tree(PC_PASS n, TREE_X);
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  precise Real twice = PC_INFO(h) * PC_REAL(2.0);
+  Vec3 forced = pc_scale(gravity, twice);
+  Quad linear = PC_GATHER(velocity_parts, body, 0u);
+  Quad angular = PC_GATHER(velocity_parts, body, 1u);
+  Mask blown = pc_and(pc_dot(change, change) > pc_dot(forced, forced), PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
+  Vec3 turned = pc_scale(pc_ld3_tree(PC_PASS n, TREE_CHANGE), PC_LD(tree_rows, n, TREE_TOTAL));
+  PC_SCATTER_IF(blown, velocity_parts, body, 0u, pc_quad(pc_add(linear.v, change), linear.s));
+  PC_SCATTER_IF(blown, velocity_parts, body, 1u, pc_quad(pc_add(angular.v, turned), angular.s));
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
   PC_ALL(k, 0u, t) {
@@ -30,4 +46,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   Real share = pc_inverse_or_zero(PC_LD(tree_rows, root, TREE_TOTAL));
   pc_tree_add_changes(PC_PASS m, t, pc_scale(push, share), pc_scale(turn, share));
+  PC_NODES(k, 0u, t) pc_pass_blow(PC_PASS PC_NODE(m, t.first + k));
 }

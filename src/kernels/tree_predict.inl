@@ -2,17 +2,29 @@
 #include "free_rotation.inl"
 #include "tree_swing.inl"
 
+// How much of the sub-step a body is seen ahead: until it has turned by `most` [rad]. Rates of what comes later are those of until then.
+PC_FN Real pc_seen_ahead(PC_IO Vec3 spin, Real most) {
+  precise Real turn = pc_length(spin) * PC_INFO(h);
+  return pc_select(turn > most, pc_div(most, pc_max(turn, most)), PC_REAL(1.0));
+}
+// How fast an arm of a node moves until then, as a mean.
+PC_FN Vec3 pc_swing_rate(PC_IO Slot n, Vec3 arm, Real most) {
+  precise Real rate = PC_INFO(inverse_h) * pc_inverse_or_zero(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most));
+  return pc_scale(pc_swing(PC_PASS n, arm), rate);
+}
+
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
-PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted) {
+PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted, Real most) {
   Real h = PC_INFO(h);
   PC_MEET;
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
     Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
     Quad moments = pc_quad(pc_ld3_tree(PC_PASS n, TREE_MOMENTS), PC_LD(tree_rows, n, TREE_MOMENTS + 3u));
+    precise Real time = h * pc_seen_ahead(PC_PASS pc_angular_velocity(b), most);
     Quaternion turn = pc_quaternion(pc_zero3(), PC_REAL(0.0)); precise Real spin = pc_abs(b.l.x) + pc_abs(b.l.y) + pc_abs(b.l.z); Mask turns = pc_nonzero(spin);
     if (PC_ANY(turns)) {  // lint: allow (other lanes keep what they have)
-      Quaternion spun = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, h), pc_conjugate(q)); turn = pc_quaternion(pc_select3(turns, spun.v, turn.v), pc_select(turns, spun.w, turn.w));
+      Quaternion spun = pc_quaternion_mul(pc_free_rotation(q, b.l, moments, time), pc_conjugate(q)); turn = pc_quaternion(pc_select3(turns, spun.v, turn.v), pc_select(turns, spun.w, turn.w));
     }
     pc_st3_tree(PC_PASS n, TREE_TURN, pc_select3(wanted, turn.v, pc_ld3_tree(PC_PASS n, TREE_TURN))); PC_ST(tree_rows, n, TREE_TURN + 3u, pc_select(wanted, turn.w, PC_LD(tree_rows, n, TREE_TURN + 3u)));
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(b.v, pc_angular_velocity(b)));
@@ -27,14 +39,14 @@ PC_FN void pc_pivot_residual(PC_IO Slot m, Tree t) {
   Vec3 c = pc_add(b.v, pc_cross(w, pc_ld3_tree(PC_PASS n, TREE_RC))); precise Real noise = pc_length(b.v) * PC_INFO(rounding);
   pc_st3_tree(PC_PASS n, TREE_C, pc_select3(pc_length(c) > noise, c, pc_zero3()));
 }
-PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted) {
+PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted, Real most) {
   if (pc_is_pivot(PC_PASS t) == 1u) { PC_MEET; PC_ONE pc_pivot_residual(PC_PASS m, t); PC_MEET; return; }
-  pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5));
+  pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5), most);
   PC_MEET;
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    Vec3 moved = pc_sub(pc_swing(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_RC)), pc_swing(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_RP)));
-    precise Vec3 c = (pc_ld3_tree(PC_PASS n, TREE_X) - pc_ld3_tree(PC_PASS up, TREE_X)) + moved * PC_INFO(inverse_h);
+    Vec3 moved = pc_sub(pc_swing_rate(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_RC), most), pc_swing_rate(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_RP), most));
+    precise Vec3 c = (pc_ld3_tree(PC_PASS n, TREE_X) - pc_ld3_tree(PC_PASS up, TREE_X)) + moved;
     pc_st3_tree(PC_PASS n, TREE_C, c);
   }
 }

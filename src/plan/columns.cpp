@@ -11,6 +11,8 @@
 namespace pcphys {
 
 namespace {
+constexpr std::uint32_t none = ~0u;
+
 /// How far its mass extends along a direction: twice the radius of gyration for bodies of equal moments, and by the second moment of mass
 /// along the direction, tr(I) / 2 - u I u, for others. A beam that lies is as high as it is thick.
 double size_along(const WorldState& state, std::uint32_t row, Vec3 up) {
@@ -25,7 +27,6 @@ void Columns::list(const WorldState& state, const TreeNodes& trees, Islands& isl
   listed_ = true;
   bodies_.clear();
   columns_.clear();
-  constexpr std::uint32_t none = ~0u;
   column_of_.assign(state.bodies.size(), none);
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
     if (!state.responds(row) || trees.node(row) > 0 || state.asleep(row)) continue;
@@ -53,6 +54,12 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
     std::ranges::fill(column.low, infinite);
     std::ranges::fill(column.high, -infinite);
     column.sizes = 0;
+    column.faces = false;
+  }
+  for (std::uint32_t contact = 1; contact < state.contact_rows(); contact++) {
+    if (state.tables.get(Buffer::contact, contact, 3) < 2) continue;
+    for (const std::uint32_t body : state.contacts.ends[contact])
+      if (state.responds(body) && column_of_[islands.root(body)] != none) columns_[column_of_[islands.root(body)]].faces = true;
   }
   const Vec3 up = (-1 / g) * state.gravity;
   const Vec3 beside = std::fabs(up.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -74,6 +81,7 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
     if (const std::uint8_t octave = octave_for(share, aim, highest_octave); octave > 0) wanted.push_back({root, octave, true});
   };
   for (const Column& column : columns_) {
+    if (!column.faces) continue;
     const double size = column.sizes / column.bodies, height = column.extent(0),
                  high = std::min(height / size, double(column.bodies));
     const double wide = std::max(column.extent(1), column.extent(2)) + size;

@@ -30,6 +30,7 @@ class Columns {
     std::uint32_t root;  // of its island
     std::uint32_t bodies = 0;
     double sizes = 0;            // sum over its bodies of their size along gravity [m]
+    bool faces = false;          // some contact of it has several points, so that something may stand on something
     double low[3]{}, high[3]{};  // along three axes, the first of which leads up [m]
     double extent(int axis) const { return high[axis] - low[axis]; }
   };

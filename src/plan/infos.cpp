@@ -68,6 +68,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
                                      constants::loop_roundings * epsilon));
   biased.cross_share = Scalar(constants::cross_share);
+  biased.seen_turn = Scalar(constants::seen_turn);
+  biased.strayed_turn = Scalar(constants::strayed_turn);
   biased.row_mass_most = Scalar(constants::row_mass_most);
   biased.kept_turn = Scalar(constants::kept_turn);
   biased.idle_speed = Scalar(constants::idle_speed);
@@ -96,6 +98,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
     info.kept_turn = 0;
   };
   change(Phase::first, from.last_substep > 0 ? from.last_substep : from.h, h);
+  infos[unsigned(Phase::first)].begins = 1;
   change(Phase::last, h, from.h);
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];

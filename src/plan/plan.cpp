@@ -11,6 +11,10 @@
 
 namespace pcphys {
 namespace {
+/// Of Detector::meet.
+constexpr Access collide_accesses[] = {
+    {Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, false}, {Buffer::contact, true}};
+
 
 /// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
 class Builder {
@@ -36,6 +40,19 @@ class Builder {
     const KernelSchema& k = schema(kernel);
     const Place place = k.stage == Stage::islands ? Place::gl : signature_.places[std::size_t(k.stage)];
     add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses, k.domain);
+  }
+
+  /// The narrow phase of a sub-step, on the host (Detector::meet).
+  void collide(std::uint32_t substep) {
+    for (const Access& a : collide_accesses) bring(a.buffer, Place::cpu, substep);
+    const Phase phase = substep == 0 ? Phase::first : Phase::biased;
+    plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, phase, false, substep, octave_, nullptr, 0});
+    for (const Access& a : collide_accesses) {
+      if (!a.write) continue;
+      overwrite(a.buffer);
+      at(a.buffer).current = {true, false};
+      at(a.buffer).host_wrote = true;
+    }
   }
 
   /// The host's own kernels of a moment of the step, in a sub-step of `count`.
@@ -252,6 +269,8 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
   if (k > 0 && s.rotates) look_at_inertia(b, s, k);
+  if (s.contacts()) b.collide(k);
+  if (s.contacts()) b.kernel(contacts(s).prepare, k == 0 ? Phase::first : Phase::biased, k);
   b.own(Stage::integrate, true, k, count);
   b.own(Stage::joints, false, k, count);
   if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
@@ -319,9 +338,8 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   look_at_drives(b, s, Phase::first, 0);
   b.kernel(with.begin, Phase::first, 0);
   look_at_inertia(b, s, 0);
-  if (s.contacts()) b.kernel(contacts(s).prepare, Phase::first, 0);
   for (std::uint32_t k = 0; k < count; k++) substep(b, s, with, k, count);
-  if (s.contacts() && s.restitution) b.kernel(contacts(s).restitution, Phase::relax, last);
+  if (s.free_contacts && s.restitution) b.kernel(contacts(s).restitution, Phase::relax, last);
   if (s.contacts() && s.touches) b.kernel(contacts(s).touch, Phase::relax, last);
   if (s.contacts()) b.kernel(contacts(s).store, Phase::last, last);
   b.kernel(with.synchronise, Phase::relax, last);
@@ -358,6 +376,7 @@ void label_islands(Builder& b, const StepPlan& plan) {
 }  // namespace
 
 std::span<const Access> accesses(const PlanEntry& entry) {
+  if (entry.kind == PlanEntry::Kind::collide) return collide_accesses;
   return entry.own ? std::span<const Access>(entry.own->accesses) : schema(entry.kernel).accesses;
 }
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }

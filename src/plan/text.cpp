@@ -10,7 +10,8 @@ namespace pcphys {
 const char* name(Integrator integrator) { return integrator == Integrator::seed ? "seed" : "verlet"; }
 const char* name(Place place) { return place == Place::cpu ? "cpu" : "gl"; }
 std::string_view kernel_name(const PlanEntry& entry) {
-  if (entry.kind != PlanEntry::Kind::kernel) return {};
+  if (entry.kind == PlanEntry::Kind::collide) return "manifolds";
+  if (entry.transfers()) return {};
   return entry.own ? std::string_view(entry.own->name) : schema(entry.kernel).name;
 }
 namespace {
@@ -23,9 +24,10 @@ std::string_view buffer_name(Buffer buffer, const OwnKernel* user) {
 }
 }  // namespace
 std::string_view buffer_name(const PlanEntry& entry) {
-  return entry.kind == PlanEntry::Kind::kernel ? std::string_view() : buffer_name(entry.buffer, entry.own);
+  return entry.transfers() ? buffer_name(entry.buffer, entry.own) : std::string_view();
 }
 std::string_view stage_name(const PlanEntry& entry) {
+  if (entry.kind == PlanEntry::Kind::collide) return "collide";
   return entry.kind == PlanEntry::Kind::kernel ? name(stage(entry)) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
@@ -36,7 +38,7 @@ std::string_view phase_name(const PlanEntry& entry) {
 namespace {
 std::vector<std::string_view> accessed(const PlanEntry& entry, bool write) {
   std::vector<std::string_view> names;
-  if (entry.kind != PlanEntry::Kind::kernel) return names;
+  if (entry.transfers()) return names;
   for (const Access& a : accesses(entry))
     if (a.write == write) names.push_back(buffer_name(a.buffer, entry.own));
   return names;
@@ -54,7 +56,8 @@ std::vector<std::string_view> writes(const PlanEntry& entry) { return accessed(e
 
 TransferBytes transfer_bytes(const StepPlan& plan) {
   TransferBytes all;
-  for (const PlanEntry& e : plan.entries) (e.kind == PlanEntry::Kind::upload ? all.up : all.down) += e.bytes;
+  for (const PlanEntry& e : plan.entries)
+    if (e.transfers()) (e.kind == PlanEntry::Kind::upload ? all.up : all.down) += e.bytes;
   return all;
 }
 
@@ -69,7 +72,7 @@ std::string to_text(const StepPlan& plan) {
     pad(line, 14);
     line += stage_name(e);
     pad(line, 25);
-    if (e.kind == PlanEntry::Kind::kernel) {
+    if (!e.transfers()) {
       line += kernel_name(e);
       pad(line, 46);
       line += phase_name(e);

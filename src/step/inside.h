@@ -34,7 +34,7 @@
 
 namespace pcphys {
 
-struct Stepper::Inside {
+struct Stepper::Inside final : Collider {
   using Clock = std::chrono::steady_clock;
   static constexpr int most_tries = 8;
 
@@ -75,6 +75,9 @@ struct Stepper::Inside {
   ForceJumps jumps;
   StepPlan no_plan;
   Clock::time_point began;
+  // of the sub-step in hand: rows of contacts, the block of each so many of them, and the blocks of some
+  std::vector<std::uint32_t> to_meet, blocks, some;
+  std::vector<Range> renewed, struck;
 
   void lap(Timer timer) {
     if (!settings.timings) return;
@@ -105,6 +108,41 @@ struct Stepper::Inside {
   const void* fill(const WorldState& s, double h) {
     return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0),
                       octaves_of(octaves.used()));
+  }
+
+  void collide(WorldState& s, unsigned octave, bool first, double h) override {
+    const std::uint32_t width = schedule.contacts.width();
+    to_meet.clear();
+    blocks.clear();
+    for (const Range& range : schedule.contacts.ranges(octave))
+      for (std::uint32_t block = range.begin; block < range.end; block++) {
+        const auto rows = schedule.contacts.order().begin() + block * width;
+        to_meet.insert(to_meet.end(), rows, rows + width);
+        blocks.push_back(block);
+      }
+    detector.meet(s, to_meet, octave, first, h, detection());
+    blocks_of(detector.renewed(), renewed);
+    blocks_of(detector.struck(), struck);
+  }
+  bool waits() const override { return detector.waits(); }
+  void collide_again(WorldState& s, unsigned octave, bool last, double h) override {
+    detector.meet_again(s, to_meet, octave, last, h, detection());
+    blocks_of(detector.renewed(), renewed);
+    blocks_of(detector.struck(), struck);
+  }
+  std::span<const Range> renewed_blocks() const override { return renewed; }
+  std::span<const Range> struck_blocks() const override { return struck; }
+  /// Of places in `to_meet`.
+  void blocks_of(std::span<const std::uint32_t> places, std::vector<Range>& ranges) {
+    const std::uint32_t width = schedule.contacts.width();
+    some.assign(places.begin(), places.end());
+    for (std::uint32_t& place : some) place /= width;
+    std::ranges::sort(some);
+    ranges.clear();
+    for (const std::uint32_t place : some) {
+      const std::uint32_t block = blocks[place];
+      if (ranges.empty() || block >= ranges.back().end) ranges.push_back({block, block + 1});
+    }
   }
 
   Status prepare(Precision precision) {
@@ -158,7 +196,8 @@ struct Stepper::Inside {
       freeze(s);
       update_structure(s);
     }
-    record_events(s, dt);
+    record_events(s);
+    detector.let_go(s);
     if (settings.sleep) let_sleep(s, dt);
     ForceJumps::forget(own.ordered());
     recorder.follow_sleep(settings, s);
@@ -166,10 +205,10 @@ struct Stepper::Inside {
     return ok;
   }
 
-  void record_events(const WorldState& s, double dt) {
+  void record_events(const WorldState& s) {
     if (!EventRecorder::wanted(settings)) return;
     const AlignedBytes* poses = plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
-    recorder.record(settings, s, {poses, runner.before(Buffer::motion), dt}, schedule.moving_bodies());
+    recorder.record(settings, s, {poses, detector.origins()}, schedule.moving_bodies());
   }
 
   /// The step was made: what is at rest may fall asleep.
@@ -254,7 +293,7 @@ struct Stepper::Inside {
       const auto apart = tears.apart(s);
       detector.let_through(apart);
       report.let_through = std::uint32_t(apart.size());
-      if (ok = detector.find_contacts(s, dt, detection(), found); !ok) return undo(s, ok);
+      if (ok = detector.find_contacts(s, detection(), found); !ok) return undo(s, ok);
       lap(Timer::narrow);
       if (detector.touched().empty()) return {};
       runner.keep(s, Buffer::rest);
@@ -276,7 +315,7 @@ struct Stepper::Inside {
   /// And order, of each island, in which kernels then go.
   void choose_substeps(WorldState& s, double dt, const Detector::Found& found) {
     choose_order(fourth, s, schedule.trees, dt);
-    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces(), fourth.trees(),
+    if (octaves.choose(s, schedule.trees.forest(), schedule.trees.nodes(), found.faces, fourth.trees(),
                        own.kernels().pairs_of_bodies(), settings, dt) ||
         other)
       schedule.group(octaves.of_bodies());
@@ -316,7 +355,7 @@ struct Stepper::Inside {
     if (plan->flight && settings.body_events) recorder.keep_poses(s);
     ran = true;
     runner.watch(watched);
-    if (ok = runner.run(s, schedule, fill(s, h), report); !ok) return undo(s, ok);
+    if (ok = runner.run(s, schedule, fill(s, h), report, this); !ok) return undo(s, ok);
     if (wanted.islands && !schedule.islands.take())
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "

@@ -19,6 +19,7 @@ Timer timer_of(Stage stage) {
   return timers[std::size_t(stage)];
 }
 Timer timer_of(const PlanEntry& entry) {
+  if (entry.kind == PlanEntry::Kind::collide) return Timer::narrow;
   if (entry.kind == PlanEntry::Kind::upload) return Timer::upload;
   if (entry.kind == PlanEntry::Kind::download) return Timer::download;
   return timer_of(stage(entry));
@@ -44,6 +45,9 @@ std::uint32_t left_quad() {
   static const std::uint32_t quad = quad_of("some_left");
   return quad;
 }
+
+bool prepares(Kernel k) { return k == Kernel::contact_prepare || k == Kernel::contact_prepare_frictionless; }
+bool strikes(Kernel k) { return k == Kernel::contact_impact || k == Kernel::contact_impact_frictionless; }
 
 }  // namespace
 
@@ -207,6 +211,13 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
   return at(place).backend->width_for(domain, side_by_side(domain, schedule));
 }
 
+/// Rows that stand need not be made, and what has no impact no look at one: on the host such runs go over the blocks of the others.
+void Runner::narrow(const PlanEntry& entry) {
+  if (entry.place != Place::cpu || entry.own) return;
+  const bool prepare = prepares(entry.kernel) && entry.phase != Phase::first, strike = strikes(entry.kernel);
+  if (prepare || strike) narrowed_.push_back({std::uint32_t(runs_.size()) - 1, strike});
+}
+
 /// Empty ranges are left out, and those that need not follow one another are joined.
 void Runner::add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule) {
   if (entry.own) return add_own(entry, state, schedule);
@@ -256,7 +267,9 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
   calls_.clear();
   runs_.clear();
   ranges_.clear();
+  narrowed_.clear();
   const PlanEntry* before = nullptr;
+  std::size_t collides = 0;  // the call
   for (const PlanEntry& entry : plan.entries) {
     const bool kernel = entry.kind == PlanEntry::Kind::kernel;
     const bool clocked = timings && before && (timer_of(*before) != timer_of(entry) || before->place != entry.place);
@@ -266,9 +279,15 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
     const bool joins = kernel && !traced && before && before->kind == PlanEntry::Kind::kernel && before->place == entry.place &&
                        before->again == 0 && entry.again == 0 && !clocked && !plan.flight && !(gl_ && entry.place == Place::cpu);
     if (!joins) calls_.push_back({&entry, std::uint32_t(runs_.size()), 0, false});
+    if (entry.kind == PlanEntry::Kind::collide) {
+      collides = calls_.size() - 1;
+      calls_.back().narrowed = std::uint32_t(narrowed_.size());
+    }
     if (kernel) {
       add_run(entry, state, schedule);
       calls_.back().count++;
+      narrow(entry);
+      if (!narrowed_.empty()) calls_[collides].narrowed_count = std::uint32_t(narrowed_.size()) - calls_[collides].narrowed;
     }
     before = &entry;
   }
@@ -291,7 +310,7 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
     if (keeps(buffer)) kept_.push_back(buffer);
 }
 
-Status Runner::kernels(const Call& call, WorldState& state) {
+Status Runner::kernels(const Call& call, WorldState& state, const void* infos) {
   const PlanEntry& entry = *call.entry;
   const std::span<const KernelRun> runs(runs_.data() + call.first, call.count);
   Backend& backend = *at(entry.place).backend;
@@ -313,10 +332,36 @@ Status Runner::kernels(const Call& call, WorldState& state) {
   for (std::uint32_t i = 0; i < entry.again; i++) {
     const Result<bool> more = backend.take_flag(flag, struck_quad());
     if (!more) return more.error();
-    if (!*more) break;
+    const bool looks = collider_ && strikes(entry.kernel);
+    if (!*more && !(looks && collider_->waits())) break;
+    if (looks)
+      if (Status ok = collide_again(entry, i + 1 == entry.again, state, infos, runs[0]); !ok) return ok;
     if (Status ok = backend.run(runs); !ok) return ok;
   }
   return {};
+}
+
+/// What impacts have sent elsewhere may meet others there: contacts that act from now on have their rows made.
+Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos, const KernelRun& impacts) {
+  Backend& backend = *at(entry.place).backend;
+  if (entry.place == Place::gl)
+    for (const Buffer buffer : {Buffer::pose, Buffer::motion, Buffer::delta})
+      if (Status ok = backend.download(buffer); !ok) return ok;
+  PlanEntry biased = entry;
+  biased.phase = Phase::biased;
+  collider_->collide_again(state, entry.octave, last, substep_of(biased, infos, state.tables.precision()));
+  if (entry.place == Place::gl)
+    for (const Buffer buffer : {Buffer::contact, Buffer::delta})
+      if (Status ok = backend.upload(buffer); !ok) return ok;
+  const bool frictionless = entry.kernel == Kernel::contact_impact_frictionless;
+  KernelRun prepare = impacts;
+  prepare.kernel = frictionless ? Kernel::contact_prepare_frictionless : Kernel::contact_prepare;
+  prepare.barrier = true;
+  prepare.info = std::uint32_t(info_index(biased));
+  if (entry.place == Place::cpu) prepare.ranges = collider_->renewed_blocks();
+  for (const Narrowed& n : narrowed_)  // other ones than those of the sweep before
+    if (n.struck && &runs_[n.run] == &impacts) runs_[n.run].ranges = collider_->struck_blocks();
+  return backend.run(std::span(&prepare, 1));
 }
 
 Status Runner::run_watched(Place place, std::span<const KernelRun> runs, WorldState& state) {
@@ -334,9 +379,23 @@ Status Runner::run_watched(Place place, std::span<const KernelRun> runs, WorldSt
   return {};
 }
 
-Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report) {
+double Runner::substep_of(const PlanEntry& entry, const void* infos, Precision precision) const {
+  const std::size_t index = info_index(entry);
+  if (precision == Precision::f64) return static_cast<const InfoOf<double>*>(infos)[index].h;
+  return double(static_cast<const InfoOf<float>*>(infos)[index].h);
+}
+
+Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
   const PlanEntry& entry = *call.entry;
-  if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state);
+  if (entry.kind == PlanEntry::Kind::collide) {
+    if (!collider_) return {};  // the table holds what was found
+    collider_->collide(state, entry.octave, entry.substep == 0, substep_of(entry, infos, state.tables.precision()));
+    if (gl_) state.tables.touch(Buffer::contact);
+    for (const Narrowed& n : std::span(narrowed_).subspan(call.narrowed, call.narrowed_count))
+      runs_[n.run].ranges = n.struck ? collider_->struck_blocks() : collider_->renewed_blocks();
+    return {};
+  }
+  if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state, infos);
   if (entry.kind == PlanEntry::Kind::download) return transfer(entry, state, report);
   return upload(entry.buffer, state, schedule, report);
 }
@@ -357,8 +416,9 @@ Status Runner::keep_left(WorldState& state) {
   return {};
 }
 
-Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
+Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider) {
   left_ = false;
+  collider_ = collider;
   if (!fetched_) return std::exchange(fetched_, Status{});
   if (state.tables.kept())  // by this device or another stepper's
     for (const PlanBinding& b : bound_.plan->bindings)
@@ -374,7 +434,7 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
   Clock::time_point began;
   if (bound_.timings) began = Clock::now();
   for (const Call& c : calls_) {
-    if (Status ok = call(c, state, schedule, report); !ok) return ok;
+    if (Status ok = call(c, state, schedule, infos, report); !ok) return ok;
     if (c.ends) tracer_.substep({state, schedule, *bound_.plan, *c.entry, *at(Place::cpu).backend}, infos, info_index(*c.entry));
     if (!c.last) continue;
     if (gl_)

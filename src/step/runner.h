@@ -16,6 +16,20 @@
 
 namespace pcphys {
 
+/// The narrow phase of a sub-step.
+class Collider {
+ public:
+  virtual ~Collider() = default;
+  /// Of islands of one level, in a sub-step of h [s]; `first`: of the step.
+  virtual void collide(WorldState& state, unsigned octave, bool first, double h) = 0;
+  /// Once more, where impacts have sent bodies elsewhere since, or waited for others; `last`: for the last time in the sub-step.
+  virtual void collide_again(WorldState& state, unsigned octave, bool last, double h) = 0;
+  virtual bool waits() const = 0;
+  /// Blocks of contacts, whose rows it has made other than they were in the sub-step before; and blocks with impacts.
+  virtual std::span<const Range> renewed_blocks() const = 0;
+  virtual std::span<const Range> struck_blocks() const = 0;
+};
+
 class Runner final : Keeper {
  public:
   Runner() = default;
@@ -30,7 +44,7 @@ class Runner final : Keeper {
   /// the last step, that step's bindings stand. The plan stays where it is until another one is bound.
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
   /// Runs the plan that was bound.
-  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
+  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider = nullptr);
   /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others is an error
   /// (check_written).
   void watch(bool kernels) { watched_ = kernels; }
@@ -100,6 +114,11 @@ class Runner final : Keeper {
     std::uint32_t first = 0, count = 0;
     bool last = false;  // of a stage that is clocked
     bool ends = false;  // a sub-step
+    std::uint32_t narrowed = 0, narrowed_count = 0;  // of a collide entry: runs that go over some blocks alone
+  };
+  struct Narrowed {
+    std::uint32_t run;
+    bool struck;  // over blocks with impacts; else over renewed ones
   };
 
   void fetch(Buffer buffer) override;
@@ -115,9 +134,12 @@ class Runner final : Keeper {
   /// Finds calls_, and what undo must find.
   void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
+  void narrow(const PlanEntry& entry);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
-  Status call(const Call& call, WorldState& state, const Schedule& schedule, StepReport& report);
-  Status kernels(const Call& call, WorldState& state);
+  Status call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
+  double substep_of(const PlanEntry& entry, const void* infos, Precision precision) const;
+  Status kernels(const Call& call, WorldState& state, const void* infos);
+  Status collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos, const KernelRun& impacts);
   Status keep_left(WorldState& state);
   Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
   bool keeps(Buffer buffer) const;
@@ -143,6 +165,8 @@ class Runner final : Keeper {
   bool left_ = false;           // see `left`
   bool watched_ = false;
   Tracer tracer_;
+  Collider* collider_ = nullptr;  // of the step
+  std::vector<Narrowed> narrowed_;
 };
 
 }  // namespace pcphys

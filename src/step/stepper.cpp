@@ -85,7 +85,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   wanted.free_contacts = wanted.shapes && (wanted.bodies || !wanted.sleepers);
   wanted.tree_contacts = wanted.free_contacts && wanted.trees;
   wanted.friction = detector.may_resist(world.state());
-  wanted.restitution = wanted.impacts = detector.may_bounce(world.state());
+  wanted.restitution = detector.may_bounce(world.state());
+  wanted.impacts = wanted.free_contacts;
   wanted.rolling = detector.may_resist_rolling(world.state());
   wanted.touches = wanted.contact_events && wanted.contacts();
   FourthOrder order;

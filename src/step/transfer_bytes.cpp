@@ -19,12 +19,12 @@ std::size_t table_bytes(Buffer buffer, const WorldState& state, const Schedule& 
 }  // namespace
 
 void measure_transfers(StepPlan& plan, const WorldState& state, Schedule& schedule) {
-  if (std::ranges::all_of(plan.entries, [](const PlanEntry& e) { return e.kind == PlanEntry::Kind::kernel; })) return;
+  if (std::ranges::all_of(plan.entries, [](const PlanEntry& e) { return !e.transfers(); })) return;
   schedule.update_contacts(state);
   for (const PlanBinding& b : plan.bindings)
     if (b.place == Place::gl) pack(b.domain, gl_width_for(b.domain, side_by_side(b.domain, schedule)), schedule);
   for (PlanEntry& entry : plan.entries) {
-    if (entry.kind == PlanEntry::Kind::kernel) continue;
+    if (!entry.transfers()) continue;
     const std::vector<std::uint32_t>* list = list_of(entry.buffer, schedule);
     entry.bytes = list ? list->size() * sizeof(std::uint32_t) : table_bytes(entry.buffer, state, schedule);
   }
