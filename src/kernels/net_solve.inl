@@ -1,0 +1,253 @@
+// Springs between points, all of a net at once, implicit in the lengths that they will have at the end of the sub-step.
+//
+// A spring gives half of its impulse before the bodies move and half after (net_settle), as the implicit midpoint rule does:
+//   F = -h (k (x + (1 + beta) (x' - x) / 2) + c (x' - x) / h) n,   n = (D + D') / (|D| + |D'|)
+// with D, D' the lines between its points before and after, x, x' how much longer they are than at rest. F n is then a discrete
+// gradient (O. Gonzalez, J. Nonlinear Sci. 6, 1996): what it does in the sub-step is k (x^2 - x'^2) / 2 to rounding, at any h, less
+// k beta (x' - x)^2 / 2, and it exerts no couple. beta is 0 where the sub-step resolves the spring and 1 where it does not.
+// (1 + beta) / 2 of F come before the bodies move.
+//
+// Newton's method for the lengths; its linear systems, (1 + h R A R) y = R^-1 (what the impulses lack) with R^2 the impulse per
+// length and A how the bodies answer, are positive and are solved by conjugate gradients, prepared by each spring's own block.
+// They conserve both momenta however far they came; what is left open net_settle accounts for.
+#include "net_rows.inl"
+#include "free_rotation.inl"
+
+// One body as it would stand at the end of the sub-step.
+PC_FN void pc_net_foresee(PC_IO Slot b, Index row) {
+  Quad turned = PC_GATHER(pose, row, 1u);
+  Quad moments = PC_GATHER(mass, row, 1u);
+  Real h = PC_INFO(h);
+  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), PC_LD(net_rows, b, NET_MASS));
+  Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+  Quaternion q = pc_quaternion(turned.v, turned.s);
+  Quaternion turn = pc_quaternion_mul(pc_free_rotation(q, l, moments, h), pc_conjugate(q));
+  precise Real w = turn.w + PC_REAL(1.0);
+  pc_st3_net(PC_PASS b, NET_STEP, pc_scale(v, h));
+  pc_st3_net(PC_PASS b, NET_TURN, turn.v);
+  PC_ST(net_rows, b, NET_TURN + 3u, w);
+}
+// How far the end of an arm goes against its centre.
+PC_FN Vec3 pc_net_swing(PC_IO Slot b, Vec3 arm) {
+  Vec3 v = pc_ld3_net(PC_PASS b, NET_TURN);
+  Vec3 half_way = pc_cross(v, pc_madd(pc_cross(v, arm), arm, PC_LD(net_rows, b, NET_TURN + 3u)));
+  return pc_scale(half_way, PC_REAL(2.0));
+}
+PC_FN Vec3 pc_net_root(PC_IO Slot s, Vec3 v) {
+  Vec3 axis = pc_ld3_net(PC_PASS s, NET_AXIS);
+  Real across = PC_LD(net_rows, s, NET_ACROSS);
+  precise Real more = (PC_LD(net_rows, s, NET_ALONG) - across) * pc_dot(axis, v);
+  return pc_madd(pc_scale(v, across), axis, more);
+}
+// What the impulse lacks at the foreseen length, its derivative, and what prepares the search. Answers with what is to be added at
+// once: the impulse's turn into the new line, where that is resolved.
+PC_FN Vec3 pc_net_look(PC_IO Slot s, Slot a, Slot b) {
+  Real h = PC_INFO(h);
+  Real zero = PC_REAL(0.0);
+  Vec3 line = pc_ld3_net(PC_PASS s, NET_LINE);
+  Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+  Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+  Real length = PC_LD(net_rows, s, NET_LENGTH);
+  Real stiffness = PC_LD(net_rows, s, NET_STIFFNESS);
+  Real damping = PC_LD(net_rows, s, NET_DAMPING);
+  Vec3 apart = pc_sub(pc_ld3_net(PC_PASS b, NET_STEP), pc_ld3_net(PC_PASS a, NET_STEP));
+  Vec3 swung = pc_sub(pc_net_swing(PC_PASS b, rb), pc_net_swing(PC_PASS a, ra));
+  Vec3 then = pc_add(line, pc_add(apart, swung));
+  Real long_then = pc_length(then);
+  precise Real both = length + long_then;
+  Real inverse_both = pc_inverse_or_zero(both);
+  Vec3 n = pc_scale(pc_add(line, then), inverse_both);
+  Real n_size = pc_length(n);
+  Vec3 axis = pc_scale(n, pc_inverse_or_zero(n_size));
+  precise Real share = PC_LD(net_rows, s, NET_LATE) * PC_REAL(0.5) + PC_REAL(0.5);
+  precise Real longer = long_then - length;
+  precise Real away = (length - PC_LD(net_rows, s, NET_REST)) + share * longer;
+  precise Real time = h * share;
+  precise Real elastic = stiffness * away * time;
+  precise Real viscous = damping * longer * share;
+  precise Real wanted = -(elastic + viscous);
+  precise Real along = time * stiffness * share + damping * share;
+  precise Real pull = (elastic + viscous) * inverse_both;
+  Real across = pc_clamp(pull, zero, along);
+  Sym3 answer = pc_net_answer(PC_PASS a, b, ra, rb);
+  precise Real free = (PC_LD(net_rows, a, NET_MASS) + PC_LD(net_rows, b, NET_MASS)) * h;
+  precise Real felt = across * free;
+  Real root = pc_select(felt > PC_REAL(1e-3), pc_sqrt(across), zero);
+  Vec3 lack = pc_sub(pc_scale(n, wanted), pc_ld3_net(PC_PASS s, NET_IMPULSE));
+  Real lack_along = pc_dot(axis, lack);
+  Vec3 lack_across = pc_madd(lack, axis, -lack_along);
+  Real root_along = pc_sqrt(along);
+  precise Real y_along = lack_along * pc_inverse_or_zero(root_along);
+  Mask searched = root > zero;
+  Vec3 y_across = pc_scale(lack_across, pc_inverse_or_zero(root));
+  pc_st3_net(PC_PASS s, NET_AXIS, axis);
+  PC_ST(net_rows, s, NET_ALONG, root_along);
+  PC_ST(net_rows, s, NET_ACROSS, root);
+  pc_st3_net(PC_PASS s, NET_LACK, pc_madd(y_across, axis, y_along));
+  pc_st3_net(PC_PASS s, NET_FOUND, pc_zero3());
+  // 1 + h R A R
+  Vec3 x = pc_net_root(PC_PASS s, Vec3(PC_REAL(1.0), zero, zero));
+  Vec3 y = pc_net_root(PC_PASS s, Vec3(zero, PC_REAL(1.0), zero));
+  Vec3 z = pc_net_root(PC_PASS s, Vec3(zero, zero, PC_REAL(1.0)));
+  Vec3 ax = pc_sym_mul(answer, x);
+  Vec3 ay = pc_sym_mul(answer, y);
+  Vec3 az = pc_sym_mul(answer, z);
+  precise Real xx = pc_dot(x, ax) * h + PC_REAL(1.0);
+  precise Real xy = pc_dot(x, ay) * h;
+  precise Real xz = pc_dot(x, az) * h;
+  precise Real yy = pc_dot(y, ay) * h + PC_REAL(1.0);
+  precise Real yz = pc_dot(y, az) * h;
+  precise Real zz = pc_dot(z, az) * h + PC_REAL(1.0);
+  Sym3 block;
+  block.xx = xx;
+  block.xy = xy;
+  block.xz = xz;
+  block.yy = yy;
+  block.yz = yz;
+  block.zz = zz;
+  pc_sts_net(PC_PASS s, NET_BLOCK, pc_sym_inverse(block));
+  return pc_select3(searched, pc_zero3(), lack_across);
+}
+// Applies impulses to a spring and its bodies.
+PC_FN void pc_net_give(PC_IO Slot s, Slot a, Slot b, Vec3 impulse) {
+  pc_st3_net(PC_PASS s, NET_IMPULSE, pc_add(pc_ld3_net(PC_PASS s, NET_IMPULSE), impulse));
+  pc_net_add(PC_PASS a, b, NET_PUSH, pc_ld3_net(PC_PASS s, NET_ARM_A), pc_ld3_net(PC_PASS s, NET_ARM_B), impulse);
+}
+
+// The image of the search directions; answers with their product with them.
+PC_FN Real pc_net_image(PC_IO Slot m, Net n) {
+  Real h = PC_INFO(h);
+  pc_net_clear(PC_PASS m, n, NET_SUM);
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 impulse = pc_net_root(PC_PASS s, pc_ld3_net(PC_PASS s, NET_WAY));
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_SUM, ra,
+               pc_ld3_net(PC_PASS s, NET_ARM_B), impulse);
+  }
+  pc_net_rates(PC_PASS m, n, NET_SUM);
+  Real product = PC_REAL(0.0);
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
+    Vec3 way = pc_ld3_net(PC_PASS s, NET_WAY);
+    Vec3 image = pc_madd(way, pc_net_root(PC_PASS s, rate), h);
+    pc_st3_net(PC_PASS s, NET_IMAGE, image);
+    precise Real sum = product + pc_dot(way, image);
+    product = sum;
+  }
+  return product;
+}
+// Goes on along the search directions by `step`, of the old ones keeps `kept`; answers with the new residual's square.
+PC_FN Real pc_net_square(PC_IO Slot m, Net n, Real step) {
+  Real square = PC_REAL(0.0);
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 lack = pc_madd(pc_ld3_net(PC_PASS s, NET_LACK), pc_ld3_net(PC_PASS s, NET_IMAGE), -step);
+    pc_st3_net(PC_PASS s, NET_FOUND, pc_madd(pc_ld3_net(PC_PASS s, NET_FOUND), pc_ld3_net(PC_PASS s, NET_WAY), step));
+    pc_st3_net(PC_PASS s, NET_LACK, lack);
+    precise Real sum = square + pc_dot(lack, pc_sym_mul(pc_lds_net(PC_PASS s, NET_BLOCK), lack));
+    square = sum;
+  }
+  return square;
+}
+PC_FN void pc_net_turn(PC_IO Slot m, Net n, Real kept) {
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 down = pc_sym_mul(pc_lds_net(PC_PASS s, NET_BLOCK), pc_ld3_net(PC_PASS s, NET_LACK));
+    pc_st3_net(PC_PASS s, NET_WAY, pc_madd(down, pc_ld3_net(PC_PASS s, NET_WAY), kept));
+  }
+}
+PC_FN void pc_net_search(PC_IO Slot m, Net n) {
+  Real zero = PC_REAL(0.0);
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    pc_st3_net(PC_PASS s, NET_IMAGE, pc_zero3());
+    pc_st3_net(PC_PASS s, NET_WAY, pc_zero3());
+  }
+  Real square = pc_net_square(PC_PASS m, n, zero);
+  precise Real enough = square * PC_INFO(net_accuracy);
+  Real kept = zero;
+  for (uint i = 0u; i < PC_COUNT(net_searches); i++) {
+    Mask goes = pc_and(square > enough, square > PC_TINY);
+    if (!PC_ANY(goes)) break;  // lint: allow (steps of those that are done are zero)
+    pc_net_turn(PC_PASS m, n, kept);
+    Real product = pc_net_image(PC_PASS m, n);
+    Real step = pc_select(pc_and(goes, product > PC_TINY), pc_div(square, pc_max(product, PC_TINY)), zero);
+    Real next = pc_net_square(PC_PASS m, n, step);
+    kept = pc_select(goes, pc_div(next, pc_max(square, PC_TINY)), zero);
+    square = next;
+  }
+}
+
+PC_FN void pc_net_begin(PC_IO Slot m, Net n) {
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Index row = pc_net_row(PC_PASS m, n, k);
+    Quad linear = PC_GATHER(motion, row, 0u);
+    Quad angular = PC_GATHER(motion, row, 1u);
+    Quad turned = PC_GATHER(pose, row, 1u);
+    Sym3 inverse = pc_world_inertia(pc_quaternion(turned.v, turned.s), PC_GATHER(mass, row, 1u).v);
+    pc_st3_net(PC_PASS b, NET_VELOCITY, linear.v);
+    pc_st3_net(PC_PASS b, NET_MOMENTUM, angular.v);
+    pc_st3_net(PC_PASS b, NET_SPIN, pc_sym_mul(inverse, angular.v));
+  }
+  pc_net_clear(PC_PASS m, n, NET_PUSH);
+  pc_net_velocities(PC_PASS m, n);
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
+    pc_st3_net(PC_PASS s, NET_NOW, rate);
+    pc_st3_net(PC_PASS s, NET_BEFORE, pc_ld3_net(PC_PASS s, NET_IMPULSE));
+  }
+}
+// What the springs did to the bodies' energy: impulses times the means of the rates before and after them.
+PC_FN void pc_net_count(PC_IO Slot m, Net n) {
+  pc_net_velocities(PC_PASS m, n);
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
+    Vec3 given = pc_sub(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_BEFORE));
+    precise Real work = pc_dot(given, pc_add(rate, pc_ld3_net(PC_PASS s, NET_NOW))) * PC_REAL(0.5);
+    precise Real all = PC_LD(net_rows, s, NET_WORK) + work;
+    PC_ST(net_rows, s, NET_WORK, all);
+  }
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Net n = pc_net(PC_PASS m);
+  pc_net_begin(PC_PASS m, n);
+  for (uint i = 0u; i < PC_COUNT(net_rounds); i++) {
+    for (uint k = 0u; k < n.bodies; k++) pc_net_foresee(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
+    for (uint k = 0u; k < n.springs; k++) {
+      Slot s = pc_net_spring(PC_PASS m, n, k);
+      Slot a = pc_net_end(PC_PASS m, n, k, 0u);
+      Slot b = pc_net_end(PC_PASS m, n, k, 1u);
+      pc_net_give(PC_PASS s, a, b, pc_net_look(PC_PASS s, a, b));
+    }
+    pc_net_search(PC_PASS m, n);
+    for (uint k = 0u; k < n.springs; k++) {
+      Slot s = pc_net_spring(PC_PASS m, n, k);
+      pc_net_give(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u),
+                  pc_net_root(PC_PASS s, pc_ld3_net(PC_PASS s, NET_FOUND)));
+    }
+  }
+  pc_net_count(PC_PASS m, n);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Index row = pc_net_row(PC_PASS m, n, k);
+    Quad linear = PC_GATHER(motion, row, 0u);
+    Quad angular = PC_GATHER(motion, row, 1u);
+    Mask moves = linear.s > PC_REAL(0.0);
+    linear.v = pc_madd(linear.v, pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
+    Vec3 l = pc_add(angular.v, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+    PC_SCATTER_IF(moves, motion, row, 0u, linear);
+    PC_SCATTER_IF(moves, motion, row, 1u, pc_quad(l, angular.s));
+  }
+}
