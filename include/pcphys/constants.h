@@ -156,7 +156,7 @@ inline constexpr double gap_roundings = 1;
 /// in Newton's cradle.
 inline constexpr unsigned impact_sweeps = 8;
 /// Nets of springs (kernels/net_solve.inl): Newton steps of a sub-step, and most search directions in each.
-inline constexpr unsigned net_rounds = 4, net_searches = 40;
+inline constexpr unsigned net_rounds = 12, net_searches = 40;
 /// A Newton step's equations are solved to this many roundings.
 inline constexpr double net_roundings = 10;
 /// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet of what

@@ -4,7 +4,7 @@ const uint NET_VELOCITY = 0u;   // of a body, before the solve; velocity 3, inve
 const uint NET_MASS = 3u;
 const uint NET_MOMENTUM = 4u;   // angular, before the solve
 const uint NET_INERTIA = 8u;    // inverse, 0 where nothing turns the body: xx xy xz yy yz zz
-const uint NET_PUSH = 14u;      // impulse and angular impulse of the springs, of this solve
+const uint NET_PUSH = 14u;      // impulse and angular impulse of the springs, of their first halves
 const uint NET_SUM = 20u;       // the same of a search direction
 const uint NET_RATE = 26u;      // velocities that it makes
 const uint NET_STEP = 32u;      // way of the centre in the sub-step, and its turn
@@ -31,6 +31,11 @@ const uint NET_IMAGE = 36u;
 const uint NET_FOUND = 39u;
 const uint NET_NOW = 42u;       // rates of its ends before the solve; in net_settle its line of now
 const uint NET_BEFORE = 45u;    // its impulse before the solve; in net_settle its second half
+
+const uint NET_TURNED = 48u;    // what the impulse's turn into a new line adds to it
+const uint NET_LEVEL = 51u;     // its part in what the solve lowers (Merit)
+const uint NET_OPEN = 52u;
+const uint NET_GIVEN = 53u;
 
 struct Net { uint first; uint bodies; uint springs; uint links; uint rows; };
 PC_FN Net pc_net(PC_IO Slot m) {

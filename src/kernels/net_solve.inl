@@ -39,9 +39,8 @@ PC_FN Vec3 pc_net_root(PC_IO Slot s, Vec3 v) {
   precise Real more = (PC_LD(net_rows, s, NET_ALONG) - across) * pc_dot(axis, v);
   return pc_madd(pc_scale(v, across), axis, more);
 }
-// What the impulse lacks at the foreseen length, its derivative, and what prepares the search. Answers with what is to be added at
-// once: the impulse's turn into the new line, where that is resolved.
-PC_FN Vec3 pc_net_look(PC_IO Slot s, Slot a, Slot b) {
+// What the impulse lacks at the foreseen length, its derivative, and what prepares the search.
+PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b) {
   Real h = PC_INFO(h);
   Real zero = PC_REAL(0.0);
   Vec3 line = pc_ld3_net(PC_PASS s, NET_LINE);
@@ -84,7 +83,16 @@ PC_FN Vec3 pc_net_look(PC_IO Slot s, Slot a, Slot b) {
   PC_ST(net_rows, s, NET_ALONG, root_along);
   PC_ST(net_rows, s, NET_ACROSS, root);
   pc_st3_net(PC_PASS s, NET_LACK, pc_madd(y_across, axis, y_along));
-  pc_st3_net(PC_PASS s, NET_FOUND, pc_zero3());
+  pc_st3_net(PC_PASS s, NET_TURNED, pc_select3(searched, pc_zero3(), lack_across));
+  Vec3 impulse = pc_ld3_net(PC_PASS s, NET_IMPULSE);
+  precise Real gain = (length - PC_LD(net_rows, s, NET_REST)) + longer * share * PC_REAL(0.5);
+  precise Real level = (time * stiffness * gain * longer + damping * share * longer * longer * PC_REAL(0.5)) * PC_INFO(inverse_h);
+  precise Real trace = answer.xx + answer.yy + answer.zz;
+  precise Real open = pc_dot(lack, lack) * trace;
+  precise Real given = pc_dot(impulse, impulse) * trace;
+  PC_ST(net_rows, s, NET_LEVEL, level);
+  PC_ST(net_rows, s, NET_OPEN, open);
+  PC_ST(net_rows, s, NET_GIVEN, given);
   // 1 + h R A R
   Vec3 x = pc_net_root(PC_PASS s, Vec3(PC_REAL(1.0), zero, zero));
   Vec3 y = pc_net_root(PC_PASS s, Vec3(zero, PC_REAL(1.0), zero));
@@ -106,7 +114,6 @@ PC_FN Vec3 pc_net_look(PC_IO Slot s, Slot a, Slot b) {
   block.yz = yz;
   block.zz = zz;
   pc_sts_net(PC_PASS s, NET_BLOCK, pc_sym_inverse(block));
-  return pc_select3(searched, pc_zero3(), lack_across);
 }
 // Applies impulses to a spring and its bodies.
 PC_FN void pc_net_give(PC_IO Slot s, Slot a, Slot b, Vec3 impulse) {
@@ -160,18 +167,20 @@ PC_FN void pc_net_turn(PC_IO Slot m, Net n, Real kept) {
     pc_st3_net(PC_PASS s, NET_WAY, pc_madd(down, pc_ld3_net(PC_PASS s, NET_WAY), kept));
   }
 }
-PC_FN void pc_net_search(PC_IO Slot m, Net n) {
+// Finds a step, where `wants`.
+PC_FN void pc_net_search(PC_IO Slot m, Net n, Mask wants) {
   Real zero = PC_REAL(0.0);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     pc_st3_net(PC_PASS s, NET_IMAGE, pc_zero3());
     pc_st3_net(PC_PASS s, NET_WAY, pc_zero3());
+    pc_st3_net(PC_PASS s, NET_FOUND, pc_select3(wants, pc_zero3(), pc_ld3_net(PC_PASS s, NET_FOUND)));
   }
   Real square = pc_net_square(PC_PASS m, n, zero);
   precise Real enough = square * PC_INFO(net_accuracy);
   Real kept = zero;
   for (uint i = 0u; i < PC_COUNT(net_searches); i++) {
-    Mask goes = pc_and(square > enough, square > PC_TINY);
+    Mask goes = pc_and(wants, pc_and(square > enough, square > PC_TINY));
     if (!PC_ANY(goes)) break;  // lint: allow (steps of those that are done are zero)
     pc_net_turn(PC_PASS m, n, kept);
     Real product = pc_net_image(PC_PASS m, n);
@@ -179,6 +188,12 @@ PC_FN void pc_net_search(PC_IO Slot m, Net n) {
     Real next = pc_net_square(PC_PASS m, n, step);
     kept = pc_select(goes, pc_div(next, pc_max(square, PC_TINY)), zero);
     square = next;
+  }
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 found = pc_ld3_net(PC_PASS s, NET_FOUND);
+    Vec3 step = pc_add(pc_net_root(PC_PASS s, found), pc_ld3_net(PC_PASS s, NET_TURNED));
+    pc_st3_net(PC_PASS s, NET_FOUND, pc_select3(wants, step, found));
   }
 }
 
@@ -190,11 +205,12 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n) {
     Quad angular = PC_GATHER(motion, row, 1u);
     Quad turned = PC_GATHER(pose, row, 1u);
     Sym3 inverse = pc_world_inertia(pc_quaternion(turned.v, turned.s), PC_GATHER(mass, row, 1u).v);
-    pc_st3_net(PC_PASS b, NET_VELOCITY, linear.v);
-    pc_st3_net(PC_PASS b, NET_MOMENTUM, angular.v);
-    pc_st3_net(PC_PASS b, NET_SPIN, pc_sym_mul(inverse, angular.v));
+    Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
+    Vec3 l = pc_sub(angular.v, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+    pc_st3_net(PC_PASS b, NET_VELOCITY, pc_madd(linear.v, push, -linear.s));
+    pc_st3_net(PC_PASS b, NET_MOMENTUM, l);
+    pc_st3_net(PC_PASS b, NET_SPIN, pc_sym_mul(inverse, l));
   }
-  pc_net_clear(PC_PASS m, n, NET_PUSH);
   pc_net_velocities(PC_PASS m, n);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
@@ -220,23 +236,75 @@ PC_FN void pc_net_count(PC_IO Slot m, Net n) {
   }
 }
 
+// What the solve lowers: the energy of what the impulses change, and what the springs will have been stretched by; with it the square
+// of what the impulses lack, and of the impulses themselves, in the same unit.
+struct Merit { Real level; Real open; Real given; };
+PC_FN Merit pc_net_merit(PC_IO Slot m, Net n) {
+  Merit all;
+  all.level = PC_REAL(0.0);
+  all.open = PC_REAL(0.0);
+  all.given = PC_REAL(0.0);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    pc_net_foresee(PC_PASS b, pc_net_row(PC_PASS m, n, k));
+    Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
+    Vec3 turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
+    Vec3 spin = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), turn);
+    precise Real sum = all.level + (pc_dot(push, push) * PC_LD(net_rows, b, NET_MASS) + pc_dot(turn, spin)) * PC_REAL(0.5);
+    all.level = sum;
+  }
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    pc_net_look(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u));
+    precise Real level = all.level + PC_LD(net_rows, s, NET_LEVEL);
+    precise Real open = all.open + PC_LD(net_rows, s, NET_OPEN);
+    precise Real given = all.given + PC_LD(net_rows, s, NET_GIVEN);
+    all.level = level;
+    all.open = open;
+    all.given = given;
+  }
+  return all;
+}
+// Makes what is given of the found steps another share of them.
+PC_FN void pc_net_shift(PC_IO Slot m, Net n, Real change) {
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 step = pc_scale(pc_ld3_net(PC_PASS s, NET_FOUND), change);
+    pc_net_give(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), step);
+  }
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
+  Real zero = PC_REAL(0.0);
+  Real one = PC_REAL(1.0);
   pc_net_begin(PC_PASS m, n);
-  for (uint i = 0u; i < PC_COUNT(net_rounds); i++) {
-    for (uint k = 0u; k < n.bodies; k++) pc_net_foresee(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
-    for (uint k = 0u; k < n.springs; k++) {
-      Slot s = pc_net_spring(PC_PASS m, n, k);
-      Slot a = pc_net_end(PC_PASS m, n, k, 0u);
-      Slot b = pc_net_end(PC_PASS m, n, k, 1u);
-      pc_net_give(PC_PASS s, a, b, pc_net_look(PC_PASS s, a, b));
-    }
-    pc_net_search(PC_PASS m, n);
-    for (uint k = 0u; k < n.springs; k++) {
-      Slot s = pc_net_spring(PC_PASS m, n, k);
-      pc_net_give(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u),
-                  pc_net_root(PC_PASS s, pc_ld3_net(PC_PASS s, NET_FOUND)));
-    }
+  for (uint k = 0u; k < n.springs; k++) pc_st3_net(PC_PASS pc_net_spring(PC_PASS m, n, k), NET_FOUND, pc_zero3());
+  uint rounds = PC_COUNT(net_rounds);
+  Real share = zero;
+  Real level = zero;
+  Real open = zero;
+  for (uint i = 0u; i < rounds; i++) {
+    Merit now = pc_net_merit(PC_PASS m, n);
+    Mask first = pc_select(PC_IS(i), zero, one) > PC_REAL(0.5);
+    precise Real bound = level + pc_abs(level) * PC_INFO(net_slack);
+    Mask better = pc_or(first, pc_or(now.level < bound, now.open < open));
+    level = pc_select(better, now.level, level);
+    open = pc_select(better, now.open, open);
+    precise Real enough = now.given * PC_INFO(net_accuracy);
+    Mask goes = pc_and(better, now.open > enough);
+    Mask back = pc_select(better, zero, one) > PC_REAL(0.5);
+    if (!PC_ANY(pc_or(goes, back))) break;  // lint: allow (nothing more is found)
+    // a step that led up is made a quarter of it; the last one that may be is taken back
+    Real less = pc_select(PC_IS(rounds - 1u - i), PC_REAL(0.25), zero);
+    precise Real kept = share * less;
+    precise Real change = kept - share;
+    pc_net_shift(PC_PASS m, n, pc_select(back, change, zero));
+    share = pc_select(back, kept, share);
+    if (i + 1u == rounds) break;
+    pc_net_search(PC_PASS m, n, goes);
+    pc_net_shift(PC_PASS m, n, pc_select(goes, one, zero));
+    share = pc_select(goes, one, share);
   }
   pc_net_count(PC_PASS m, n);
   for (uint k = 0u; k < n.bodies; k++) {
@@ -244,9 +312,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Index row = pc_net_row(PC_PASS m, n, k);
     Quad linear = PC_GATHER(motion, row, 0u);
     Quad angular = PC_GATHER(motion, row, 1u);
-    Mask moves = linear.s > PC_REAL(0.0);
-    linear.v = pc_madd(linear.v, pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
-    Vec3 l = pc_add(angular.v, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+    Mask moves = linear.s > zero;
+    linear.v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
+    Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     PC_SCATTER_IF(moves, motion, row, 0u, linear);
     PC_SCATTER_IF(moves, motion, row, 1u, pc_quad(l, angular.s));
   }
