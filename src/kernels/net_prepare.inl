@@ -14,6 +14,7 @@ PC_FN void pc_prepare_body(PC_IO Slot b, Index row) {
   Quad linear = PC_GATHER(motion, row, 0u);
   PC_ST(net_rows, b, NET_MASS, linear.s);
   pc_sts_net(PC_PASS b, NET_INERTIA, pc_net_inertia(pc_quaternion(turned.v, turned.s), inverse.v, linear.s));
+  PC_ST(net_rows, b, NET_MADE, PC_REAL(0.0));
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -54,7 +55,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     PC_ST(net_rows, s, NET_STIFFNESS, drive.v.z);
     PC_ST(net_rows, s, NET_DAMPING, drive.s);
     PC_ST(net_rows, s, NET_LATE, pc_share_beyond(beyond));
-    PC_ST(net_rows, s, NET_WORK, PC_REAL(0.0));
+    pc_st3_net(PC_PASS s, NET_START, ra);
+    pc_st3_net(PC_PASS s, NET_START + 3u, rb);
     pc_st3_net(PC_PASS s, NET_AXIS, axis);
     pc_st3_net(PC_PASS s, NET_IMPULSE, pc_zero3());
   }

@@ -10,10 +10,12 @@ const uint NET_RATE = 26u;      // velocities that it makes
 const uint NET_STEP = 32u;      // way of the centre in the sub-step, and its turn
 const uint NET_TURN = 35u;
 const uint NET_SPIN = 39u;      // angular velocity before the solve
+const uint NET_PUSHED = 42u;    // NET_PUSH before the solve
+const uint NET_MADE = 48u;      // what the first halves did to its energy
 // of a spring
 const uint NET_LINE = 0u;       // from its point of a to that of b, where the sub-step began
 const uint NET_LENGTH = 3u;
-const uint NET_ARM_A = 4u;
+const uint NET_ARM_A = 4u;      // arms at which the first half acts: midway between those of before and after
 const uint NET_REST = 7u;
 const uint NET_ARM_B = 8u;
 const uint NET_STIFFNESS = 11u;
@@ -21,7 +23,6 @@ const uint NET_AXIS = 12u;
 const uint NET_ALONG = 15u;     // roots of the impulse per length along the axis and across it
 const uint NET_ACROSS = 16u;
 const uint NET_LATE = 17u;      // share of the damping by the implicit Euler method, see net_solve
-const uint NET_WORK = 18u;      // of its first half
 const uint NET_DAMPING = 19u;
 const uint NET_IMPULSE = 20u;   // its first half, on b
 const uint NET_BLOCK = 24u;     // what prepares the search: inverse of its own 3 x 3 block
@@ -29,13 +30,16 @@ const uint NET_LACK = 30u;      // residual, search direction, its image, soluti
 const uint NET_WAY = 33u;
 const uint NET_IMAGE = 36u;
 const uint NET_FOUND = 39u;
-const uint NET_NOW = 42u;       // rates of its ends before the solve; in net_settle its line of now
-const uint NET_BEFORE = 45u;    // its impulse before the solve; in net_settle its second half
+const uint NET_NOW = 42u;       // its line after the bodies have moved, and its second half
+const uint NET_SECOND = 45u;
 
 const uint NET_TURNED = 48u;    // what the impulse's turn into a new line adds to it
 const uint NET_LEVEL = 51u;     // its part in what the solve lowers (Merit)
 const uint NET_OPEN = 52u;
 const uint NET_GIVEN = 53u;
+const uint NET_AIM = 54u;       // arms midway of the last step that was taken, of a and b
+const uint NET_MID = 60u;       // and of the one that is looked at
+const uint NET_START = 66u;     // arms where the sub-step began
 
 struct Net { uint first; uint bodies; uint springs; uint links; uint rows; };
 PC_FN Net pc_net(PC_IO Slot m) {

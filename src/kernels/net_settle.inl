@@ -31,13 +31,17 @@ PC_FN void pc_settle_line(PC_IO Slot m, Net n, uint k) {
   Vec3 rb = pc_rotate(pc_quaternion(turn_b.v, turn_b.s), PC_GATHER(joint_frame, joint, 2u).v);
   Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
   Vec3 line = pc_add(apart, pc_sub(rb, ra));
+  // of the first half, whose arms were not those of its line
+  Vec3 shift_a = pc_sub(pc_ld3_net(PC_PASS s, NET_ARM_A), pc_ld3_net(PC_PASS s, NET_START));
+  Vec3 shift_b = pc_sub(pc_ld3_net(PC_PASS s, NET_ARM_B), pc_ld3_net(PC_PASS s, NET_START + 3u));
+  Vec3 lever = pc_add(pc_ld3_net(PC_PASS s, NET_LINE), pc_sub(shift_b, shift_a));
+  pc_st3_net(PC_PASS s, NET_WAY, pc_cross(lever, pc_ld3_net(PC_PASS s, NET_IMPULSE)));
   pc_st3_net(PC_PASS s, NET_ARM_A, ra);
   pc_st3_net(PC_PASS s, NET_ARM_B, rb);
   pc_st3_net(PC_PASS s, NET_NOW, line);
 }
 // The second half.
 PC_FN Vec3 pc_second_half(PC_IO Slot s) {
-  Vec3 before = pc_ld3_net(PC_PASS s, NET_LINE);
   Vec3 line = pc_ld3_net(PC_PASS s, NET_NOW);
   Vec3 first = pc_ld3_net(PC_PASS s, NET_IMPULSE);
   Real length = pc_length(line);
@@ -49,7 +53,7 @@ PC_FN Vec3 pc_second_half(PC_IO Slot s) {
   precise Real more = PC_REAL(1.0) + late;
   precise Real size = pc_dot(axis, first) * pc_div(less, more);
   // not where the spring has shrunk to a point, about which nothing has a lever
-  Vec3 couple = pc_cross(before, first);
+  Vec3 couple = pc_ld3_net(PC_PASS s, NET_WAY);
   Vec3 back = pc_scale(pc_cross(along, couple), inverse);
   Real most = pc_length(first);
   Real backs = pc_length(back);
@@ -62,7 +66,7 @@ PC_FN Real pc_settle_rate(PC_IO Slot m, Net n, uint k) {
   Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
   Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
   Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
-  return pc_dot(rate, pc_ld3_net(PC_PASS s, NET_BEFORE));
+  return pc_dot(rate, pc_ld3_net(PC_PASS s, NET_SECOND));
 }
 // How much the spring stores beyond what it stored.
 PC_FN Real pc_stored_more(PC_IO Slot s) {
@@ -143,22 +147,27 @@ PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
   Real zero = PC_REAL(0.0);
-  for (uint k = 0u; k < n.bodies; k++) pc_settle_body(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
+  Real made = zero;
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    pc_settle_body(PC_PASS b, pc_net_row(PC_PASS m, n, k));
+    precise Real sum = made + PC_LD(net_rows, b, NET_MADE);
+    made = sum;
+  }
   pc_net_clear(PC_PASS m, n, NET_PUSH);
   pc_net_velocities(PC_PASS m, n);
-  Real made = zero;
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     pc_settle_line(PC_PASS m, n, k);
     Vec3 second = pc_second_half(PC_PASS s);
-    pc_st3_net(PC_PASS s, NET_BEFORE, second);
-    precise Real sum = made + PC_LD(net_rows, s, NET_WORK) + pc_stored_more(PC_PASS s) + pc_settle_rate(PC_PASS m, n, k) * PC_REAL(0.5);
+    pc_st3_net(PC_PASS s, NET_SECOND, second);
+    precise Real sum = made + pc_stored_more(PC_PASS s) + pc_settle_rate(PC_PASS m, n, k) * PC_REAL(0.5);
     made = sum;
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_PUSH, pc_ld3_net(PC_PASS s, NET_ARM_A),
-               pc_ld3_net(PC_PASS s, NET_ARM_B), pc_ld3_net(PC_PASS s, NET_BEFORE));
+               pc_ld3_net(PC_PASS s, NET_ARM_B), pc_ld3_net(PC_PASS s, NET_SECOND));
   }
   pc_net_velocities(PC_PASS m, n);
   for (uint k = 0u; k < n.springs; k++) {
@@ -182,7 +191,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     Index joint = pc_net_row(PC_PASS m, n, n.bodies + k);
-    Vec3 all = pc_add(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_BEFORE));
+    Vec3 all = pc_add(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_SECOND));
     Real owes = pc_select(PC_IS(k), zero, pc_snap(pc_max(left, zero)));
     PC_SCATTER(joint_impulse, joint, 0u, pc_quad(pc_snap3(all), zero));
     PC_SCATTER(joint_impulse, joint, 1u, pc_quad(Vec3(owes, zero, zero), zero));

@@ -40,17 +40,24 @@ PC_FN Vec3 pc_net_root(PC_IO Slot s, Vec3 v) {
   return pc_madd(pc_scale(v, across), axis, more);
 }
 // What the impulse lacks at the foreseen length, its derivative, and what prepares the search.
-PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b) {
+// `taken`: share of the step that was found.
+PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
   Real h = PC_INFO(h);
   Real zero = PC_REAL(0.0);
   Vec3 line = pc_ld3_net(PC_PASS s, NET_LINE);
-  Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
-  Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+  Vec3 arm_a = pc_ld3_net(PC_PASS s, NET_START);
+  Vec3 arm_b = pc_ld3_net(PC_PASS s, NET_START + 3u);
   Real length = PC_LD(net_rows, s, NET_LENGTH);
   Real stiffness = PC_LD(net_rows, s, NET_STIFFNESS);
   Real damping = PC_LD(net_rows, s, NET_DAMPING);
   Vec3 apart = pc_sub(pc_ld3_net(PC_PASS b, NET_STEP), pc_ld3_net(PC_PASS a, NET_STEP));
-  Vec3 swung = pc_sub(pc_net_swing(PC_PASS b, rb), pc_net_swing(PC_PASS a, ra));
+  Vec3 swing_a = pc_net_swing(PC_PASS a, arm_a);
+  Vec3 swing_b = pc_net_swing(PC_PASS b, arm_b);
+  Vec3 ra = pc_madd(arm_a, swing_a, PC_REAL(0.5));
+  Vec3 rb = pc_madd(arm_b, swing_b, PC_REAL(0.5));
+  pc_st3_net(PC_PASS s, NET_MID, ra);
+  pc_st3_net(PC_PASS s, NET_MID + 3u, rb);
+  Vec3 swung = pc_sub(swing_b, swing_a);
   Vec3 then = pc_add(line, pc_add(apart, swung));
   Real long_then = pc_length(then);
   precise Real both = length + long_then;
@@ -72,7 +79,8 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b) {
   precise Real free = (PC_LD(net_rows, a, NET_MASS) + PC_LD(net_rows, b, NET_MASS)) * h;
   precise Real felt = across * free;
   Real root = pc_select(felt > PC_REAL(1e-3), pc_sqrt(across), zero);
-  Vec3 lack = pc_sub(pc_scale(n, wanted), pc_ld3_net(PC_PASS s, NET_IMPULSE));
+  Vec3 impulse = pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), taken);
+  Vec3 lack = pc_sub(pc_scale(n, wanted), impulse);
   Real lack_along = pc_dot(axis, lack);
   Vec3 lack_across = pc_madd(lack, axis, -lack_along);
   Real root_along = pc_sqrt(along);
@@ -84,7 +92,6 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b) {
   PC_ST(net_rows, s, NET_ACROSS, root);
   pc_st3_net(PC_PASS s, NET_LACK, pc_madd(y_across, axis, y_along));
   pc_st3_net(PC_PASS s, NET_TURNED, pc_select3(searched, pc_zero3(), lack_across));
-  Vec3 impulse = pc_ld3_net(PC_PASS s, NET_IMPULSE);
   precise Real gain = (length - PC_LD(net_rows, s, NET_REST)) + longer * share * PC_REAL(0.5);
   precise Real level = (time * stiffness * gain * longer + damping * share * longer * longer * PC_REAL(0.5)) * PC_INFO(inverse_h);
   precise Real trace = answer.xx + answer.yy + answer.zz;
@@ -115,10 +122,34 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b) {
   block.zz = zz;
   pc_sts_net(PC_PASS s, NET_BLOCK, pc_sym_inverse(block));
 }
-// Applies impulses to a spring and its bodies.
-PC_FN void pc_net_give(PC_IO Slot s, Slot a, Slot b, Vec3 impulse) {
-  pc_st3_net(PC_PASS s, NET_IMPULSE, pc_add(pc_ld3_net(PC_PASS s, NET_IMPULSE), impulse));
-  pc_net_add(PC_PASS a, b, NET_PUSH, pc_ld3_net(PC_PASS s, NET_ARM_A), pc_ld3_net(PC_PASS s, NET_ARM_B), impulse);
+// Impulses and arms with a share of the step that was found, and what they make of the bodies.
+PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share) {
+  pc_net_clear(PC_PASS m, n, NET_PUSH);
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Vec3 impulse = pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), share);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 arm_a = pc_madd(ra, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM), ra), share);
+    Vec3 arm_b = pc_madd(rb, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM + 3u), rb), share);
+    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_PUSH, arm_a, arm_b, impulse);
+  }
+}
+// Takes that share, where `takes`.
+PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Real part = pc_select(takes, share, PC_REAL(0.0));
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 aim_a = pc_ld3_net(PC_PASS s, NET_AIM);
+    Vec3 aim_b = pc_ld3_net(PC_PASS s, NET_AIM + 3u);
+    pc_st3_net(PC_PASS s, NET_IMPULSE, pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), part));
+    pc_st3_net(PC_PASS s, NET_ARM_A, pc_madd(ra, pc_sub(aim_a, ra), part));
+    pc_st3_net(PC_PASS s, NET_ARM_B, pc_madd(rb, pc_sub(aim_b, rb), part));
+    pc_st3_net(PC_PASS s, NET_AIM, pc_select3(takes, pc_ld3_net(PC_PASS s, NET_MID), aim_a));
+    pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_select3(takes, pc_ld3_net(PC_PASS s, NET_MID + 3u), aim_b));
+  }
 }
 
 // The image of the search directions; answers with their product with them.
@@ -128,16 +159,16 @@ PC_FN Real pc_net_image(PC_IO Slot m, Net n) {
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     Vec3 impulse = pc_net_root(PC_PASS s, pc_ld3_net(PC_PASS s, NET_WAY));
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_AIM);
     pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_SUM, ra,
-               pc_ld3_net(PC_PASS s, NET_ARM_B), impulse);
+               pc_ld3_net(PC_PASS s, NET_AIM + 3u), impulse);
   }
   pc_net_rates(PC_PASS m, n, NET_SUM);
   Real product = PC_REAL(0.0);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
-    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_AIM);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_AIM + 3u);
     Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
     Vec3 way = pc_ld3_net(PC_PASS s, NET_WAY);
     Vec3 image = pc_madd(way, pc_net_root(PC_PASS s, rate), h);
@@ -207,39 +238,38 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n) {
     Sym3 inverse = pc_world_inertia(pc_quaternion(turned.v, turned.s), PC_GATHER(mass, row, 1u).v);
     Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
     Vec3 l = pc_sub(angular.v, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+    pc_st3_net(PC_PASS b, NET_PUSHED, push);
+    pc_st3_net(PC_PASS b, NET_PUSHED + 3u, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     pc_st3_net(PC_PASS b, NET_VELOCITY, pc_madd(linear.v, push, -linear.s));
     pc_st3_net(PC_PASS b, NET_MOMENTUM, l);
     pc_st3_net(PC_PASS b, NET_SPIN, pc_sym_mul(inverse, l));
   }
-  pc_net_velocities(PC_PASS m, n);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
-    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
-    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
-    pc_st3_net(PC_PASS s, NET_NOW, rate);
-    pc_st3_net(PC_PASS s, NET_BEFORE, pc_ld3_net(PC_PASS s, NET_IMPULSE));
+    pc_st3_net(PC_PASS s, NET_FOUND, pc_zero3());
+    pc_st3_net(PC_PASS s, NET_AIM, pc_ld3_net(PC_PASS s, NET_ARM_A));
+    pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_ld3_net(PC_PASS s, NET_ARM_B));
   }
 }
-// What the springs did to the bodies' energy: impulses times the means of the rates before and after them.
-PC_FN void pc_net_count(PC_IO Slot m, Net n) {
-  pc_net_velocities(PC_PASS m, n);
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
-    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
-    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
-    Vec3 given = pc_sub(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_BEFORE));
-    precise Real work = pc_dot(given, pc_add(rate, pc_ld3_net(PC_PASS s, NET_NOW))) * PC_REAL(0.5);
-    precise Real all = PC_LD(net_rows, s, NET_WORK) + work;
-    PC_ST(net_rows, s, NET_WORK, all);
-  }
+// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after.
+PC_FN void pc_net_count(PC_IO Slot b) {
+  Vec3 before = pc_ld3_net(PC_PASS b, NET_PUSHED);
+  Vec3 before_turn = pc_ld3_net(PC_PASS b, NET_PUSHED + 3u);
+  Vec3 now = pc_ld3_net(PC_PASS b, NET_PUSH);
+  Vec3 now_turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
+  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_scale(pc_add(before, now), PC_REAL(0.5)), PC_LD(net_rows, b, NET_MASS));
+  Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_scale(pc_add(before_turn, now_turn), PC_REAL(0.5)));
+  Vec3 w = pc_add(pc_ld3_net(PC_PASS b, NET_SPIN), turned);
+  Mask moves = PC_LD(net_rows, b, NET_MASS) > PC_REAL(0.0);
+  precise Real work = pc_dot(pc_sub(now, before), v) + pc_dot(pc_sub(now_turn, before_turn), w);
+  precise Real all = PC_LD(net_rows, b, NET_MADE) + pc_select(moves, work, PC_REAL(0.0));
+  PC_ST(net_rows, b, NET_MADE, all);
 }
 
 // What the solve lowers: the energy of what the impulses change, and what the springs will have been stretched by; with it the square
 // of what the impulses lack, and of the impulses themselves, in the same unit.
 struct Merit { Real level; Real open; Real given; };
-PC_FN Merit pc_net_merit(PC_IO Slot m, Net n) {
+PC_FN Merit pc_net_merit(PC_IO Slot m, Net n, Real share) {
   Merit all;
   all.level = PC_REAL(0.0);
   all.open = PC_REAL(0.0);
@@ -255,7 +285,7 @@ PC_FN Merit pc_net_merit(PC_IO Slot m, Net n) {
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    pc_net_look(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u));
+    pc_net_look(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), share);
     precise Real level = all.level + PC_LD(net_rows, s, NET_LEVEL);
     precise Real open = all.open + PC_LD(net_rows, s, NET_OPEN);
     precise Real given = all.given + PC_LD(net_rows, s, NET_GIVEN);
@@ -265,54 +295,42 @@ PC_FN Merit pc_net_merit(PC_IO Slot m, Net n) {
   }
   return all;
 }
-// Makes what is given of the found steps another share of them.
-PC_FN void pc_net_shift(PC_IO Slot m, Net n, Real change) {
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 step = pc_scale(pc_ld3_net(PC_PASS s, NET_FOUND), change);
-    pc_net_give(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), step);
-  }
-}
-
 PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
   Real zero = PC_REAL(0.0);
   Real one = PC_REAL(1.0);
   pc_net_begin(PC_PASS m, n);
-  for (uint k = 0u; k < n.springs; k++) pc_st3_net(PC_PASS pc_net_spring(PC_PASS m, n, k), NET_FOUND, pc_zero3());
   uint rounds = PC_COUNT(net_rounds);
   Real share = zero;
   Real level = zero;
   Real open = zero;
   for (uint i = 0u; i < rounds; i++) {
-    Merit now = pc_net_merit(PC_PASS m, n);
+    Merit now = pc_net_merit(PC_PASS m, n, share);
     Mask first = pc_select(PC_IS(i), zero, one) > PC_REAL(0.5);
     precise Real bound = level + pc_abs(level) * PC_INFO(net_slack);
     Mask better = pc_or(first, pc_or(now.level < bound, now.open < open));
     level = pc_select(better, now.level, level);
     open = pc_select(better, now.open, open);
+    pc_net_take(PC_PASS m, n, share, better);
     precise Real enough = now.given * PC_INFO(net_accuracy);
     Mask goes = pc_and(better, now.open > enough);
     Mask back = pc_select(better, zero, one) > PC_REAL(0.5);
+    share = pc_select(better, zero, share);
     if (!PC_ANY(pc_or(goes, back))) break;  // lint: allow (nothing more is found)
-    // a step that led up is made a quarter of it; the last one that may be is taken back
+    if (i + 1u < rounds) pc_net_search(PC_PASS m, n, goes);
+    // a step that led up is made a quarter of it; the last one that may be is not taken
     Real less = pc_select(PC_IS(rounds - 1u - i), PC_REAL(0.25), zero);
     precise Real kept = share * less;
-    precise Real change = kept - share;
-    pc_net_shift(PC_PASS m, n, pc_select(back, change, zero));
-    share = pc_select(back, kept, share);
-    if (i + 1u == rounds) break;
-    pc_net_search(PC_PASS m, n, goes);
-    pc_net_shift(PC_PASS m, n, pc_select(goes, one, zero));
-    share = pc_select(goes, one, share);
+    share = pc_select(back, kept, pc_select(goes, pc_select(PC_IS(rounds - 1u - i), one, zero), zero));
+    pc_net_try(PC_PASS m, n, share);
   }
-  pc_net_count(PC_PASS m, n);
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     Index row = pc_net_row(PC_PASS m, n, k);
     Quad linear = PC_GATHER(motion, row, 0u);
     Quad angular = PC_GATHER(motion, row, 1u);
     Mask moves = linear.s > zero;
+    pc_net_count(PC_PASS b);
     linear.v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
     Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     PC_SCATTER_IF(moves, motion, row, 0u, linear);
