@@ -37,6 +37,7 @@ const uint NET_TURNED = 48u;    // what the impulse's turn into a new line adds 
 const uint NET_LEVEL = 51u;     // its part in what the solve lowers (Merit)
 const uint NET_OPEN = 52u;
 const uint NET_GIVEN = 53u;
+const uint NET_THEN = 18u;      // its length after the sub-step, foreseen
 const uint NET_AIM = 54u;       // arms midway of the last step that was taken, of a and b
 const uint NET_MID = 60u;       // and of the one that is looked at
 const uint NET_START = 66u;     // arms where the sub-step began

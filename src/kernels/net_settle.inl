@@ -1,6 +1,8 @@
 // After the bodies of a net have moved: the second half of its springs' impulses (net_solve), and what keeps their energy from rising.
 //
-// Across the line of now it is what takes back the couple of the first half, along it (1 - beta) / (1 + beta) times the first.
+// It is (1 - beta) / (1 + beta) times the first at the same arms, and across the line of now what takes back the rest of the couple
+// of the first; what of that no impulse across a line can take back, which is of the order of what the solve left open, the two
+// bodies take over as a couple. So angular momentum is kept however far the solve came.
 // What both halves did to the bodies is known to rounding, and so is what the springs now store beyond what they stored; their sum
 // is energy made, where the solve was not exact. The net owes it, and pays from the motion of the springs' ends along their lines
 // as soon as there is any: so kinetic energy never exceeds what was there.
@@ -31,42 +33,60 @@ PC_FN void pc_settle_line(PC_IO Slot m, Net n, uint k) {
   Vec3 rb = pc_rotate(pc_quaternion(turn_b.v, turn_b.s), PC_GATHER(joint_frame, joint, 2u).v);
   Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
   Vec3 line = pc_add(apart, pc_sub(rb, ra));
-  // of the first half, whose arms were not those of its line
+  // START is of now from here on
   Vec3 shift_a = pc_sub(pc_ld3_net(PC_PASS s, NET_ARM_A), pc_ld3_net(PC_PASS s, NET_START));
   Vec3 shift_b = pc_sub(pc_ld3_net(PC_PASS s, NET_ARM_B), pc_ld3_net(PC_PASS s, NET_START + 3u));
   Vec3 lever = pc_add(pc_ld3_net(PC_PASS s, NET_LINE), pc_sub(shift_b, shift_a));
   pc_st3_net(PC_PASS s, NET_WAY, pc_cross(lever, pc_ld3_net(PC_PASS s, NET_IMPULSE)));
-  pc_st3_net(PC_PASS s, NET_ARM_A, ra);
-  pc_st3_net(PC_PASS s, NET_ARM_B, rb);
+  pc_st3_net(PC_PASS s, NET_START, ra);
+  pc_st3_net(PC_PASS s, NET_START + 3u, rb);
   pc_st3_net(PC_PASS s, NET_NOW, line);
 }
+// An impulse and a couple on b, which add to its push; on a their opposites, but for the couple `whole`, of which both have a share.
+PC_FN void pc_settle_push(PC_IO Slot a, Slot b, Vec3 impulse, Vec3 turn_a, Vec3 turn_b) {
+  pc_st3_net(PC_PASS a, NET_PUSH, pc_sub(pc_ld3_net(PC_PASS a, NET_PUSH), impulse));
+  pc_st3_net(PC_PASS b, NET_PUSH, pc_add(pc_ld3_net(PC_PASS b, NET_PUSH), impulse));
+  pc_st3_net(PC_PASS a, NET_PUSH + 3u, pc_add(pc_ld3_net(PC_PASS a, NET_PUSH + 3u), turn_a));
+  pc_st3_net(PC_PASS b, NET_PUSH + 3u, pc_add(pc_ld3_net(PC_PASS b, NET_PUSH + 3u), turn_b));
+}
+PC_FN Real pc_settle_looseness(PC_IO Slot b) {
+  Sym3 i = pc_lds_net(PC_PASS b, NET_INERTIA);
+  precise Real trace = i.xx + i.yy + i.zz;
+  return trace;
+}
 // The second half.
-PC_FN Vec3 pc_second_half(PC_IO Slot s) {
+PC_FN void pc_second_half(PC_IO Slot s, Slot a, Slot b) {
   Vec3 line = pc_ld3_net(PC_PASS s, NET_NOW);
   Vec3 first = pc_ld3_net(PC_PASS s, NET_IMPULSE);
-  Real length = pc_length(line);
-  Real inverse = pc_inverse_or_zero(length);
+  Vec3 couple = pc_ld3_net(PC_PASS s, NET_WAY);
+  Vec3 mid_a = pc_ld3_net(PC_PASS s, NET_ARM_A);
+  Vec3 mid_b = pc_ld3_net(PC_PASS s, NET_ARM_B);
+  Vec3 arm_a = pc_ld3_net(PC_PASS s, NET_START);
+  Vec3 arm_b = pc_ld3_net(PC_PASS s, NET_START + 3u);
+  Real inverse = pc_inverse_or_zero(pc_length(line));
   Vec3 along = pc_scale(line, inverse);
-  Vec3 axis = pc_ld3_net(PC_PASS s, NET_AXIS);
   Real late = PC_LD(net_rows, s, NET_LATE);
   precise Real less = PC_REAL(1.0) - late;
   precise Real more = PC_REAL(1.0) + late;
-  precise Real size = pc_dot(axis, first) * pc_div(less, more);
+  Vec3 same = pc_scale(first, pc_div(less, more));
+  Vec3 lever = pc_add(line, pc_sub(pc_sub(mid_b, arm_b), pc_sub(mid_a, arm_a)));
+  Vec3 rest = pc_add(couple, pc_cross(lever, same));
   // not where the spring has shrunk to a point, about which nothing has a lever
-  Vec3 couple = pc_ld3_net(PC_PASS s, NET_WAY);
-  Vec3 back = pc_scale(pc_cross(along, couple), inverse);
+  Vec3 back = pc_scale(pc_cross(along, rest), inverse);
   Real most = pc_length(first);
   Real backs = pc_length(back);
-  Real share = pc_div(most, pc_max(pc_max(backs, most), PC_TINY));
-  return pc_madd(pc_scale(back, share), along, size);
-}
-// Work of an impulse between the rates before and after it.
-PC_FN Real pc_settle_rate(PC_IO Slot m, Net n, uint k) {
-  Slot s = pc_net_spring(PC_PASS m, n, k);
-  Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
-  Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
-  Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
-  return pc_dot(rate, pc_ld3_net(PC_PASS s, NET_SECOND));
+  Vec3 across = pc_scale(back, pc_div(most, pc_max(pc_max(backs, most), PC_TINY)));
+  Vec3 left = pc_negate(pc_add(rest, pc_cross(line, across)));
+  Real loose_a = pc_settle_looseness(PC_PASS a);
+  Real loose_b = pc_settle_looseness(PC_PASS b);
+  precise Real loose = loose_a + loose_b;
+  Vec3 left_a = pc_scale(left, pc_div(loose_b, pc_max(loose, PC_TINY)));
+  Vec3 left_b = pc_scale(left, pc_div(loose_a, pc_max(loose, PC_TINY)));
+  precise Vec3 turn_a = (left_a - pc_cross(mid_a, same)) - pc_cross(arm_a, across);
+  precise Vec3 turn_b = (left_b + pc_cross(mid_b, same)) + pc_cross(arm_b, across);
+  Vec3 all = pc_add(same, across);
+  pc_settle_push(PC_PASS a, b, all, turn_a, turn_b);
+  pc_st3_net(PC_PASS s, NET_SECOND, all);
 }
 // How much the spring stores beyond what it stored.
 PC_FN Real pc_stored_more(PC_IO Slot s) {
@@ -82,6 +102,17 @@ PC_FN Real pc_stored_more(PC_IO Slot s) {
   precise Real more = PC_LD(net_rows, s, NET_STIFFNESS) * mean * longer * PC_REAL(0.5);
   return more;
 }
+// What the second halves do to a body's energy; of one that moves as it is told what it takes from the springs.
+PC_FN Real pc_settle_work(PC_IO Slot b) {
+  Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
+  Vec3 turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
+  precise Real half_mass = PC_LD(net_rows, b, NET_MASS) * PC_REAL(0.5);
+  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), push, half_mass);
+  Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), turn);
+  Vec3 w = pc_madd(pc_ld3_net(PC_PASS b, NET_SPIN), turned, PC_REAL(0.5));
+  precise Real work = pc_dot(push, v) + pc_dot(turn, w);
+  return work;
+}
 // What the springs' ends would have of energy along their lines to give, by plastic impulses that each makes alone: the first two
 // terms of its change, in one share of these impulses.
 struct Dues { Real first; Real second; };
@@ -95,8 +126,8 @@ PC_FN Dues pc_settle_dues(PC_IO Slot m, Net n) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     Slot a = pc_net_end(PC_PASS m, n, k, 0u);
     Slot b = pc_net_end(PC_PASS m, n, k, 1u);
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
-    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_START);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_START + 3u);
     Vec3 along = pc_unit_or_zero(pc_ld3_net(PC_PASS s, NET_NOW));
     Real answer = pc_dot(along, pc_sym_mul(pc_net_answer(PC_PASS a, b, ra, rb), along));
     Real rate = pc_dot(along, pc_net_rate(PC_PASS a, b, ra, rb));
@@ -110,8 +141,8 @@ PC_FN Dues pc_settle_dues(PC_IO Slot m, Net n) {
   pc_net_rates(PC_PASS m, n, NET_SUM);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
-    Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
+    Vec3 ra = pc_ld3_net(PC_PASS s, NET_START);
+    Vec3 rb = pc_ld3_net(PC_PASS s, NET_START + 3u);
     Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
     precise Real sum = d.second + pc_dot(rate, pc_ld3_net(PC_PASS s, NET_WAY));
     d.second = sum;
@@ -155,23 +186,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     made = sum;
   }
   pc_net_clear(PC_PASS m, n, NET_PUSH);
-  pc_net_velocities(PC_PASS m, n);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     pc_settle_line(PC_PASS m, n, k);
-    Vec3 second = pc_second_half(PC_PASS s);
-    pc_st3_net(PC_PASS s, NET_SECOND, second);
-    precise Real sum = made + pc_stored_more(PC_PASS s) + pc_settle_rate(PC_PASS m, n, k) * PC_REAL(0.5);
+    pc_second_half(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u));
+    precise Real sum = made + pc_stored_more(PC_PASS s);
     made = sum;
   }
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_PUSH, pc_ld3_net(PC_PASS s, NET_ARM_A),
-               pc_ld3_net(PC_PASS s, NET_ARM_B), pc_ld3_net(PC_PASS s, NET_SECOND));
-  }
-  pc_net_velocities(PC_PASS m, n);
-  for (uint k = 0u; k < n.springs; k++) {
-    precise Real sum = made + pc_settle_rate(PC_PASS m, n, k) * PC_REAL(0.5);
+  for (uint k = 0u; k < n.bodies; k++) {
+    precise Real sum = made + pc_settle_work(PC_PASS pc_net_body(PC_PASS m, n, k));
     made = sum;
   }
   Index keeper = pc_net_row(PC_PASS m, n, n.bodies);

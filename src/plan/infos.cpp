@@ -71,6 +71,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.net_rounds = getenv("NR") ? atoi(getenv("NR")) : constants::net_rounds;
   biased.net_searches = getenv("NS") ? atoi(getenv("NS")) : constants::net_searches;
   biased.net_slack = Scalar(constants::net_roundings * epsilon);
+  biased.net_bounds = getenv("NB") ? atoi(getenv("NB")) : 4;
+  biased.net_made = Scalar(1e-5);
   biased.net_accuracy = Scalar(constants::net_roundings * epsilon * constants::net_roundings * epsilon);
   biased.cross_share = Scalar(constants::cross_share);
   biased.seen_turn = Scalar(constants::seen_turn);
