@@ -19,7 +19,9 @@ PC_FN void pc_prepare_body(PC_IO Slot b, Index row) {
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
-  for (uint k = 0u; k < n.bodies; k++) pc_prepare_body(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
+  for (uint k = 0u; k < n.bodies; k++) {
+    pc_prepare_body(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
+  }
   pc_net_clear(PC_PASS m, n, NET_PUSH);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);

@@ -1,5 +1,5 @@
-// A net: bodies that springs between points join, and none of which a pin holds. One lane solves a whole net, so sums over its
-// springs need no order among lanes. Slots of a block: first its bodies, then its springs.
+// A net: bodies that springs between points join, and none of which a pin holds. One lane solves a whole net, so sums
+// over its springs need no order among lanes. Slots of a block: first its bodies, then its springs.
 const uint NET_VELOCITY = 0u;   // of a body, before the solve; velocity 3, inverse mass
 const uint NET_MASS = 3u;
 const uint NET_MOMENTUM = 4u;   // angular, before the solve
@@ -44,7 +44,8 @@ const uint NET_START = 66u;     // arms where the sub-step began
 
 struct Net { uint first; uint bodies; uint springs; uint links; uint rows; };
 PC_FN Net pc_net(PC_IO Slot m) {
-  uint at = PC_BLOCK(m) * 4u;
+  uint block = PC_BLOCK(m);
+  uint at = block * 4u;
   Net n;
   n.first = PC_UINT(nets, at);
   n.bodies = PC_UINT(nets, at + 1u);
@@ -56,9 +57,14 @@ PC_FN Net pc_net(PC_IO Slot m) {
 PC_FN Slot pc_net_body(PC_IO Slot m, Net n, uint k) { return PC_NODE(m, n.first + k); }
 PC_FN Slot pc_net_spring(PC_IO Slot m, Net n, uint k) { return PC_NODE(m, n.first + n.bodies + k); }
 PC_FN Slot pc_net_end(PC_IO Slot m, Net n, uint k, uint side) {
-  return PC_NODE(m, n.first + PC_UINT(nets, n.links + k * 2u + side));
+  uint link = n.links + k * 2u + side;
+  uint body = PC_UINT(nets, link);
+  return PC_NODE(m, n.first + body);
 }
-PC_FN Index pc_net_row(PC_IO Slot m, Net n, uint k) { return PC_EACH(nets, m, n.rows + k * PC_W); }
+PC_FN Index pc_net_row(PC_IO Slot m, Net n, uint k) {
+  uint at = n.rows + k * PC_W;
+  return PC_EACH(nets, m, at);
+}
 
 PC_FN Vec3 pc_ld3_net(PC_IO Slot s, uint f) {
   return Vec3(PC_LD(net_rows, s, f), PC_LD(net_rows, s, f + 1u), PC_LD(net_rows, s, f + 2u));
@@ -86,7 +92,8 @@ PC_FN void pc_sts_net(PC_IO Slot s, uint f, Sym3 k) {
   PC_ST(net_rows, s, f + 4u, k.yz);
   PC_ST(net_rows, s, f + 5u, k.zz);
 }
-// The inverse inertia of what impulses turn: a body that moves, and about which it is not said that it keeps its orientation.
+// The inverse inertia of what impulses turn: a body that moves, and about which it is not said that it keeps its
+// orientation.
 PC_FN Sym3 pc_net_inertia(Quaternion q, Vec3 inverse, Real inverse_mass) {
   Real response = pc_select(inverse_mass > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   return pc_world_inertia(q, pc_scale(inverse, response));
@@ -145,14 +152,16 @@ PC_FN void pc_net_rates(PC_IO Slot m, Net n, uint sums) {
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     pc_st3_net(PC_PASS b, NET_RATE, pc_scale(pc_ld3_net(PC_PASS b, sums), PC_LD(net_rows, b, NET_MASS)));
-    pc_st3_net(PC_PASS b, NET_RATE + 3u, pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_ld3_net(PC_PASS b, sums + 3u)));
+    Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_ld3_net(PC_PASS b, sums + 3u));
+    pc_st3_net(PC_PASS b, NET_RATE + 3u, turned);
   }
 }
 // The same of the bodies as they are: with what they had before the solve.
 PC_FN void pc_net_velocities(PC_IO Slot m, Net n) {
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
-    Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), PC_LD(net_rows, b, NET_MASS));
+    Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
+    Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), push, PC_LD(net_rows, b, NET_MASS));
     Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     pc_st3_net(PC_PASS b, NET_RATE, v);
     pc_st3_net(PC_PASS b, NET_RATE + 3u, pc_add(pc_ld3_net(PC_PASS b, NET_SPIN), turned));

@@ -1,11 +1,12 @@
-// After the bodies of a net have moved: the second half of its springs' impulses (net_solve), and what keeps their energy from rising.
+// After the bodies of a net have moved: the second half of its springs' impulses (net_solve), and what keeps their
+// energy from rising.
 //
-// It is (1 - beta) / (1 + beta) times the first at the same arms, and across the line of now what takes back the rest of the couple
-// of the first; what of that no impulse across a line can take back, which is of the order of what the solve left open, the two
-// bodies take over as a couple. So angular momentum is kept however far the solve came.
-// What both halves did to the bodies is known to rounding, and so is what the springs now store beyond what they stored; their sum
-// is energy made, where the solve was not exact. The net owes it, and pays from the motion of the springs' ends along their lines
-// as soon as there is any: so kinetic energy never exceeds what was there.
+// It is (1 - beta) / (1 + beta) times the first at the same arms, and across the line of now what takes back the rest
+// of the couple of the first; what of that no impulse across a line can take back, which is of the order of what the
+// solve left open, the two bodies take over as a couple. So angular momentum is kept however far the solve came. What
+// both halves did to the bodies is known to rounding, and so is what the springs now store beyond what they stored;
+// their sum is energy made, where the solve was not exact. The net owes it, and pays from the motion of the springs'
+// ends along their lines as soon as there is any: so kinetic energy never exceeds what was there.
 #include "net_rows.inl"
 
 PC_FN void pc_settle_body(PC_IO Slot b, Index row) {
@@ -42,7 +43,8 @@ PC_FN void pc_settle_line(PC_IO Slot m, Net n, uint k) {
   pc_st3_net(PC_PASS s, NET_START + 3u, rb);
   pc_st3_net(PC_PASS s, NET_NOW, line);
 }
-// An impulse and a couple on b, which add to its push; on a their opposites, but for the couple `whole`, of which both have a share.
+// An impulse and a couple on b, which add to its push; on a their opposites, but for the couple `whole`, of which both
+// have a share.
 PC_FN void pc_settle_push(PC_IO Slot a, Slot b, Vec3 impulse, Vec3 turn_a, Vec3 turn_b) {
   pc_st3_net(PC_PASS a, NET_PUSH, pc_sub(pc_ld3_net(PC_PASS a, NET_PUSH), impulse));
   pc_st3_net(PC_PASS b, NET_PUSH, pc_add(pc_ld3_net(PC_PASS b, NET_PUSH), impulse));
@@ -113,8 +115,8 @@ PC_FN Real pc_settle_work(PC_IO Slot b) {
   precise Real work = pc_dot(push, v) + pc_dot(turn, w);
   return work;
 }
-// What the springs' ends would have of energy along their lines to give, by plastic impulses that each makes alone: the first two
-// terms of its change, in one share of these impulses.
+// What the springs' ends would have of energy along their lines to give, by plastic impulses that each makes alone: the
+// first two terms of its change, in one share of these impulses.
 struct Dues { Real first; Real second; };
 PC_FN Dues pc_settle_dues(PC_IO Slot m, Net n) {
   Dues d;
@@ -162,7 +164,8 @@ PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share) {
   Vec3 paid_turn = pc_scale(pc_ld3_net(PC_PASS b, NET_SUM + 3u), share);
   precise Vec3 all = push + paid;
   precise Vec3 all_turn = turn + paid_turn;
-  // the velocity that is read lacks half of what the sub-step changed: what came after it counts as if it had come before
+  // the velocity that is read lacks half of what the sub-step changed: what came after it counts as if it had come
+  // before
   precise Vec3 shift = push * PC_REAL(2.0) + paid;
   precise Vec3 shift_turn = turn * PC_REAL(2.0) + paid_turn;
   linear.v = pc_madd(linear.v, all, linear.s);
@@ -210,7 +213,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real share = pc_select(d.first > PC_TINY, pc_select(inside > zero, exact, most), zero);
   precise Real paid = share * d.first - share * share * d.second * PC_REAL(0.5);
   precise Real left = due - paid;
-  for (uint k = 0u; k < n.bodies; k++) pc_settle_store(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k), share);
+  for (uint k = 0u; k < n.bodies; k++) {
+    pc_settle_store(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k), share);
+  }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     Index joint = pc_net_row(PC_PASS m, n, n.bodies + k);

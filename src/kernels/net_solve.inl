@@ -1,15 +1,16 @@
 // Springs between points, all of a net at once, implicit in the lengths that they will have at the end of the sub-step.
 //
-// A spring gives half of its impulse before the bodies move and half after (net_settle), as the implicit midpoint rule does:
+// A spring gives half of its impulse before the bodies move and half after (net_settle), as the implicit midpoint rule
+// does:
 //   F = -h (k (x + (1 + beta) (x' - x) / 2) + c (x' - x) / h) n,   n = (D + D') / (|D| + |D'|)
-// with D, D' the lines between its points before and after, x, x' how much longer they are than at rest. F n is then a discrete
-// gradient (O. Gonzalez, J. Nonlinear Sci. 6, 1996): what it does in the sub-step is k (x^2 - x'^2) / 2 to rounding, at any h, less
-// k beta (x' - x)^2 / 2, and it exerts no couple. beta is 0 where the sub-step resolves the spring and 1 where it does not.
-// (1 + beta) / 2 of F come before the bodies move.
+// with D, D' the lines between its points before and after, x, x' how much longer they are than at rest. F n is then a
+// discrete gradient (O. Gonzalez, J. Nonlinear Sci. 6, 1996): what it does in the sub-step is k (x^2 - x'^2) / 2 to
+// rounding, at any h, less k beta (x' - x)^2 / 2, and it exerts no couple. beta is 0 where the sub-step resolves the
+// spring and 1 where it does not. (1 + beta) / 2 of F come before the bodies move.
 //
-// Newton's method for the lengths; its linear systems, (1 + h R A R) y = R^-1 (what the impulses lack) with R^2 the impulse per
-// length and A how the bodies answer, are positive and are solved by conjugate gradients, prepared by each spring's own block.
-// They conserve both momenta however far they came; what is left open net_settle accounts for.
+// Newton's method for the lengths; its linear systems, (1 + h R A R) y = R^-1 (what the impulses lack) with R^2 the
+// impulse per length and A how the bodies answer, are positive and are solved by conjugate gradients, prepared by each
+// spring's own block. They conserve both momenta however far they came; what is left open net_settle accounts for.
 #include "net_rows.inl"
 #include "free_rotation.inl"
 
@@ -93,7 +94,9 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
   pc_st3_net(PC_PASS s, NET_LACK, pc_madd(y_across, axis, y_along));
   pc_st3_net(PC_PASS s, NET_TURNED, pc_select3(searched, pc_zero3(), lack_across));
   precise Real gain = (length - PC_LD(net_rows, s, NET_REST)) + longer * share * PC_REAL(0.5);
-  precise Real level = (time * stiffness * gain * longer + damping * share * longer * longer * PC_REAL(0.5)) * PC_INFO(inverse_h);
+  precise Real by_length = time * stiffness * gain * longer;
+  precise Real by_rate = damping * share * longer * longer * PC_REAL(0.5);
+  precise Real level = (by_length + by_rate) * PC_INFO(inverse_h);
   precise Real trace = answer.xx + answer.yy + answer.zz;
   precise Real open = pc_dot(lack, lack) * trace;
   precise Real given = pc_dot(impulse, impulse) * trace;
@@ -133,7 +136,8 @@ PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share) {
     Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
     Vec3 arm_a = pc_madd(ra, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM), ra), share);
     Vec3 arm_b = pc_madd(rb, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM + 3u), rb), share);
-    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_PUSH, arm_a, arm_b, impulse);
+    Slot a = pc_net_end(PC_PASS m, n, k, 0u);
+    pc_net_add(PC_PASS a, pc_net_end(PC_PASS m, n, k, 1u), NET_PUSH, arm_a, arm_b, impulse);
   }
 }
 // Takes that share, where `takes`.
@@ -145,7 +149,8 @@ PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
     Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
     Vec3 aim_a = pc_ld3_net(PC_PASS s, NET_AIM);
     Vec3 aim_b = pc_ld3_net(PC_PASS s, NET_AIM + 3u);
-    pc_st3_net(PC_PASS s, NET_IMPULSE, pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), part));
+    Vec3 impulse = pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), part);
+    pc_st3_net(PC_PASS s, NET_IMPULSE, impulse);
     pc_st3_net(PC_PASS s, NET_ARM_A, pc_madd(ra, pc_sub(aim_a, ra), part));
     pc_st3_net(PC_PASS s, NET_ARM_B, pc_madd(rb, pc_sub(aim_b, rb), part));
     pc_st3_net(PC_PASS s, NET_AIM, pc_select3(takes, pc_ld3_net(PC_PASS s, NET_MID), aim_a));
@@ -153,81 +158,7 @@ PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
   }
 }
 
-// The image of the search directions; answers with their product with them.
-PC_FN Real pc_net_image(PC_IO Slot m, Net n) {
-  Real h = PC_INFO(h);
-  pc_net_clear(PC_PASS m, n, NET_SUM);
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 impulse = pc_net_root(PC_PASS s, pc_ld3_net(PC_PASS s, NET_WAY));
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_AIM);
-    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_SUM, ra,
-               pc_ld3_net(PC_PASS s, NET_AIM + 3u), impulse);
-  }
-  pc_net_rates(PC_PASS m, n, NET_SUM);
-  Real product = PC_REAL(0.0);
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 ra = pc_ld3_net(PC_PASS s, NET_AIM);
-    Vec3 rb = pc_ld3_net(PC_PASS s, NET_AIM + 3u);
-    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), ra, rb);
-    Vec3 way = pc_ld3_net(PC_PASS s, NET_WAY);
-    Vec3 image = pc_madd(way, pc_net_root(PC_PASS s, rate), h);
-    pc_st3_net(PC_PASS s, NET_IMAGE, image);
-    precise Real sum = product + pc_dot(way, image);
-    product = sum;
-  }
-  return product;
-}
-// Goes on along the search directions by `step`, of the old ones keeps `kept`; answers with the new residual's square.
-PC_FN Real pc_net_square(PC_IO Slot m, Net n, Real step) {
-  Real square = PC_REAL(0.0);
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 lack = pc_madd(pc_ld3_net(PC_PASS s, NET_LACK), pc_ld3_net(PC_PASS s, NET_IMAGE), -step);
-    pc_st3_net(PC_PASS s, NET_FOUND, pc_madd(pc_ld3_net(PC_PASS s, NET_FOUND), pc_ld3_net(PC_PASS s, NET_WAY), step));
-    pc_st3_net(PC_PASS s, NET_LACK, lack);
-    precise Real sum = square + pc_dot(lack, pc_sym_mul(pc_lds_net(PC_PASS s, NET_BLOCK), lack));
-    square = sum;
-  }
-  return square;
-}
-PC_FN void pc_net_turn(PC_IO Slot m, Net n, Real kept) {
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 down = pc_sym_mul(pc_lds_net(PC_PASS s, NET_BLOCK), pc_ld3_net(PC_PASS s, NET_LACK));
-    pc_st3_net(PC_PASS s, NET_WAY, pc_madd(down, pc_ld3_net(PC_PASS s, NET_WAY), kept));
-  }
-}
-// Finds a step, where `wants`.
-PC_FN void pc_net_search(PC_IO Slot m, Net n, Mask wants) {
-  Real zero = PC_REAL(0.0);
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    pc_st3_net(PC_PASS s, NET_IMAGE, pc_zero3());
-    pc_st3_net(PC_PASS s, NET_WAY, pc_zero3());
-    pc_st3_net(PC_PASS s, NET_FOUND, pc_select3(wants, pc_zero3(), pc_ld3_net(PC_PASS s, NET_FOUND)));
-  }
-  Real square = pc_net_square(PC_PASS m, n, zero);
-  precise Real enough = square * PC_INFO(net_accuracy);
-  Real kept = zero;
-  for (uint i = 0u; i < PC_COUNT(net_searches); i++) {
-    Mask goes = pc_and(wants, pc_and(square > enough, square > PC_TINY));
-    if (!PC_ANY(goes)) break;  // lint: allow (steps of those that are done are zero)
-    pc_net_turn(PC_PASS m, n, kept);
-    Real product = pc_net_image(PC_PASS m, n);
-    Real step = pc_select(pc_and(goes, product > PC_TINY), pc_div(square, pc_max(product, PC_TINY)), zero);
-    Real next = pc_net_square(PC_PASS m, n, step);
-    kept = pc_select(goes, pc_div(next, pc_max(square, PC_TINY)), zero);
-    square = next;
-  }
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 found = pc_ld3_net(PC_PASS s, NET_FOUND);
-    Vec3 step = pc_add(pc_net_root(PC_PASS s, found), pc_ld3_net(PC_PASS s, NET_TURNED));
-    pc_st3_net(PC_PASS s, NET_FOUND, pc_select3(wants, step, found));
-  }
-}
+#include "net_search.inl"
 
 PC_FN void pc_net_begin(PC_IO Slot m, Net n) {
   for (uint k = 0u; k < n.bodies; k++) {
@@ -252,22 +183,23 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n) {
     pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_ld3_net(PC_PASS s, NET_ARM_B));
   }
 }
-// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after; of one that moves
-// as it is told what it took from the springs.
+// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after; of
+// one that moves as it is told what it took from the springs.
 PC_FN Real pc_net_count(PC_IO Slot b) {
   Vec3 before = pc_ld3_net(PC_PASS b, NET_PUSHED);
   Vec3 before_turn = pc_ld3_net(PC_PASS b, NET_PUSHED + 3u);
   Vec3 now = pc_ld3_net(PC_PASS b, NET_PUSH);
   Vec3 now_turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
-  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_scale(pc_add(before, now), PC_REAL(0.5)), PC_LD(net_rows, b, NET_MASS));
+  Vec3 mean = pc_scale(pc_add(before, now), PC_REAL(0.5));
+  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), mean, PC_LD(net_rows, b, NET_MASS));
   Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_scale(pc_add(before_turn, now_turn), PC_REAL(0.5)));
   Vec3 w = pc_add(pc_ld3_net(PC_PASS b, NET_SPIN), turned);
   precise Real work = pc_dot(pc_sub(now, before), v) + pc_dot(pc_sub(now_turn, before_turn), w);
   return work;
 }
 
-// What the solve lowers: the energy of what the impulses change, and what the springs will have been stretched by; with it the square
-// of what the impulses lack, and of the impulses themselves, in the same unit.
+// What the solve lowers: the energy of what the impulses change, and what the springs will have been stretched by; with
+// it the square of what the impulses lack, and of the impulses themselves, in the same unit.
 struct Merit { Real level; Real open; Real given; };
 PC_FN Merit pc_net_merit(PC_IO Slot m, Net n, Real share) {
   Merit all;
@@ -280,7 +212,8 @@ PC_FN Merit pc_net_merit(PC_IO Slot m, Net n, Real share) {
     Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
     Vec3 turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
     Vec3 spin = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), turn);
-    precise Real sum = all.level + (pc_dot(push, push) * PC_LD(net_rows, b, NET_MASS) + pc_dot(turn, spin)) * PC_REAL(0.5);
+    precise Real twice = pc_dot(push, push) * PC_LD(net_rows, b, NET_MASS) + pc_dot(turn, spin);
+    precise Real sum = all.level + twice * PC_REAL(0.5);
     all.level = sum;
   }
   for (uint k = 0u; k < n.springs; k++) {
@@ -295,195 +228,7 @@ PC_FN Merit pc_net_merit(PC_IO Slot m, Net n, Real share) {
   }
   return all;
 }
-// The energy that the sub-step will have made with the impulses as they are, and what there is of it.
-struct Energy { Real made; Real scale; };
-PC_FN Real pc_net_stored(PC_IO Slot s, Real length) {
-  precise Real longer = length - PC_LD(net_rows, s, NET_REST);
-  precise Real stored = PC_LD(net_rows, s, NET_STIFFNESS) * longer * longer * PC_REAL(0.5);
-  return stored;
-}
-PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
-  Energy e;
-  e.made = PC_REAL(0.0);
-  e.scale = PC_REAL(0.0);
-  pc_net_clear(PC_PASS m, n, NET_SUM);
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    Real late = PC_LD(net_rows, s, NET_LATE);
-    precise Real less = PC_REAL(1.0) - late;
-    precise Real more = PC_REAL(1.0) + late;
-    Vec3 second = pc_scale(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_div(less, more));
-    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_SUM, pc_ld3_net(PC_PASS s, NET_ARM_A),
-               pc_ld3_net(PC_PASS s, NET_ARM_B), second);
-  }
-  pc_net_velocities(PC_PASS m, n);
-  for (uint k = 0u; k < n.bodies; k++) {
-    Slot b = pc_net_body(PC_PASS m, n, k);
-    pc_net_foresee(PC_PASS b, pc_net_row(PC_PASS m, n, k));
-    Vec3 push = pc_ld3_net(PC_PASS b, NET_SUM);
-    Vec3 turn = pc_ld3_net(PC_PASS b, NET_SUM + 3u);
-    precise Real half_mass = PC_LD(net_rows, b, NET_MASS) * PC_REAL(0.5);
-    Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_RATE), push, half_mass);
-    Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), turn);
-    Vec3 w = pc_madd(pc_ld3_net(PC_PASS b, NET_RATE + 3u), turned, PC_REAL(0.5));
-    precise Real second = pc_dot(push, v) + pc_dot(turn, w);
-    precise Real made = e.made + PC_LD(net_rows, b, NET_MADE) + pc_net_count(PC_PASS b) + second;
-    e.made = made;
-  }
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    pc_net_look(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), PC_REAL(0.0));
-    Real before = pc_net_stored(PC_PASS s, PC_LD(net_rows, s, NET_LENGTH));
-    Real after = pc_net_stored(PC_PASS s, PC_LD(net_rows, s, NET_THEN));
-    precise Real made = e.made + (after - before);
-    precise Real scale = e.scale + before;
-    e.made = made;
-    e.scale = scale;
-  }
-  return e;
-}
-
-// The motion of the whole net as one rigid body with its momenta; or, where something holds it, that of what does.
-struct Rigid { Vec3 v; Vec3 w; Vec3 centre; Mask held; };
-PC_FN Vec3 pc_net_place(PC_IO Slot m, Net n, uint k) {
-  Index first = pc_net_row(PC_PASS m, n, 0u);
-  Index row = pc_net_row(PC_PASS m, n, k);
-  Vec3 high = pc_sub(PC_GATHER(pose, row, 0u).v, PC_GATHER(pose, first, 0u).v);
-  return pc_add(high, pc_sub(PC_GATHER(pose, row, 2u).v, PC_GATHER(pose, first, 2u).v));
-}
-PC_FN Sym3 pc_net_moments(PC_IO Index row) {
-  Quad turned = PC_GATHER(pose, row, 1u);
-  Quad moments = PC_GATHER(mass, row, 0u);
-  Real turns = pc_select(PC_GATHER(mass, row, 1u).v.x > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
-  return pc_world_inertia(pc_quaternion(turned.v, turned.s), pc_scale(moments.v, turns));
-}
-PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
-  Rigid r;
-  Real zero = PC_REAL(0.0);
-  r.held = zero > PC_REAL(1.0);
-  r.v = pc_zero3();
-  r.w = pc_zero3();
-  r.centre = pc_zero3();
-  Vec3 held_v = pc_zero3();
-  Vec3 held_w = pc_zero3();
-  Vec3 held_at = pc_zero3();
-  Real mass_all = zero;
-  Vec3 p = pc_zero3();
-  for (uint k = 0u; k < n.bodies; k++) {
-    Slot b = pc_net_body(PC_PASS m, n, k);
-    Mask fixed = pc_select(PC_LD(net_rows, b, NET_MASS) > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
-    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
-    Vec3 place = pc_net_place(PC_PASS m, n, k);
-    Mask drives = pc_and(fixed, pc_dot(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_VELOCITY)) > pc_dot(held_v, held_v));
-    held_v = pc_select3(drives, pc_ld3_net(PC_PASS b, NET_VELOCITY), held_v);
-    held_at = pc_select3(fixed, place, held_at);
-    r.held = pc_or(r.held, fixed);
-    p = pc_madd(p, pc_ld3_net(PC_PASS b, NET_VELOCITY), heavy);
-    r.centre = pc_madd(r.centre, place, heavy);
-    precise Real sum = mass_all + heavy;
-    mass_all = sum;
-  }
-  Real light = pc_inverse_or_zero(mass_all);
-  r.centre = pc_scale(r.centre, light);
-  r.v = pc_scale(p, light);
-  Vec3 l = pc_zero3();
-  Sym3 all = pc_world_inertia(pc_quaternion(pc_zero3(), PC_REAL(1.0)), pc_zero3());
-  for (uint k = 0u; k < n.bodies; k++) {
-    Slot b = pc_net_body(PC_PASS m, n, k);
-    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
-    Real counts = pc_select(heavy > zero, PC_REAL(1.0), zero);
-    Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), r.centre);
-    Vec3 orbit = pc_cross(arm, pc_sub(pc_ld3_net(PC_PASS b, NET_VELOCITY), r.v));
-    l = pc_madd(pc_madd(l, orbit, heavy), pc_ld3_net(PC_PASS b, NET_MOMENTUM), counts);
-    Sym3 own = pc_net_moments(PC_PASS pc_net_row(PC_PASS m, n, k));
-    precise Real square = pc_dot(arm, arm);
-    precise Real xx = own.xx * counts + heavy * (square - arm.x * arm.x);
-    precise Real xy = own.xy * counts - heavy * arm.x * arm.y;
-    precise Real xz = own.xz * counts - heavy * arm.x * arm.z;
-    precise Real yy = own.yy * counts + heavy * (square - arm.y * arm.y);
-    precise Real yz = own.yz * counts - heavy * arm.y * arm.z;
-    precise Real zz = own.zz * counts + heavy * (square - arm.z * arm.z);
-    Sym3 more;
-    more.xx = xx;
-    more.xy = xy;
-    more.xz = xz;
-    more.yy = yy;
-    more.yz = yz;
-    more.zz = zz;
-    all = pc_sym_add(all, more);
-  }
-  // (in units of its largest, whose cube is a number in single precision too)
-  precise Real trace = all.xx + all.yy + all.zz;
-  Real unit = pc_inverse_or_zero(trace);
-  Sym3 scaled;
-  Vec3 diagonal = pc_scale(Vec3(all.xx, all.yy, all.zz), unit);
-  Vec3 beside = pc_scale(Vec3(all.xy, all.xz, all.yz), unit);
-  scaled.xx = diagonal.x;
-  scaled.yy = diagonal.y;
-  scaled.zz = diagonal.z;
-  scaled.xy = beside.x;
-  scaled.xz = beside.y;
-  scaled.yz = beside.z;
-  r.w = pc_select3(r.held, held_w, pc_sym_mul(pc_sym_inverse(scaled), pc_scale(l, unit)));
-  r.v = pc_select3(r.held, held_v, r.v);
-  r.centre = pc_select3(r.held, held_at, r.centre);
-  return r;
-}
-// Brings what was solved nearer to the rigid motion, where `brings`: of how each body differs from it `kept` is left.
-PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Real kept, Mask brings) {
-  Vec3 sum = pc_zero3();
-  Real zero = PC_REAL(0.0);
-  for (uint k = 0u; k < n.bodies; k++) {
-    Slot b = pc_net_body(PC_PASS m, n, k);
-    Index row = pc_net_row(PC_PASS m, n, k);
-    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
-    Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), r.centre);
-    Vec3 v = pc_sub(pc_add(r.v, pc_cross(r.w, arm)), pc_ld3_net(PC_PASS b, NET_VELOCITY));
-    Vec3 l = pc_sub(pc_sym_mul(pc_net_moments(PC_PASS row), r.w), pc_ld3_net(PC_PASS b, NET_MOMENTUM));
-    Vec3 rigid = pc_scale(v, heavy);
-    Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
-    Vec3 turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
-    Vec3 next = pc_madd(rigid, pc_sub(push, rigid), kept);
-    Vec3 next_turn = pc_madd(l, pc_sub(turn, l), kept);
-    Mask here = pc_and(brings, heavy > zero);
-    pc_st3_net(PC_PASS b, NET_PUSH, pc_select3(here, next, push));
-    pc_st3_net(PC_PASS b, NET_PUSH + 3u, pc_select3(here, next_turn, turn));
-    sum = pc_add(sum, pc_select3(here, next, pc_zero3()));
-  }
-  // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work
-  for (uint k = 0u; k < n.bodies; k++) {
-    Slot b = pc_net_body(PC_PASS m, n, k);
-    Mask fixed = pc_select(PC_LD(net_rows, b, NET_MASS) > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
-    Mask here = pc_and(brings, fixed);
-    pc_st3_net(PC_PASS b, NET_PUSH, pc_select3(here, pc_negate(sum), pc_ld3_net(PC_PASS b, NET_PUSH)));
-    pc_st3_net(PC_PASS b, NET_PUSH + 3u, pc_select3(here, pc_zero3(), pc_ld3_net(PC_PASS b, NET_PUSH + 3u)));
-  }
-  for (uint k = 0u; k < n.springs; k++) {
-    Slot s = pc_net_spring(PC_PASS m, n, k);
-    pc_st3_net(PC_PASS s, NET_IMPULSE, pc_select3(brings, pc_zero3(), pc_ld3_net(PC_PASS s, NET_IMPULSE)));
-  }
-}
-// Where Newton's method did not come far enough, and the sub-step would make energy: less of what was solved, down to none of it.
-PC_FN void pc_net_bound(PC_IO Slot m, Net n) {
-  Real kept = PC_REAL(0.5);
-  for (uint i = 0u; i < PC_COUNT(net_bounds); i++) {
-    Energy e = pc_net_energy(PC_PASS m, n);
-    Real motion = PC_REAL(0.0);
-    for (uint k = 0u; k < n.bodies; k++) {
-      Slot b = pc_net_body(PC_PASS m, n, k);
-      Vec3 v = pc_ld3_net(PC_PASS b, NET_VELOCITY);
-      precise Real sum = motion + pc_dot(v, v) * pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS)) * PC_REAL(0.5);
-      motion = sum;
-    }
-    precise Real most = (e.scale + motion) * PC_INFO(net_made);
-    Mask makes = e.made > most;
-    if (!PC_ANY(makes)) break;  // lint: allow (others keep what they have)
-    Rigid r = pc_net_rigid(PC_PASS m, n);
-    Real less = pc_select(PC_IS(PC_COUNT(net_bounds) - 1u - i), kept, PC_REAL(0.0));
-    pc_net_stiffen(PC_PASS m, n, r, less, makes);
-    kept = PC_REAL(0.25);
-  }
-}
+#include "net_bound.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
@@ -508,10 +253,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     share = pc_select(better, zero, share);
     if (!PC_ANY(pc_or(goes, back))) break;  // lint: allow (nothing more is found)
     if (i + 1u < rounds) pc_net_search(PC_PASS m, n, goes);
+    uint left = rounds - 1u - i;
     // a step that led up is made a quarter of it; the last one that may be is not taken
-    Real less = pc_select(PC_IS(rounds - 1u - i), PC_REAL(0.25), zero);
+    Real less = pc_select(PC_IS(left), PC_REAL(0.25), zero);
     precise Real kept = share * less;
-    share = pc_select(back, kept, pc_select(goes, pc_select(PC_IS(rounds - 1u - i), one, zero), zero));
+    share = pc_select(back, kept, pc_select(goes, pc_select(PC_IS(left), one, zero), zero));
     pc_net_try(PC_PASS m, n, share);
   }
   pc_net_bound(PC_PASS m, n);

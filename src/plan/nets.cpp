@@ -49,7 +49,8 @@ void Nets::build(const WorldState& state) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> of_root;
   std::ranges::sort(springs, {}, [&](std::uint32_t row) { return state.joints[row].index; });
   for (const std::uint32_t row : springs) {
-    const std::uint32_t a = state.body_ids.row(state.joints[row].body_a), b = state.body_ids.row(state.joints[row].body_b);
+    const std::uint32_t a = state.body_ids.row(state.joints[row].body_a);
+    const std::uint32_t b = state.body_ids.row(state.joints[row].body_b);
     const std::uint32_t root = groups.root(state.responds(a) ? a : b);
     if (!held_by_pins[root]) of_root[root].push_back(row);
   }

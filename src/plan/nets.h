@@ -1,5 +1,5 @@
-// Nets: bodies that springs between points join, where no pin holds any of them. The springs of a net are solved at once
-// (kernels/net_solve.inl).
+// Nets: bodies that springs between points join, where no pin holds any of them. The springs of a net are solved at
+// once (kernels/net_solve.inl).
 #pragma once
 #include <cstdint>
 #include <span>
