@@ -166,12 +166,15 @@ PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Real kept, Mask brings) 
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    pc_st3_net(PC_PASS s, NET_IMPULSE, pc_select3(brings, pc_zero3(), pc_ld3_net(PC_PASS s, NET_IMPULSE)));
+    // what is left of the impulse has no second half but for the couple that it exerts
+    Vec3 impulse = pc_ld3_net(PC_PASS s, NET_IMPULSE);
+    pc_st3_net(PC_PASS s, NET_IMPULSE, pc_select3(brings, pc_scale(impulse, kept), impulse));
+    PC_ST(net_rows, s, NET_LATE, pc_select(brings, PC_REAL(1.0), PC_LD(net_rows, s, NET_LATE)));
   }
 }
 // Where Newton's method did not come far enough, and the sub-step would make energy: less of what was solved, down to
 // none of it.
-PC_FN void pc_net_bound(PC_IO Slot m, Net n) {
+PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
   Real kept = PC_REAL(0.5);
   for (uint i = 0u; i < PC_COUNT(net_bounds); i++) {
     Energy e = pc_net_energy(PC_PASS m, n);
@@ -183,8 +186,10 @@ PC_FN void pc_net_bound(PC_IO Slot m, Net n) {
       motion = sum;
     }
     precise Real most = (e.scale + motion) * PC_INFO(net_made);
-    Mask makes = e.made > most;
+    Mask makes = pc_and(asked, e.made > most);
     if (!PC_ANY(makes)) break;  // lint: allow (others keep what they have)
+    Slot keeper = pc_net_body(PC_PASS m, n, 0u);
+    PC_ST(net_rows, keeper, NET_BOUND, pc_select(makes, PC_REAL(1.0), PC_LD(net_rows, keeper, NET_BOUND)));
     Rigid r = pc_net_rigid(PC_PASS m, n);
     uint bounds = PC_COUNT(net_bounds);
     uint left = bounds - 1u - i;

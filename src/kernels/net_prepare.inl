@@ -15,6 +15,8 @@ PC_FN void pc_prepare_body(PC_IO Slot b, Index row) {
   PC_ST(net_rows, b, NET_MASS, linear.s);
   pc_sts_net(PC_PASS b, NET_INERTIA, pc_net_inertia(pc_quaternion(turned.v, turned.s), inverse.v, linear.s));
   PC_ST(net_rows, b, NET_MADE, PC_REAL(0.0));
+  PC_ST(net_rows, b, NET_FRESH, PC_REAL(1.0));
+  PC_ST(net_rows, b, NET_BOUND, PC_REAL(0.0));
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {

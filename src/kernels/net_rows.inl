@@ -12,6 +12,8 @@ const uint NET_TURN = 35u;
 const uint NET_SPIN = 39u;      // angular velocity before the solve
 const uint NET_PUSHED = 42u;    // NET_PUSH before the solve
 const uint NET_MADE = 48u;      // what the first halves did to its energy
+const uint NET_FRESH = 54u;     // of the first body: 1 before the sub-step's first solve
+const uint NET_BOUND = 55u;     // and 1 where net_bound made less of what was solved
 // of a spring
 const uint NET_LINE = 0u;       // from its point of a to that of b, where the sub-step began
 const uint NET_LENGTH = 3u;

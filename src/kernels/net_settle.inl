@@ -152,7 +152,8 @@ PC_FN Dues pc_settle_dues(PC_IO Slot m, Net n) {
   return d;
 }
 
-PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share) {
+// `first`: 1 where the first half was no spring's (net_bound) and is no change that will go on either.
+PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share, Real first) {
   Quad linear = PC_GATHER(motion, row, 0u);
   Quad angular = PC_GATHER(motion, row, 1u);
   Quad before = PC_GATHER(velocity_parts, row, 0u);
@@ -166,8 +167,10 @@ PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share) {
   precise Vec3 all_turn = turn + paid_turn;
   // the velocity that is read lacks half of what the sub-step changed: what came after it counts as if it had come
   // before
-  precise Vec3 shift = push * PC_REAL(2.0) + paid;
-  precise Vec3 shift_turn = turn * PC_REAL(2.0) + paid_turn;
+  Vec3 solved = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED), first);
+  Vec3 solved_turn = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED + 3u), first);
+  precise Vec3 shift = (push * PC_REAL(2.0) + paid) + solved;
+  precise Vec3 shift_turn = (turn * PC_REAL(2.0) + paid_turn) + solved_turn;
   linear.v = pc_madd(linear.v, all, linear.s);
   before.v = pc_madd(before.v, shift, linear.s);
   Vec3 l = pc_add(angular.v, all_turn);
@@ -182,9 +185,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
   Real zero = PC_REAL(0.0);
   Real made = zero;
+  Real first = PC_LD(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_BOUND);
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     pc_settle_body(PC_PASS b, pc_net_row(PC_PASS m, n, k));
+    pc_st3_net(PC_PASS b, NET_PUSHED, pc_ld3_net(PC_PASS b, NET_PUSH));
+    pc_st3_net(PC_PASS b, NET_PUSHED + 3u, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     precise Real sum = made + PC_LD(net_rows, b, NET_MADE);
     made = sum;
   }
@@ -214,7 +220,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real paid = share * d.first - share * share * d.second * PC_REAL(0.5);
   precise Real left = due - paid;
   for (uint k = 0u; k < n.bodies; k++) {
-    pc_settle_store(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k), share);
+    pc_settle_store(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k), share, first);
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);

@@ -230,10 +230,31 @@ PC_FN Merit pc_net_merit(PC_IO Slot m, Net n, Real share) {
 }
 #include "net_bound.inl"
 
+// Where there is something to solve: the first time in a sub-step, and where others have changed what it left. Otherwise
+// what happens in other islands would decide whether a net is solved once more.
+PC_FN Mask pc_net_wants(PC_IO Slot m, Net n) {
+  Mask wants = PC_LD(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH) > PC_REAL(0.5);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Index row = pc_net_row(PC_PASS m, n, k);
+    Quad linear = PC_GATHER(motion, row, 0u);
+    Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
+    Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+    Vec3 dv = pc_sub(linear.v, v);
+    Vec3 dl = pc_sub(PC_GATHER(motion, row, 1u).v, l);
+    Mask moved = pc_or(pc_nonzero(dv.x), pc_or(pc_nonzero(dv.y), pc_nonzero(dv.z)));
+    Mask turned = pc_or(pc_nonzero(dl.x), pc_or(pc_nonzero(dl.y), pc_nonzero(dl.z)));
+    wants = pc_or(wants, pc_and(linear.s > PC_REAL(0.0), pc_or(moved, turned)));
+  }
+  return wants;
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
   Real zero = PC_REAL(0.0);
   Real one = PC_REAL(1.0);
+  Mask asked = pc_net_wants(PC_PASS m, n);
+  if (!PC_ANY(asked)) return;  // lint: allow (nothing is stored otherwise)
   pc_net_begin(PC_PASS m, n);
   uint rounds = PC_COUNT(net_rounds);
   Real share = zero;
@@ -248,8 +269,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     open = pc_select(better, now.open, open);
     pc_net_take(PC_PASS m, n, share, better);
     precise Real enough = now.given * PC_INFO(net_accuracy);
-    Mask goes = pc_and(better, now.open > enough);
-    Mask back = pc_select(better, zero, one) > PC_REAL(0.5);
+    Mask goes = pc_and(asked, pc_and(better, now.open > enough));
+    Mask back = pc_and(asked, pc_select(better, zero, one) > PC_REAL(0.5));
     share = pc_select(better, zero, share);
     if (!PC_ANY(pc_or(goes, back))) break;  // lint: allow (nothing more is found)
     if (i + 1u < rounds) pc_net_search(PC_PASS m, n, goes);
@@ -260,15 +281,16 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     share = pc_select(back, kept, pc_select(goes, pc_select(PC_IS(left), one, zero), zero));
     pc_net_try(PC_PASS m, n, share);
   }
-  pc_net_bound(PC_PASS m, n);
+  pc_net_bound(PC_PASS m, n, asked);
+  PC_ST(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH, zero);
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     Index row = pc_net_row(PC_PASS m, n, k);
     Quad linear = PC_GATHER(motion, row, 0u);
     Quad angular = PC_GATHER(motion, row, 1u);
-    Mask moves = linear.s > zero;
+    Mask moves = pc_and(asked, linear.s > zero);
     precise Real made = PC_LD(net_rows, b, NET_MADE) + pc_net_count(PC_PASS b);
-    PC_ST(net_rows, b, NET_MADE, made);
+    PC_ST(net_rows, b, NET_MADE, pc_select(asked, made, PC_LD(net_rows, b, NET_MADE)));
     linear.v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
     Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     PC_SCATTER_IF(moves, motion, row, 0u, linear);
