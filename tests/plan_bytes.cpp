@@ -24,7 +24,7 @@ std::vector<const PlanEntry*> transfers(const StepPlan& plan, PlanEntry::Kind ki
 /// Until contacts stay the same for a while; how many they are.
 std::uint32_t come_to_rest(World& world, Stepper& stepper) {
   std::uint32_t contacts = 0;
-  for (int steps = 0, same = 0; steps < 600 && same < 20; steps++) {
+  for (int steps = 0, same = 0; steps < 1200 && same < 60; steps++) {
     const std::uint32_t now = stepper.step(world, frame).contacts;
     same = now == contacts ? same + 1 : 0;
     contacts = now;

@@ -168,7 +168,8 @@ class Detector {
   bool touches(const WorldState& state, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
                Touch<Scalar>& touch);
   template <class Scalar>
-  Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held, Touch<Scalar>& touch) const;
+  Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
+                 Touch<Scalar>& touch) const;
   /// Of a contact whose shapes are far apart: the gap that they have to come across, and how far each comes by itself [m].
   struct Distant {
     std::uint32_t row;
@@ -194,9 +195,12 @@ class Detector {
   template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
   template <class Scalar> void find_sent(const Substep<Scalar>& look);
   template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
+  template <class Scalar> static Scalar depth(const Meeting<Scalar>& x);
+  template <class Scalar> bool covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const;
   template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among);
   template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
+  template <class Scalar> void mark_struck(const Substep<Scalar>& look, std::size_t seen);
   template <class Scalar> void find_unseen(const Substep<Scalar>& look, bool first);
   float went(std::uint32_t body) const { return ways_[body].went; }
 
@@ -230,12 +234,13 @@ class Detector {
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
   std::vector<std::uint32_t> renewed_, struck_, unseen_, on_standing_, inner_;  // places in the contacts of a sub-step
-  std::vector<double> soonest_;                                        // of bodies: when in the sub-step the first impact is [s]
-  std::uint32_t waiting_ = 0;                                          // impacts
-  std::vector<std::vector<std::uint32_t>> anew_;                       // by level: rows that were renewed in the sub-step before
-  std::vector<Distant> distant_;                                       // in ascending order of their rows
-  std::vector<char> sent_elsewhere_;  // bodies that contacts may send elsewhere than they go by themselves
-  std::vector<std::uint32_t> gone_;   // rows that came apart in the step
+  std::vector<float> times_struck_;                                             // of bodies, when impacts were looked for last
+  std::vector<double> soonest_;                   // of bodies: when in the sub-step the first impact is [s]
+  std::uint32_t waiting_ = 0;                     // impacts
+  std::vector<std::vector<std::uint32_t>> anew_;  // by level: rows that were renewed in the sub-step before
+  std::vector<Distant> distant_;                  // in ascending order of their rows
+  std::vector<char> sent_elsewhere_;              // bodies that contacts may send elsewhere than they go by themselves
+  std::vector<std::uint32_t> gone_;               // rows that came apart in the step
   std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;               // some body has

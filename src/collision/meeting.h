@@ -117,17 +117,22 @@ template <class Scalar, class Find> struct Approach {
 enum class Advanced { apart, together, creeps };
 
 /// Conservative advancement from t on to the instant within h [s] at which the shapes come within `near` [m] of each other, with the manifold
-/// there. Bounded: it creeps where shapes turn fast for how they come together.
+/// there. As long as they are apart along the normal that was found last they need no look for another. Bounded: it creeps where shapes turn
+/// fast for how they come together.
 template <class Scalar, class Find>
 Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m) {
-  constexpr int most = 16;
-  for (int k = 0; k < most; k++) {
-    const double gap = way.gap(m);
+  constexpr int looks = 16, along = 8;
+  for (int k = 0; k < looks; k++) {
+    double gap = way.gap(m);
     if (gap <= near) return Advanced::together;
-    if (t >= h) return Advanced::apart;
-    const double nearing = way.nearing(m.normal);
-    if (nearing * (h - t) < gap - near) return Advanced::apart;
-    t = std::min(h, t + (gap - near / 2) / nearing);
+    for (int i = 0; i < along && gap > near; i++) {
+      if (t >= h) return Advanced::apart;
+      const double nearing = way.nearing(m.normal);
+      if (nearing * (h - t) < gap - near) return Advanced::apart;
+      t = std::min(h, t + (gap - near / 2) / nearing);
+      way.go_to(t);
+      gap = double(support_gap(way.here, way.there, m.normal));
+    }
     if (!way.look(t, m)) return Advanced::apart;
   }
   return Advanced::creeps;

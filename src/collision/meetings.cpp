@@ -217,6 +217,14 @@ template <class Scalar> struct Detector::Meeting {
       narrow(x, y, look, c.hint, m);
   }
 
+  /// Shapes may be as near by their supports as they are at no point of the manifold: then the nearest points are those that act.
+  void find_together(const Manifold<Scalar>& m) {
+    const double most = std::max(0.0, double(least_separation(m))) + seam_share * thick;
+    c.together = 0;
+    for (std::uint32_t i = 0; i < m.count; i++)
+      if (double(m.points[i].separation) <= most) c.together |= std::uint8_t(1u << i);
+  }
+
   /// `sent`: how far others of a joint tree may send them against each other.
   void find(double sent) {
     const double way = this->way(), goes = std::max(way, sent), moved = this->moved();
@@ -252,9 +260,7 @@ template <class Scalar> struct Detector::Meeting {
       if (!meets && c.gap > sent) return stand_aside();
       if (meets) m = met;  // else the rows stop what others send them beyond the gap of now
     }
-    c.together = 0;
-    for (std::uint32_t i = 0; i < m.count; i++)
-      if (double(m.points[i].separation) <= seam_share * thick) c.together |= std::uint8_t(1u << i);
+    find_together(m);
     to_light_side(m, share);
     if (!c.touches && meets) back_to_start(ta, tb, apart, share, t, m);
     c.struck = !c.jointed && (!c.touches || quick);
@@ -274,6 +280,7 @@ template <class Scalar> struct Detector::Meeting {
     Manifold<Scalar> m;
     const double t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
     if (t < 0) return false;
+    find_together(m);
     to_light_side(m, share);
     back_to_start(ta, tb, apart, share, t, m);
     c.struck = true;
@@ -334,6 +341,24 @@ template <class Scalar> bool Detector::lies_in(const Meeting<Scalar>& x, std::ui
   return m.count > 0;
 }
 
+/// Of the points at which a contact is closed, how far apart the shapes are where they overlap most.
+template <class Scalar> Scalar Detector::depth(const Meeting<Scalar>& x) {
+  Scalar least = std::numeric_limits<Scalar>::max();
+  for (std::uint32_t point = 0; point < 4; point++)
+    if (x.c.together >> point & 1) least = std::min(least, x.out[7 + 4 * point]);
+  return least;
+}
+
+/// Whether y may take x's place there. Over a seam each of two lies in the other: the one that holds more stays.
+template <class Scalar> bool Detector::covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const {
+  if (!lies_in<Scalar>(x, point, y)) return false;
+  const Scalar of_x = depth(x), of_y = depth(y);
+  if (of_y < of_x || (of_y == of_x && y.row < x.row)) return true;
+  for (std::uint32_t other = 0; other < 4; other++)
+    if ((y.c.together >> other & 1) != 0 && !lies_in<Scalar>(y, other, x)) return true;
+  return false;
+}
+
 /// Inner edges: where all points at which a contact with what stands is closed lie in other things that stand, which the body touches with
 /// other normals, the surface goes on, and there is nothing to hit. `among`: places of which some may go.
 template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among) {
@@ -353,7 +378,7 @@ template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& l
       for (std::uint32_t point = 0; point < 4 && covered; point++) {
         if ((x.c.together >> point & 1) == 0) continue;
         covered = false;
-        for (std::size_t j = begin; j < end && !covered; j++) covered = lies_in<Scalar>(x, point, meeting(on_standing_[j]));
+        for (std::size_t j = begin; j < end && !covered; j++) covered = covers<Scalar>(meeting(on_standing_[j]), x, point);
       }
       if (covered) inner_.push_back(on_standing_[i]);
     }
@@ -442,6 +467,7 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
 template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto struck_at = [&](std::uint32_t body) { return double(delta[body * reals_of(Buffer::delta) + 8]); };
+  const auto times_struck = [&](std::uint32_t body) { return float(delta[body * reals_of(Buffer::delta) + 7]); };
   const std::size_t before = struck_.size();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
@@ -449,12 +475,14 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     if (row == 0 || c.acts || c.touches || c.jointed) continue;
     double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
     if (from == 0 && !c.waits) continue;
+    const float times = times_struck(c.rows[0]) + times_struck(c.rows[1]);
+    if (times == c.times_struck && !c.waits) continue;  // as it was looked at last
+    c.times_struck = times;
     c.waits = false;
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
     Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
     if (!m.find_from(from)) continue;
-    c.times_struck = -1;
     renewed_.push_back(at);
     struck_.push_back(at);
     if (look.s.stands(c.rows[1])) on_standing_.push_back(at);
@@ -464,22 +492,29 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
   put_off(look, before);
 }
 
-/// Contacts that may have an impact: those that meet, and touching ones that bounce and whose bodies are fast enough; after the `first` sweep those
-/// whose bodies were struck since they were looked at last.
+/// Marks the bodies that the sweep before has struck, and those of impacts that it had not seen: the next looks at no others.
+template <class Scalar> void Detector::mark_struck(const Substep<Scalar>& look, std::size_t seen) {
+  Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
+  constexpr std::size_t reals = reals_of(Buffer::delta);
+  for (std::size_t body = 0; body < times_struck_.size(); body++) {
+    const float times = float(delta[body * reals + 7]);
+    delta[body * reals + 9] = times != times_struck_[body];
+    times_struck_[body] = times;
+  }
+  for (std::size_t i = seen; i < struck_.size(); i++)
+    for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows) delta[body * reals + 9] = 1;
+}
+
+/// Contacts that may have an impact: those that meet, and touching ones that bounce; after the `first` sweep those of marked bodies.
 template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, bool first) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
-  const auto times_struck = [&](std::uint32_t body) { return float(delta[body * reals_of(Buffer::delta) + 7]); };
-  const double slow = look.options.least_bounce * look.h * 0.99;
+  const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
   unseen_.clear();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
-    Standing& c = standings_[row];
+    const Standing& c = standings_[row];
     if (row == 0 || !c.acts || c.jointed || !(c.struck || c.bounces)) continue;
-    const float times = times_struck(c.rows[0]) + times_struck(c.rows[1]);
-    const bool looked = first ? !c.struck && double(way_of(look, c.rows[0]).goes + way_of(look, c.rows[1]).goes) < slow
-                              : times == c.times_struck;
-    c.times_struck = times;
-    if (!looked) unseen_.push_back(at);
+    if (first || is_marked(c.rows[0]) || is_marked(c.rows[1])) unseen_.push_back(at);
   }
 }
 
@@ -496,6 +531,10 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
     const Bodies<Scalar> bodies(s.tables);
     const Substep<Scalar> look{s, bodies, contacts, options, h, first, false};
     meet_in(look);
+    const Scalar* const delta = s.tables.data<Scalar>(Buffer::delta);
+    times_struck_.resize(levers_.size());
+    for (std::size_t body = 0; body < levers_.size(); body++)
+      times_struck_[body] = float(delta[body * reals_of(Buffer::delta) + 7]);
     find_unseen(look, true);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
@@ -512,7 +551,9 @@ void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
     const Bodies<Scalar> bodies(s.tables);
     const Substep<Scalar> look{s, bodies, contacts, options, h, false, last};
+    const std::size_t seen = struck_.size();
     meet_struck(look);
+    mark_struck(look, seen);
     find_unseen(look, false);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});

@@ -217,9 +217,16 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   pc_set_back(PC_PASS ia, before_a, a, t, hits); pc_set_back(PC_PASS ib, before_b, b, t, hits);
 }
 
-// What no impact has changed since it was looked at finds nothing again: the host leaves such blocks out (Detector::find_unseen).
+// A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at what the sweep before has struck, as the
+// host has marked it (Detector::mark_struck).
+PC_FN Mask pc_was_struck(PC_IO Slot m) {
+  Quad a = PC_GATHER(delta, PC_ENDS(contact_ends, m, 0u), 2u);
+  Quad b = PC_GATHER(delta, PC_ENDS(contact_ends, m, 1u), 2u);
+  return pc_max(a.v.y, b.v.y) > PC_REAL(0.5);
+}
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask mine = pc_impact_mine(PC_PASS m);
+  if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) mine = pc_and(mine, pc_was_struck(PC_PASS m));  // lint: allow (the same for all lanes)
   if (!PC_ANY(mine)) return;  // lint: allow (nothing to do otherwise)
   if (PC_ANY(pc_and(mine, pc_may_hit(PC_PASS m)))) pc_hit(PC_PASS m, mine);  // lint: allow (nothing to do otherwise)
 }

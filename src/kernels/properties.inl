@@ -52,6 +52,7 @@ PC_PROPERTY(body, delta, 3, real, turned, scratch, 0, "rad^2", "sum of the squar
 PC_PROPERTY(body, delta, 4, vec3, rotation, scratch, 0, "rad", "rotation vector, world axes")
 PC_PROPERTY(body, delta, 7, real, struck, scratch, 0, "1", "how often impacts struck it in this step")
 PC_PROPERTY(body, delta, 8, real, struck_at, scratch, 0, "s", "when in this sub-step an impact struck it last; 0: none has")
+PC_PROPERTY(body, delta, 9, real, struck_before, scratch, 0, "1", "1 where the sweep of impacts before struck it")
 PC_BUFFER(body, material, 2, "read when a contact is made")
 PC_PROPERTY(body, material, 0, real, static_friction, input, 0.5, "1", "")
 PC_PROPERTY(body, material, 1, real, kinetic_friction, input, 0.5, "1", "")

@@ -351,7 +351,8 @@ Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& stat
   biased.phase = Phase::biased;
   collider_->collide_again(state, entry.octave, last, substep_of(biased, infos, state.tables.precision()));
   if (entry.place == Place::gl)
-    if (Status ok = backend.upload(Buffer::contact); !ok) return ok;
+    for (const Buffer buffer : {Buffer::contact, Buffer::delta})
+      if (Status ok = backend.upload(buffer); !ok) return ok;
   const bool frictionless = entry.kernel == Kernel::contact_impact_frictionless;
   KernelRun prepare = impacts;
   prepare.kernel = frictionless ? Kernel::contact_prepare_frictionless : Kernel::contact_prepare;

@@ -243,10 +243,10 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
     if (along) pc_parallel_points(core_a, core_b, s, margin, 0x3000001u, m);
   }
   // the closest point itself, where nothing else holds it: instead of the shallowest of four. Over a face it is
-  // what stands out farthest, which does not depend on how the search went
+  // what stands out farthest, which does not depend on how the search went; what lies beside the face may stand out anywhere
   Vec3 closest = k.a;
-  if (use_a) closest = pc_madd(pc_core_support(b, pc_negate(k.n)), k.n, -k.gap);
-  else if (use_b) closest = pc_core_support(a, k.n);
+  if (m.count > 0u && use_a) closest = pc_madd(pc_core_support(b, pc_negate(k.n)), k.n, -k.gap);
+  else if (m.count > 0u && use_b) closest = pc_core_support(a, k.n);
   precise Real separation = k.gap - a.radius - b.radius;
   Real held_slop = m.count == 4u && separation < PC_REAL(0.0) ? PC_FLAT_SLOP : PC_HELD_SLOP;
   precise Real deepest = separation + pc_min(a.reach, b.reach) * held_slop;
