@@ -200,7 +200,7 @@ class Detector {
   template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among);
   template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
-  template <class Scalar> void mark_struck(const Substep<Scalar>& look, std::size_t seen);
+  template <class Scalar> void mark_struck(const Substep<Scalar>& look);
   template <class Scalar> void find_unseen(const Substep<Scalar>& look, bool first);
   float went(std::uint32_t body) const { return ways_[body].went; }
 

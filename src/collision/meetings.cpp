@@ -463,21 +463,30 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
   std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });
 }
 
+/// Marks the bodies that impacts have struck since it was called last: looks and sweeps go by that.
+template <class Scalar> void Detector::mark_struck(const Substep<Scalar>& look) {
+  Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
+  constexpr std::size_t reals = reals_of(Buffer::delta);
+  times_struck_.resize(levers_.size());
+  for (std::size_t body = 0; body < times_struck_.size(); body++) {
+    const float times = float(delta[body * reals + 7]);
+    delta[body * reals + 9] = times != times_struck_[body];
+    times_struck_[body] = times;
+  }
+}
+
 /// Contacts that do not act, of bodies that were struck since: as their velocities are now, from that instant on.
 template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) {
-  const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
+  Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto struck_at = [&](std::uint32_t body) { return double(delta[body * reals_of(Buffer::delta) + 8]); };
-  const auto times_struck = [&](std::uint32_t body) { return float(delta[body * reals_of(Buffer::delta) + 7]); };
+  const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
   const std::size_t before = struck_.size();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
     Standing& c = standings_[row];
     if (row == 0 || c.acts || c.touches || c.jointed) continue;
-    double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
-    if (from == 0 && !c.waits) continue;
-    const float times = times_struck(c.rows[0]) + times_struck(c.rows[1]);
-    if (times == c.times_struck && !c.waits) continue;  // as it was looked at last
-    c.times_struck = times;
+    if (!is_marked(c.rows[0]) && !is_marked(c.rows[1]) && !c.waits) continue;  // as it was when it was looked at last
+    const double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
     c.waits = false;
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
@@ -490,19 +499,8 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
   if (struck_.size() == before) return void(waiting_ = 0);
   drop_inner_edges(look, std::span(struck_).subspan(before));
   put_off(look, before);
-}
-
-/// Marks the bodies that the sweep before has struck, and those of impacts that it had not seen: the next looks at no others.
-template <class Scalar> void Detector::mark_struck(const Substep<Scalar>& look, std::size_t seen) {
-  Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
-  constexpr std::size_t reals = reals_of(Buffer::delta);
-  for (std::size_t body = 0; body < times_struck_.size(); body++) {
-    const float times = float(delta[body * reals + 7]);
-    delta[body * reals + 9] = times != times_struck_[body];
-    times_struck_[body] = times;
-  }
-  for (std::size_t i = seen; i < struck_.size(); i++)
-    for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows) delta[body * reals + 9] = 1;
+  for (std::size_t i = before; i < struck_.size(); i++)  // no sweep has seen them
+    for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows) delta[body * reals_of(Buffer::delta) + 9] = 1;
 }
 
 /// Contacts that may have an impact: those that meet, and touching ones that bounce; after the `first` sweep those of marked bodies.
@@ -531,10 +529,7 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
     const Bodies<Scalar> bodies(s.tables);
     const Substep<Scalar> look{s, bodies, contacts, options, h, first, false};
     meet_in(look);
-    const Scalar* const delta = s.tables.data<Scalar>(Buffer::delta);
-    times_struck_.resize(levers_.size());
-    for (std::size_t body = 0; body < levers_.size(); body++)
-      times_struck_[body] = float(delta[body * reals_of(Buffer::delta) + 7]);
+    mark_struck(look);
     find_unseen(look, true);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
@@ -551,9 +546,8 @@ void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
     const Bodies<Scalar> bodies(s.tables);
     const Substep<Scalar> look{s, bodies, contacts, options, h, false, last};
-    const std::size_t seen = struck_.size();
+    mark_struck(look);
     meet_struck(look);
-    mark_struck(look, seen);
     find_unseen(look, false);
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});

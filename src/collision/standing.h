@@ -12,7 +12,6 @@ struct Standing {
   float thick = 0;                   // see Detector::thickness [m]
   float looked = 0;                  // how far its shapes had moved by then in this step, together, at most [m]
   std::uint32_t hint = 0;            // of the narrow phase
-  float times_struck = 0;            // how often its bodies had been, in this step, when it was looked at last since they were
   bool touches = false;              // its shapes did, when they were looked at last
   bool acts = false;                 // its rows do
   bool struck = false;               // as an impact: nothing of it lasts
