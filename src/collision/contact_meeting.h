@@ -1,0 +1,237 @@
+// One contact in one sub-step: whether its shapes touch or come together, when, and the manifold there.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "collision/detector.h"
+#include "collision/flights.h"
+#include "collision/hook.h"
+#include "collision/meeting.h"
+#include "collision/substep_bodies.h"
+#include "collision/support_gap.h"
+
+namespace pcphys {
+
+inline constexpr std::size_t contact_reals = reals_of(Buffer::contact);
+
+inline double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+/// Points of a manifold that go on from those of the one before: its number from 1, by feature, or 0.
+template <class Scalar>
+std::array<std::uint32_t, 4> points_before(const Manifold<Scalar>& m, const std::array<std::uint32_t, 4>& before) {
+  std::array<std::uint32_t, 4> from{};
+  bool taken[4] = {};
+  for (std::uint32_t i = 0; i < m.count; i++)
+    for (std::uint32_t j = 0; j < 4 && from[i] == 0; j++) {
+      if (taken[j] || m.points[i].feature != before[j]) continue;
+      taken[j] = true;
+      from[i] = j + 1;
+    }
+  return from;
+}
+
+/// What is left over goes to the nearest point of before: a feature may change its name while the contact stays.
+template <class Scalar>
+void match_nearest(const Manifold<Scalar>& m, const Scalar* before, std::uint32_t count, std::array<std::uint32_t, 4>& from) {
+  for (std::uint32_t i = 0; i < m.count; i++) {
+    if (from[i] != 0) continue;
+    Scalar best = std::numeric_limits<Scalar>::max();
+    for (std::uint32_t j = 0; j < count; j++) {
+      if (std::find(from.begin(), from.end(), j + 1) != from.end()) continue;
+      Scalar squared = 0;
+      for (std::uint32_t k = 0; k < 3; k++) {
+        const Scalar off = m.points[i].p[k] - before[4 + 4 * j + k];
+        squared += off * off;
+      }
+      if (squared >= best) continue;
+      best = squared;
+      from[i] = j + 1;
+    }
+  }
+}
+
+/// What a sub-step's contacts are looked at with.
+template <class Scalar> struct Detector::Substep {
+  WorldState& s;
+  const Bodies<Scalar>& bodies;
+  std::span<const std::uint32_t> contacts;
+  const Options& options;
+  double h;
+  bool first, last;  // the first sub-step of the step; the last look of the sub-step
+};
+
+/// One contact in one sub-step.
+template <class Scalar> struct Detector::Meeting {
+  Detector& d;
+  WorldState& s;
+  const Bodies<Scalar>& bodies;
+  const Options& options;
+  double h;
+  std::uint32_t row;
+
+  Standing& c = d.standings_[row];
+  Scalar* out = s.tables.data<Scalar>(Buffer::contact) + row * contact_reals;
+  std::uint32_t row_a = c.rows[0], row_b = c.rows[1];
+  const Proxy &pa = d.proxies_[c.shapes[0]], &pb = d.proxies_[c.shapes[1]];
+  double thick = double(c.thick);
+  double share = share_of<Scalar>(s.tables, row_a, row_b);
+  Moved now = bodies.moved(row_a, row_b);
+  TwistOf<Scalar> ta = bodies.twist(row_a), tb = bodies.twist(row_b);
+  Scalar apart[3] = {0, 0, 0};
+  Scalar look = 0;
+
+  static double lever(const Proxy& p) { return double(p.lever_any) + double(p.lever_across); }
+  static double spin(const TwistOf<Scalar>& t, const Proxy& p) {
+    return double(t.across) * double(p.lever_across) + double(t.turn) * double(p.lever_any);
+  }
+  double speed() const {
+    double squared = 0;
+    for (int k = 0; k < 3; k++) squared += (double(tb.v[k]) - double(ta.v[k])) * (double(tb.v[k]) - double(ta.v[k]));
+    return std::sqrt(squared);
+  }
+  /// How far the two may have come against each other since they were looked at, at most [m].
+  double moved() const {
+    const Moved then = c.looked > 0 ? d.looked_[row] : Moved{};
+    return distance(now.apart, then.apart) + distance(now.turned_a, then.turned_a) * lever(pa) +
+           distance(now.turned_b, then.turned_b) * lever(pb);
+  }
+  /// And how far they may come in the sub-step by their own velocities [m].
+  double way() const { return (speed() + spin(ta, pa) + spin(tb, pb)) * h; }
+  /// What moves fast along what answers too, or turns into it, is struck and not held: nothing of the contact lasts.
+  bool quick() const {
+    const double turns = (pa.responds ? spin(ta, pa) : 0) + (pb.responds ? spin(tb, pb) : 0);
+    const double shifts = (speed() * std::min(share, 1 - share) + turns) * h;
+    return shifts > constants::quick_share * thick;
+  }
+
+  void stand_aside() {
+    if (!c.acts) return;
+    c.acts = c.struck = false;
+    out[31] = c.jointed ? -1 : 0;
+    out[39] = 2;
+    std::fill(out + 40, out + 44, Scalar(0));
+    s.contacts.features[row].fill(0xffffffffu);
+    d.gone_.push_back(row);
+  }
+
+  ShapeView<Scalar> view(const Proxy& p, std::uint32_t shape, std::uint32_t body) const {
+    ShapeView<Scalar> v;
+    const Scalar* at = s.tables.data<Scalar>(Buffer::shape) + (shape + 1) * reals_of(Buffer::shape);
+    place_shape(at, p.kind, p.hull, p.centred, bodies.poses().orientation(body), v);
+    return v;
+  }
+  void look_at(const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& m) const {
+    if (options.narrow == NarrowPhase::fcl)
+      fcl_hook()(x, y, look, m);
+    else
+      narrow(x, y, look, c.hint, m);
+  }
+
+  /// Shapes may be as near by their supports as they are at no point of the manifold: then the nearest points are those that act.
+  void find_together(const Manifold<Scalar>& m) {
+    const double most = std::max(0.0, double(least_separation(m))) + seam_share * thick;
+    c.together = 0;
+    for (std::uint32_t i = 0; i < m.count; i++)
+      if (double(m.points[i].separation) <= most) c.together |= std::uint8_t(1u << i);
+  }
+
+  /// `sent`: how far others of a joint tree may send them against each other.
+  void find(double sent) {
+    const double way = this->way(), goes = std::max(way, sent), moved = this->moved();
+    const bool quick = this->quick();
+    if (c.touches && !c.struck && !quick && moved <= constants::manifold_share * thick) return;
+    if (!c.touches && c.gap - moved > goes) return stand_aside();
+    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
+    bodies.poses().shift(row_a, row_b, apart);
+    ShapeView<Scalar> there = b;
+    for (int k = 0; k < 3; k++) there.p[k] += apart[k];
+    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * goes);
+    Manifold<Scalar> m;
+    look_at(a, there, m);
+    d.looked_[row] = now;
+    c.looked = d.went(row_a) + d.went(row_b);
+    c.touches = false;
+    c.gap = double(look);
+    if (m.count == 0) return stand_aside();
+    c.gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
+    const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
+    const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
+    c.touches = c.gap <= (c.acts && !quick ? seam_share * thick : near);
+    double t = 0;
+    bool meets = c.touches;
+    if (!c.touches) {
+      if (c.gap > goes) return stand_aside();
+      const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
+        look_at(x, y, z);
+      };
+      Manifold<Scalar> met = m;
+      t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, met);
+      meets = t >= 0;
+      if (!meets && c.gap > sent) return stand_aside();
+      if (meets) m = met;  // else the rows stop what others send them beyond the gap of now
+    }
+    find_together(m);
+    to_light_side(m, share);
+    if (!c.touches && meets) back_to_start(ta, tb, apart, share, t, m);
+    c.struck = !c.jointed && (!c.touches || quick);
+    write(m, std::max(t, 0.0), c.jointed ? -1 : c.struck ? std::max(t, 1e-9 * h) : 0);
+  }
+
+  /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.
+  bool find_from(double from) {
+    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
+    bodies.poses().shift(row_a, row_b, apart);
+    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way());
+    const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
+    const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
+    const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
+      look_at(x, y, z);
+    };
+    Manifold<Scalar> m;
+    const double t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
+    if (t < 0) return false;
+    find_together(m);
+    to_light_side(m, share);
+    back_to_start(ta, tb, apart, share, t, m);
+    c.struck = true;
+    write(m, t, std::max(t, 1e-9 * h));
+    return true;
+  }
+  static Mover<Scalar> mover(const Proxy& p, const ShapeView<Scalar>& shape, const TwistOf<Scalar>& t) {
+    return {&shape, t, float(spin(t, p)), p.centred, float(lever(p)), p.inner / 2};
+  }
+
+  /// Impacts remember nothing. `t`: when the shapes meet [s].
+  void write(const Manifold<Scalar>& m, double t, double impact) {
+    std::array<std::uint32_t, 4> from{};
+    if (c.acts && impact <= 0) {
+      from = points_before(m, s.contacts.features[row]);
+      match_nearest(m, out, std::uint32_t(out[3]), from);
+    }
+    c.acts = true;
+    for (int k = 0; k < 3; k++) out[k] = m.normal[k];
+    out[3] = Scalar(m.count);
+    for (std::uint32_t i = 0; i < 4; i++) {
+      const bool real = i < m.count;
+      for (std::uint32_t k = 0; k < 3; k++) out[4 + 4 * i + k] = real ? m.points[i].p[k] : Scalar(0);
+      out[7 + 4 * i] = real ? m.points[i].separation : Scalar(0);
+      s.contacts.features[row][i] = real ? m.points[i].feature : 0xffffffffu;
+      out[40 + i] = Scalar(from[i]);
+    }
+    if (impact > 0) {
+      std::fill(out + 20, out + 28, Scalar(0));
+      std::fill(out + 32, out + 36, Scalar(0));
+    }
+    for (int k = 0; k < 3; k++) out[36 + k] = apart[k];
+    out[31] = Scalar(impact);
+    out[39] = 1;
+    const auto on_the_way = [&](int k) { return t * (double(ta.v[k]) + share * (double(tb.v[k]) - double(ta.v[k]))); };
+    d.origins_[row] = bodies.poses().position(row_a) + Vec3{on_the_way(0), on_the_way(1), on_the_way(2)};
+  }
+};
+
+}  // namespace pcphys
