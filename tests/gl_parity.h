@@ -107,6 +107,7 @@ void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count
 template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<Scalar>& state, std::uint32_t width) {
   const Domain domain = schema(kernel).domain;
   if (of_trees(domain)) return {{0, lay_out(state.trees, width).lists.count()}};
+  if (domain == Domain::net) return {};  // whole scenes compare them (tests/joint_drives.cpp, pcphys wild springs --bits-gl)
   if (domain == Domain::body) return {{0, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size())}};
   const bool joints = domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint;
   std::vector<Range> ranges = joints ? state.joint_colours : state.contact_colours;

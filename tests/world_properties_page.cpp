@@ -43,6 +43,7 @@ const char* text_of(Domain domain) {
     case Domain::tree_joint: return "tree joints";
     case Domain::tree: return "trees";
     case Domain::tree_nodes: return "trees, and nodes of large ones";
+    case Domain::net: return "nets of springs";
     case Domain::row: return "all bodies";
     case Domain::edge: return "edges";
   }

@@ -15,7 +15,7 @@ namespace {
 Table own_table(Domain domain) {
   if (one_by_one(domain)) return Table::body;
   const bool joints = domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint;
-  return joints || of_trees(domain) ? Table::joint : Table::contact;
+  return joints || of_trees(domain) || domain == Domain::net ? Table::joint : Table::contact;
 }
 }  // namespace
 
@@ -80,6 +80,7 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
       CHECK(bound.contains(Buffer::tree_blocks));
       CHECK((bound.contains(Buffer::tree_ends) || bound.contains(Buffer::tree_order)));
     }
+    if (s.domain == Domain::net) CHECK(bound.contains(Buffer::nets));
     if (s.domain == Domain::tree_joint) CHECK(bound.contains(Buffer::joint_paths));
     if (s.domain == Domain::tree_contact) CHECK(bound.contains(Buffer::contact_paths));
     if (s.domain == Domain::contact || s.domain == Domain::free_contact)

@@ -155,6 +155,12 @@ inline constexpr double gap_roundings = 1;
 /// How often a sub-step looks for impacts, at most, while there are any: what one hands on, the next body hands on again, as
 /// in Newton's cradle.
 inline constexpr unsigned impact_sweeps = 8;
+/// Nets of springs (kernels/net_solve.inl): looks at a sub-step's lengths, most search directions after each, and how often what was
+/// solved is made less where the sub-step would make more energy than this share of what the net has.
+inline constexpr unsigned net_rounds = 8, net_searches = 24, net_bounds = 4;
+inline constexpr double net_made = 1e-5;
+/// A Newton step's equations are solved to this many roundings.
+inline constexpr double net_roundings = 10;
 /// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet of what
 /// holds it (docs/impulses.md).
 inline constexpr unsigned settling_visits = 8, settling_steps = 16;

@@ -22,6 +22,7 @@ using element_tree_parents = uint;
 using element_tree_ends = uint;
 using element_tree_order = uint;
 using element_contact_paths = uint;
+using element_nets = uint;
 using element_island_ends = uint;
 using element_island_labels = uint;
 #define PC_TABLE(table, doc)
@@ -57,6 +58,7 @@ using element_island_labels = uint;
 #define PC_LOOP_tree_joint PC_LOOP_contact
 #define PC_LOOP_tree PC_LOOP_contact
 #define PC_LOOP_tree_nodes PC_LOOP_contact
+#define PC_LOOP_net PC_LOOP_contact
 #define PC_LOOP_row for (uint k = call.begin; k < call.end; k++) pc_kernel(io, k);
 #define PC_LOOP_edge PC_LOOP_row
 #define PC_READ(buffer) io.buffer = static_cast<const element_##buffer*>(call.buffers[unsigned(Buffer::buffer)]);

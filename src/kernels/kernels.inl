@@ -5,7 +5,7 @@
 //
 // domain: body (the rows listed in `bodies`), contact or joint (slots, colour by colour or all at once; free_contact and
 // tree_contact are those without and with a body of a tree, free_joint and tree_joint the same of joints that close loops), tree
-// (a joint tree a lane, blocks of trees of one shape; tree_nodes where a work group may share one that stands alone, see nodes.inl), row (every row of bodies), edge (two bodies that act on each other).
+// (a joint tree a lane, blocks of trees of one shape; tree_nodes where a work group may share one that stands alone, see nodes.inl), net (a net of springs a lane, blocks of nets of one shape), row (every row of bodies), edge (two bodies that act on each other).
 // stage: whose backend runs it; islands: a device's, in place of the host's union-find (plan/islands.h).
 // accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in GLSL; PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum).
 // Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of
@@ -23,6 +23,7 @@ PC_ROWS(contact, contact_reach, 12)
 PC_ROWS(joint, joint_rows, 96)
 PC_ROWS(joint, tree_rows, 176)
 PC_ROWS(joint, tree_drive_rows, 36)
+PC_ROWS(joint, net_rows, 72)
 #endif
 
 #ifdef PC_KERNEL
@@ -60,6 +61,9 @@ PC_KERNEL(tree_joint_mass_driven, tree_joint, joints, PC_READ(joint_paths) PC_RE
 PC_KERNEL(tree_joint_solve, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(node_operator) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_joint_solve_driven, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_WRITE(joint_rows) PC_READ(node_operator) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_joint_arms, tree_joint, joints, PC_READ(joint_paths) PC_READ(pose) PC_WRITE(joint_rows))
+PC_KERNEL(net_prepare, net, joints, PC_READ(nets) PC_READ(pose) PC_READ(mass) PC_READ(motion) PC_READ(joint_frame) PC_READ(joint_drive) PC_WRITE(net_rows))
+PC_KERNEL(net_solve, net, joints, PC_READ(nets) PC_READ(pose) PC_READ(mass) PC_WRITE(motion) PC_WRITE(net_rows))
+PC_KERNEL(net_settle, net, joints, PC_READ(nets) PC_READ(pose) PC_READ(mass) PC_READ(joint_frame) PC_WRITE(motion) PC_WRITE(velocity_parts) PC_WRITE(joint_impulse) PC_WRITE(net_rows))
 PC_KERNEL(joint_keep, joint, joints, PC_READ(joint_order) PC_WRITE(joint_impulse))
 PC_KERNEL(tree_prepare, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(joint_solved) PC_READ(joint_impulse) PC_WRITE(tree_rows))
 PC_KERNEL(tree_drive_rates, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(mass) PC_READ(motion) PC_WRITE(tree_drive_rows))

@@ -67,6 +67,12 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   const double epsilon = std::numeric_limits<Scalar>::epsilon();
   biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
                                      constants::loop_roundings * epsilon));
+  biased.net_rounds = constants::net_rounds;
+  biased.net_searches = constants::net_searches;
+  biased.net_slack = Scalar(constants::net_roundings * epsilon);
+  biased.net_bounds = constants::net_bounds;
+  biased.net_made = Scalar(constants::net_made);
+  biased.net_accuracy = Scalar(constants::net_roundings * epsilon * constants::net_roundings * epsilon);
   biased.cross_share = Scalar(constants::cross_share);
   biased.seen_turn = Scalar(constants::seen_turn);
   biased.strayed_turn = Scalar(constants::strayed_turn);

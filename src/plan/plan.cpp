@@ -181,10 +181,10 @@ void leave_out(const PlanSignature& s, OwnKernels::Ordered own, StepPlan& plan) 
   if (plan.flight) out("kernels of each sub-step", "nothing meets or holds a body: one makes all of its sub-steps");
   if (plan.flight && s.resident && s.places[std::size_t(Stage::integrate)] == Place::gl)
     out("downloads", "what a step leaves on the device comes when the host asks for it");
-  if (!s.joints() && !s.trees)
+  if (!s.joints() && !s.trees && !s.nets)
     out("joints", idle ? all_sleep : s.sleepers ? "no body that is awake has any" : "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
-  if ((s.joints() || s.trees) && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
+  if ((s.joints() || s.trees) && !s.nets && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
   if (s.trees && !s.solves_trees()) out("tree solve", "every joint is a pin that one body turns about");
   if (s.pivots_alone) out("free motion", "every body that moves turns about a pin");
@@ -291,6 +291,8 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
   solve_free_joints(b, s, Phase::biased, k);
+  if (s.nets) b.kernel(Kernel::net_prepare, Phase::biased, k);
+  if (s.nets) b.kernel(Kernel::net_solve, Phase::biased, k);
   if (s.solves_trees()) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
   // (joints that close loops are stiff: they go by the trees of now)
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, k == 0 || s.tree_joints ? Phase::first : Phase::biased, k);
@@ -299,10 +301,12 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
   b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
+  if (s.nets && s.contacts()) b.kernel(Kernel::net_solve, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
+  if (s.nets) b.kernel(Kernel::net_settle, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_relax, Phase::relax, k);
   solve_free_joints(b, s, Phase::relax, k);
   if (s.free_contacts && s.gyroscopic) b.kernel(contacts(s).refresh, Phase::relax, k);
@@ -382,7 +386,7 @@ std::span<const Access> accesses(const PlanEntry& entry) {
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }
 
 bool in_flight(const PlanSignature& s, OwnKernels::Ordered own) {
-  const bool alone = !s.trees && !s.joints() && !s.contacts();
+  const bool alone = !s.trees && !s.joints() && !s.nets && !s.contacts();
   return s.bodies && alone && s.octaves == 1 && s.integrator == Integrator::verlet && std::ranges::all_of(own, [](const auto& k) {
            return k->form == OwnKernel::Form::reduction ||
                   (k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate));

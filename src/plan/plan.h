@@ -35,6 +35,7 @@ struct PlanSignature {
   bool tree_joints = false;                 // and of bodies whose trees do
   bool tree_drives = false;                 // motors or springs of joints that stand in a tree
   bool joint_drives = false;                // of others, or springs between two points
+  bool nets = false;                        // springs between points of bodies that no pin holds
   bool shapes = false;                      // some pair could ever touch
   bool free_contacts = false;               // some do in this step, of bodies that stand in no tree
   bool tree_contacts = false;               // and of bodies that do

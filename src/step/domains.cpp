@@ -26,6 +26,7 @@ std::vector<std::uint32_t>* list_of(Buffer buffer, Schedule& schedule) {
     case Buffer::contact_paths: return &schedule.contacts.paths();
     case Buffer::contact_ends: return &schedule.contacts.ends();
     case Buffer::contact_order: return &schedule.contacts.order();
+    case Buffer::nets: return &schedule.nets.list();
     case Buffer::bodies_by_id: return &schedule.own.bodies;
     case Buffer::moving_by_id: return &schedule.own.moving;
     case Buffer::joints_by_id: return &schedule.own.joints;
@@ -53,12 +54,14 @@ bool needs_colours(Kernel kernel) {
 std::uint32_t side_by_side(Domain domain, const Schedule& schedule) {
   if (domain == Domain::body) return schedule.moving;
   if (of_trees(domain)) return schedule.trees.side_by_side();
+  if (domain == Domain::net) return schedule.nets.side_by_side();
   return (of_joints(domain) ? schedule.joints : schedule.contacts).side_by_side();
 }
 void pack(Domain domain, std::uint32_t lanes, Schedule& schedule) {
   if (of_joints(domain)) schedule.joints.pack(lanes);
   if (of_contacts(domain)) schedule.contacts.pack(lanes);
   if (of_trees(domain)) schedule.trees.pack(lanes);
+  if (domain == Domain::net) schedule.nets.pack(lanes);
 }
 std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsigned octave) {
   if (domain == Domain::body) return schedule.ranges(octave);
@@ -68,6 +71,7 @@ std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsign
   if (domain == Domain::free_joint) return schedule.joints.free_ranges(octave);
   if (domain == Domain::tree_joint) return schedule.joints.tree_ranges(octave);
   if (of_trees(domain)) return schedule.trees.ranges(octave);
+  if (domain == Domain::net) return schedule.nets.ranges(octave);
   if (domain == Domain::free_contact) return schedule.contacts.free_ranges(octave);
   if (domain == Domain::tree_contact) return schedule.contacts.tree_ranges(octave);
   return schedule.contacts.ranges(octave);
@@ -75,6 +79,7 @@ std::span<const Range> ranges_of(Domain domain, const Schedule& schedule, unsign
 std::size_t slots_of(Buffer buffer, Domain domain, const Schedule& schedule) {
   if (buffer == Buffer::contact_reach) return schedule.contacts.reach_slots();
   if (of_trees(domain)) return schedule.trees.slots();
+  if (domain == Domain::net) return schedule.nets.slots();
   return (of_joints(domain) ? schedule.joints : schedule.contacts).slots();
 }
 std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule& schedule) {
@@ -89,6 +94,7 @@ std::uint64_t version_of(Buffer buffer, const WorldState& state, const Schedule&
     return schedule.own.version + 1;
   if (buffer == Buffer::near_first || buffer == Buffer::near_rows) return schedule.own.near.version + 1;
   if (buffer == Buffer::island_ends) return schedule.islands.version() + 1;
+  if (buffer == Buffer::nets) return schedule.nets.version() + 1;
   return schedule.trees.version() + 1;
 }
 

@@ -124,7 +124,7 @@ std::vector<std::uint32_t> closings_of_trees(const Forest& forest, std::span<con
 
 }  // namespace
 
-void TreeSlots::build(const WorldState& state) {
+void TreeSlots::build(const WorldState& state, const Nets& nets) {
   solved_.build(state);
   std::vector<JointLink> links, joints;  // joints: without springs between two points, and those that others stand for
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
@@ -144,7 +144,7 @@ void TreeSlots::build(const WorldState& state) {
   closing_.assign(forest_.closing().begin(), forest_.closing().end());
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];  // a spring without stiffness and damping does nothing
-    if (joint.spring && joint.driven() && !state.asleep(joint)) closing_.push_back(row);
+    if (joint.spring && joint.driven() && !state.asleep(joint) && !nets.holds(row)) closing_.push_back(row);
   }
   std::ranges::sort(closing_);
   pivots_ = find_pivots(forest_, state, solved_);
@@ -153,7 +153,7 @@ void TreeSlots::build(const WorldState& state) {
   shapes_.build(forest_);
   alike_ = shapes_.most_alike();
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
-  find_drives(state, links);
+  find_drives(state, links, nets);
   answered_.clear();
   for (const std::uint32_t row : forest_.closing())
     if (!parallel_[row] && (loop_nodes_.node(links[row - 1].a) > 0 || loop_nodes_.node(links[row - 1].b) > 0))
@@ -161,12 +161,12 @@ void TreeSlots::build(const WorldState& state) {
   width_ = 0;
 }
 
-void TreeSlots::find_drives(const WorldState& state, std::span<const JointLink> links) {
+void TreeSlots::find_drives(const WorldState& state, std::span<const JointLink> links, const Nets& nets) {
   closing_drives_ = false;
   free_springs_ = 0;
   std::size_t driven = 0;
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
-    driven += state.joints[row].driven() && !state.asleep(state.joints[row]);
+    driven += state.joints[row].driven() && !state.asleep(state.joints[row]) && !nets.holds(row);
   for (const std::uint32_t row : closing_) {
     const JointRecord& joint = state.joints[row];
     if (!joint.driven()) continue;
@@ -213,6 +213,21 @@ void TreeSlots::pack(std::uint32_t width) {
   pack_trees(forest_, shapes_, width, blocks_, {octaves_, of_bodies_.count});
 }
 
+void NetSlots::group(OctaveOf of_bodies) {
+  of_bodies_ = of_bodies;
+  width_ = 0;
+}
+
+void NetSlots::pack(std::uint32_t width) {
+  if (width_ == width) return;
+  width_ = width;
+  version_++;
+  octaves_.clear();
+  if (!of_bodies_.octaves.empty())
+    for (std::size_t i = 0; i < nets_.count(); i++) octaves_.push_back(of_bodies_.octaves[nets_.net(i).moving]);
+  nets_.pack(width, {octaves_, of_bodies_.count}, blocks_);
+}
+
 void Schedule::update_structure(const WorldState& state) {
   rows_.clear();
   own.forget();
@@ -235,7 +250,8 @@ void Schedule::update_structure(const WorldState& state) {
   joint_ends_.assign(state.joints.size(), {0, 0});
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
     joint_ends_[row] = {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)};
-  trees.build(state);
+  nets.build(state);
+  trees.build(state, nets.nets());
   joints.colour(state, joint_ends_, trees.closing(), 0, trees.loop_nodes(), trees.parallel());
   group({});
 }
@@ -257,6 +273,7 @@ void Schedule::group(std::span<const std::uint8_t> octaves) {
   joints.group(of);
   contacts.group(of);
   trees.group(of);
+  nets.group(of);
 }
 
 }  // namespace pcphys

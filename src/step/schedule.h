@@ -8,6 +8,7 @@
 #include "pcphys/step.h"
 #include "plan/coloring.h"
 #include "plan/forest.h"
+#include "plan/nets.h"
 #include "plan/pivots.h"
 #include "plan/tree_paths.h"
 #include "step/backend.h"
@@ -93,7 +94,7 @@ class ColouredSlots {
 /// Joint trees, one a lane, for a backend's width.
 class TreeSlots {
  public:
-  void build(const WorldState& state);
+  void build(const WorldState& state, const Nets& nets);
   /// As ColouredSlots::group.
   void group(OctaveOf of_bodies);
   void pack(std::uint32_t width);
@@ -129,7 +130,7 @@ class TreeSlots {
   SolvedJoints solved_;
   Forest forest_;
   void find_parallel(std::span<const JointLink> links);
-  void find_drives(const WorldState& state, std::span<const JointLink> links);
+  void find_drives(const WorldState& state, std::span<const JointLink> links, const Nets& nets);
 
   TreeNodes nodes_, loop_nodes_;
   std::vector<char> parallel_;
@@ -141,6 +142,33 @@ class TreeSlots {
   TreeBlocks blocks_;
   OctaveOf of_bodies_;
   std::vector<std::uint8_t> octaves_;  // of the trees, where there are several
+  std::uint32_t width_ = 0;
+  std::uint64_t version_ = 0;
+};
+
+/// Nets of springs, one a lane.
+class NetSlots {
+ public:
+  void build(const WorldState& state) {
+    nets_.build(state);
+    width_ = 0;
+  }
+  /// As ColouredSlots::group.
+  void group(OctaveOf of_bodies);
+  void pack(std::uint32_t width);
+
+  const Nets& nets() const { return nets_; }
+  std::uint32_t side_by_side() const { return nets_.most_alike(); }
+  std::size_t slots() const { return std::size_t{blocks_.slots} * width_; }
+  std::span<const Range> ranges(unsigned octave) const { return std::span(blocks_.ranges).subspan(octave, 1); }
+  std::vector<std::uint32_t>& list() { return blocks_.list; }
+  std::uint64_t version() const { return version_; }
+
+ private:
+  Nets nets_;
+  NetBlocks blocks_;
+  OctaveOf of_bodies_;
+  std::vector<std::uint8_t> octaves_;  // of the nets, where there are several
   std::uint32_t width_ = 0;
   std::uint64_t version_ = 0;
 };
@@ -172,6 +200,7 @@ class Schedule {
   std::uint64_t bodies_version = 0;
   ColouredSlots joints, contacts;  // joints: those that stand in no tree
   TreeSlots trees;
+  NetSlots nets;
   OwnLists own;         // of kernels of the host's own
   IslandLists islands;  // of a device that finds them
 

@@ -24,6 +24,7 @@ constexpr BufferSchema buffer_schemas[] = {
     {"tree_ends", Table::joint, 0, "body row and joint row of a node"},
     {"tree_order", Table::node, 0, "row of a node in the table of nodes"},
     {"contact_paths", Table::contact, 0, "of contacts with trees the way from the roots to their bodies"},
+    {"nets", Table::joint, 0, "of nets of springs their sizes, which bodies each spring joins, and the rows of both"},
     {"bodies_by_id", Table::body, 0, "all bodies in the order of their ids"},
     {"moving_by_id", Table::body, 0, "bodies that can move, in the order of their ids"},
     {"joints_by_id", Table::joint, 0, "joints in the order of their ids"},

@@ -42,6 +42,7 @@ enum class Buffer : std::uint16_t {
   tree_ends,
   tree_order,
   contact_paths,
+  nets,
   bodies_by_id,
   moving_by_id,
   joints_by_id,
@@ -65,7 +66,7 @@ enum class Kernel : std::uint8_t {
 };
 
 /// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others. joint: all that stand in
-/// no tree; free_joint and tree_joint: the same of these. row: every row of bodies; edge: two bodies that act on each other.
+/// no tree; free_joint and tree_joint: the same of these. net: a net of springs; row: every row of bodies; edge: two bodies that act on each other.
 enum class Domain : std::uint8_t {
   body,
   contact,
@@ -76,6 +77,7 @@ enum class Domain : std::uint8_t {
   tree_joint,
   tree,
   tree_nodes,
+  net,
   row,
   edge
 };
