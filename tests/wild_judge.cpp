@@ -81,17 +81,18 @@ Observation one_body(double speed, double height) {
 }  // namespace
 
 TEST_CASE("balance: a fall makes nothing, a kick does, and what the host or a drive puts in is no rise") {
-  Balance fall, kick, driven, host;
+  Balance fall(0), kick(0), driven(0), host(0);
+  constexpr double dt = 0.1;
   for (Balance* b : {&fall, &kick, &driven, &host}) b->begin(one_body(0, 5));
-  fall.stepped(one_body(-10, 0), 0);
+  fall.stepped(one_body(-10, 0), 0, dt);
   CHECK(fall.rise() < 1e-12);
-  kick.stepped(one_body(-10, 0), 0);
-  kick.stepped(one_body(11, 0), 0);  // 121 J in place of 100
+  kick.stepped(one_body(-10, 0), 0, dt);
+  kick.stepped(one_body(11, 0), 0, dt);  // 121 J in place of 100
   CHECK(kick.rise() == doctest::Approx(0.21 / 2).epsilon(0.01));
-  driven.stepped(one_body(-11, 0), 21);
+  driven.stepped(one_body(-11, 0), 21, dt);
   CHECK(driven.rise() < 1e-12);
   host.changed(one_body(0, 5), one_body(8, 5));
-  host.stepped(one_body(8, 5), 0);
+  host.stepped(one_body(8, 5), 0, dt);
   CHECK(host.rise() < 1e-12);
 }
 

@@ -70,6 +70,10 @@ void Balance::see_scale(const Observation& seen) {
       if (b.there && b.kind == BodyKind::dynamic) lift += b.mass.mass * length(seen.gravity) * spread(b.mass);
     lift_ = std::max(lift_, lift);
   }
+  see_fall(seen);
+}
+
+void Balance::see_fall(const Observation& seen) {
   fall_ = std::max(fall_, std::fabs(potential_energy(seen) - start_potential_));
 }
 
@@ -87,11 +91,19 @@ void Balance::changed(const Observation& before, const Observation& after) {
   see_scale(after);
 }
 
-void Balance::stepped(const Observation& seen, double work) {
+void Balance::stepped(const Observation& seen, double work, double dt) {
   offset_ += work;
   put_in_ += work;
+  see_fall(seen);
+  double noise = 0;
+  for (const SeenBody& b : seen.bodies) {
+    if (!b.there || b.kind != BodyKind::dynamic) continue;
+    const double slowest = rounding_ * (length(b.pose.position) + spread(b.mass)) / dt;
+    noise += 0.5 * b.mass.mass * slowest * slowest;
+  }
+  if (std::isfinite(noise)) noise_ = std::max(noise_, noise);
   const double balance = energy(seen) - offset_;
-  const double scale = motion_ + fall_ + put_in_ + lift_;
+  const double scale = motion_ + fall_ + put_in_ + lift_ + noise_;
   if (scale > 0) rise_ = std::max(rise_, (balance - lowest_ - allowed_) / scale);
   if (!std::isfinite(balance)) rise_ = balance;
   lowest_ = std::min(lowest_, balance);

@@ -75,7 +75,10 @@ Measure Verdict::worst() const {
 }
 
 Judge::Judge(const Scene& scene, Precision precision)
-    : scene_(scene), f64_(precision == Precision::f64), balance_(!scene.rules.single_encounter) {}
+    : scene_(scene),
+      f64_(precision == Precision::f64),
+      balance_(f64_ ? double(std::numeric_limits<double>::epsilon()) : double(std::numeric_limits<float>::epsilon()),
+               !scene.rules.single_encounter) {}
 
 double Judge::energy_bound() const {
   if (!scene_.rules.single_encounter) return energy_share;
@@ -175,7 +178,7 @@ void Judge::stepped(const Observation& before, const Observation& after, const S
   const bool alone = scene_.rules.single_encounter && after.bodies.size() == 2;
   const double work = alone ? encounter_work(before, after, facts.dt)
                             : facts.contact_work + driven_work(before, after, facts.contact_impulses, facts.dt);
-  balance_.stepped(after, work);
+  balance_.stepped(after, work, facts.dt);
   raise(Measure::energy, balance_.rise(), energy_bound());
   judge_momentum(after);
   judge_untouched(after);

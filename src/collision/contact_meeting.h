@@ -131,6 +131,15 @@ template <class Scalar> struct Detector::Meeting {
       narrow(x, y, look, c.hint, m);
   }
 
+  /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that back, which rows that are
+  /// solved together know and an impact does not.
+  bool settles(const Manifold<Scalar>& m) const {
+    double closing = 0;
+    for (std::uint32_t i = 0; i < m.count; i++)
+      closing = std::max(closing, double(passing(ta, tb, m.normal, m.points[i].p, apart).closing));
+    return closing <= 2 * length(s.gravity) * h;
+  }
+
   /// Shapes may be as near by their supports as they are at no point of the manifold: then the nearest points are those that act.
   void find_together(const Manifold<Scalar>& m) {
     const double most = std::max(0.0, double(least_separation(m))) + seam_share * thick;
@@ -160,7 +169,7 @@ template <class Scalar> struct Detector::Meeting {
     c.gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
-    c.touches = c.gap <= (c.acts && !quick ? seam_share * thick : near);
+    c.touches = c.gap <= (!quick && (c.acts || settles(m)) ? seam_share * thick : near);
     double t = 0;
     bool meets = c.touches;
     if (!c.touches) {

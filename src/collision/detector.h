@@ -194,10 +194,8 @@ class Detector {
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
   template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
   template <class Scalar> void find_sent(const Substep<Scalar>& look);
-  template <class Scalar> bool lies_in(const Meeting<Scalar>& x, std::uint32_t point, const Meeting<Scalar>& y) const;
-  template <class Scalar> static Scalar depth(const Meeting<Scalar>& x);
   template <class Scalar> bool covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const;
-  template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look, std::span<const std::uint32_t> among);
+  template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look);
   template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
   template <class Scalar> void mark_struck(const Substep<Scalar>& look);

@@ -59,6 +59,7 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
   const auto struck_at = [&](std::uint32_t body) { return double(delta[body * reals_of(Buffer::delta) + 8]); };
   const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
   const std::size_t before = struck_.size();
+  inner_.clear();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
     Standing& c = standings_[row];
@@ -72,10 +73,12 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     if (!m.find_from(from)) continue;
     renewed_.push_back(at);
     struck_.push_back(at);
-    if (look.s.stands(c.rows[1])) on_standing_.push_back(at);
+    if (!look.s.stands(c.rows[1])) continue;
+    on_standing_.push_back(at);
+    inner_.push_back(at);
   }
   if (struck_.size() == before) return void(waiting_ = 0);
-  drop_inner_edges(look, std::span(struck_).subspan(before));
+  drop_inner_edges(look);
   put_off(look, before);
   for (std::size_t i = before; i < struck_.size(); i++)  // no sweep has seen them
     for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows) delta[body * reals_of(Buffer::delta) + 9] = 1;

@@ -58,17 +58,17 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     const bool rests = c.touches && !c.struck && goes <= float(constants::quick_share) * c.thick &&
                        moved <= float(constants::manifold_share) * c.thick;
     const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
-    if (rests || far) {
-      if (look.first && c.acts && look.s.stands(c.rows[1])) on_standing_.push_back(at);
-      continue;
+    if (!rests && !far) {
+      Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
+      m.find(double(from_others));
+      if (m.out[39] != 0) renewed_.push_back(at);
+      if (c.struck) struck_.push_back(at);
     }
-    Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
-    m.find(double(from_others));
-    if (m.out[39] != 0) renewed_.push_back(at);
-    if (c.struck) struck_.push_back(at);
-    if (c.acts && look.s.stands(c.rows[1])) on_standing_.push_back(at);
+    if (!c.acts || !look.s.stands(c.rows[1])) continue;
+    on_standing_.push_back(at);
+    if (look.first || (!rests && !far)) inner_.push_back(at);
   }
-  drop_inner_edges(look, on_standing_);
+  drop_inner_edges(look);
   put_off(look, 0);
 }
 
@@ -78,6 +78,7 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
   renewed_.clear();
   struck_.clear();
   on_standing_.clear();
+  inner_.clear();
   if (anew_.size() <= level) anew_.resize(level + 1);
   const auto in = [&]<class Scalar>(Scalar) {
     Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);

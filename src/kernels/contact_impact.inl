@@ -17,6 +17,7 @@
 #include "contact_together.inl"
 #include "contact_turned.inl"
 #include "contact_calming.inl"
+#include "contact_blow.inl"
 
 // u_aim: the velocity u that the row is to leave with; closes: 1 or 0
 struct Closing { Real t; Real u_aim; Real closes; };
@@ -32,13 +33,12 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   // what rests approaches with what the forces give it in a sub-step
   precise Real slow = PC_INFO(restitution_threshold) + pc_abs(acceleration) * h; Mask fast = impact < -slow;
   precise Real most = h * PC_REAL(1.00001);  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
-  // what moves fast and overlaps is pushed apart as the solver would (in the first sweep: its rate is 0 in later ones)
-  precise Real rate = -s * PC_INFO(contact_rate); Real push = pc_select(always, pc_clamp(rate, zero, PC_INFO(push_speed)), zero);
-  Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < push, zero, most));
+  // what overlaps stops where it is: its push would be speed that nothing takes back
+  Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < zero, zero, most));
   Mask now = ahead < most;
-  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < push)));
+  now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < zero)));
   Real bounce = pc_select(fast, e, zero); precise Real thrown = -bounce * impact;
-  precise Real aim = half_change - acceleration * t + pc_max(thrown, push);
+  precise Real aim = half_change - acceleration * t + pc_max(thrown, zero);
   Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); return r;
 }
 PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
@@ -66,13 +66,12 @@ PC_FN void pc_set_back(PC_IO Index i, BodyState before, BodyState after, Real t,
   Mask moves = pc_and(hits, after.inverse_mass > PC_REAL(0.0));
   Vec3 dv = pc_sub(after.v, before.v); Vec3 dl = pc_sub(after.l, before.l);
   precise Real back = -t;
-  Quad hit = PC_GATHER(delta, i, 2u); PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(hit.v.x, pc_max(t, PC_TINY)), hit.v.y, hit.v.z), hit.s));
+  Quad hit = PC_GATHER(delta, i, 2u);
+  PC_SCATTER_IF(moves, delta, i, 2u, pc_quad(Vec3(pc_max(hit.v.x, pc_max(t, PC_TINY)), hit.v.y, hit.v.z), hit.s));
   pc_shift_place(PC_PASS i, moves, pc_scale(dv, back));
   Quad turned = PC_GATHER(delta, i, 1u); precise Real struck = turned.s + PC_REAL(1.0);
   PC_SCATTER_IF(moves, delta, i, 1u, pc_quad(turned.v, struck));
-  Quad linear = PC_GATHER(velocity_parts, i, 0u); Quad angular = PC_GATHER(velocity_parts, i, 1u);
-  PC_SCATTER_IF(moves, velocity_parts, i, 0u, pc_quad(pc_add(linear.v, dv), linear.s));
-  PC_SCATTER_IF(moves, velocity_parts, i, 1u, pc_quad(pc_add(angular.v, dl), angular.s));
+  pc_count_blow(PC_PASS i, moves, dv, dl);
 }
 
 // What has bounced does not bounce again at the end of the step: its place holds the impulse (contact_touch) in place of the approach.
@@ -205,10 +204,9 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Wrench w = pc_wrench(n, t1, t2, push, f.change1, f.change2, f.change_twist);
   // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not close all at once: the
   // impulse leaves no more energy than e allows
-  precise Real parts = -pc_min(pc_min(s0, s1), pc_min(s2, s3)) * PC_INFO(contact_rate); Mask pushed = pc_and(always, parts > pc_noise(PC_PASS relative));
   Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b)));
   precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, w.impulse, w.couple);
-  Real share = pc_select(pushed, PC_REAL(1.0), pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0)));
+  Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
   pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
   pc_keep_impact(PC_PASS m, 0u, j0, share); pc_keep_impact(PC_PASS m, 1u, j1, share); pc_keep_impact(PC_PASS m, 2u, j2, share); pc_keep_impact(PC_PASS m, 3u, j3, share);
   // (what rounding leaves of an approach closes anywhere)

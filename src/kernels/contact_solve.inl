@@ -6,6 +6,7 @@
 #include "contact_visit.inl"
 #include "contact_low.inl"
 #include "contact_carried.inl"
+#include "contact_blow.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
@@ -25,11 +26,18 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #ifdef PC_PLACED
   a.inverse_mass = pc_select(acts, a.inverse_mass, PC_REAL(0.0)); b.inverse_mass = pc_select(acts, b.inverse_mass, PC_REAL(0.0));  // not stored
 #endif
+  Mask blow = PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0);
+  r.touch = pc_select(blow, PC_REAL(0.0), r.touch);
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, r.touch), b.phase);
   // (in short sub-steps of single precision a visit changes a heavy body by a few roundings)
   Mask keeps_low = pc_and(PC_INFO(fine) > PC_REAL(0.0), pc_uneven(a, b));
+  BodyState before_a = a; BodyState before_b = b;
   pc_apply_low(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple, keeps_low);
+  if (PC_ANY(blow)) {  // lint: allow (the same in lanes that are not)
+    pc_count_blow(PC_PASS ia, pc_and(blow, a.inverse_mass > PC_REAL(0.0)), pc_sub(a.v, before_a.v), pc_sub(a.l, before_a.l));
+    pc_count_blow(PC_PASS ib, pc_and(blow, b.inverse_mass > PC_REAL(0.0)), pc_sub(b.v, before_b.v), pc_sub(b.l, before_b.l));
+  }
 }
 #undef pc_kept
 #undef pc_thrown

@@ -77,7 +77,9 @@ PC_FN Real pc_grip(PC_IO Slot m, Real apart) {
 struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
 struct Gaps { Real s0; Real s1; Real s2; Real s3; };  // separations of now
 PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
-  precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + PC_LD(contact_rows, m, ROW_B + i) * shift.turn1 - PC_LD(contact_rows, m, ROW_A + i) * shift.turn2); return s;
+  precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + PC_LD(contact_rows, m, ROW_B + i) * shift.turn1 - PC_LD(contact_rows, m, ROW_A + i) * shift.turn2);
+  // what meets in flight is stopped, where its impact left an approach, and not pushed
+  return pc_select(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0), pc_max(s, PC_REAL(0.0)), s);
 }
 #ifndef PC_MEAN
 #include "contact_settle.inl"

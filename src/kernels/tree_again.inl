@@ -11,6 +11,7 @@
 #include "tree_joint_kept.inl"
 #include "tree_gap.inl"
 #include "tree_trust.inl"
+#include "tree_rebound.inl"
 
 // Of a limit that is met and throws back, how far its rate lacks of that at which it is to be left; else 0.
 PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
@@ -113,6 +114,13 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     wanted = pc_min(wanted, left);
   }
   if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (as above)
+    Real share = pc_rebound_share(PC_PASS m, t);
+    Real less = pc_select(pc_and(steps > PC_REAL(0.5), share < PC_REAL(1.0)), PC_REAL(1.0), PC_REAL(0.0));
+    if (PC_ANY(less > PC_REAL(0.5))) {  // lint: allow (as above)
+      pc_throw_less(PC_PASS m, t, share, less > PC_REAL(0.5));
+      pc_tree_residual(PC_PASS m, t, less, PC_INFO(seen_turn));
+      pc_newton_step(PC_PASS m, t, less);
+    }
     Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
     if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
     if (PC_ANY(strayed > PC_REAL(0.5))) {  // lint: allow (as above)

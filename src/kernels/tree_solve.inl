@@ -10,6 +10,7 @@
 #endif
 #include "tree_factor.inl"
 #include "tree_sweep.inl"
+#include "tree_energy.inl"
 #include "tree_momentum.inl"
 #include "tree_predict.inl"
 
@@ -96,9 +97,16 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   PC_NODES(k, 1u, t) load = pc_max(load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
   PC_MOST(load);
+  Real throws = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     pc_tree_rates(PC_PASS n, up); pc_tree_rebounds(PC_PASS n, up);
+    throws = pc_select(pc_throws_back(PC_PASS n), PC_REAL(1.0), throws);
+  }
+  PC_MOST(throws);
+  if (PC_ANY(throws > PC_REAL(0.5))) {  // lint: allow (not read otherwise)
+    Real energy = pc_tree_energy(PC_PASS m, t);
+    PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_ENERGY, energy);
   }
 #ifdef PC_DRIVES
   PC_NODES(k, 1u, t) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));

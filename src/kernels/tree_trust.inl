@@ -2,6 +2,8 @@
 // Where they more than double the energy of the motion within the tree, all is taken back, and bodies are seen ahead until they have turned by
 // `strayed_turn`: pins then make none, and gaps that this leaves are closed by the push.
 
+#include "tree_energy.inl"
+
 const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other
 const uint TREE_KEPT_PUSHES = TREE_H;        // impulses of the pin and of the angle rows; of a root it is the factor
 
@@ -15,11 +17,6 @@ PC_FN void pc_keep_motion(PC_IO Slot m, Tree t, Mask these) {
     if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_PUSHES, pc_ld3_tree(PC_PASS n, TREE_PIN));
     if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_PUSHES + 3u, pc_ld3_tree(PC_PASS n, TREE_LIMIT));
   }
-}
-// Twice an energy, by the whole tree's mass.
-PC_FN Real pc_node_energy(PC_IO Slot n, Vec3 v, Vec3 w) {
-  precise Real twice = pc_dot(v, v) * PC_LD(tree_rows, n, TREE_MASS) + pc_dot(w, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w));
-  return twice;
 }
 // 1 where the steps have not found their way.
 PC_FN Real pc_strayed(PC_IO Slot m, Tree t) {

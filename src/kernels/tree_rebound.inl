@@ -1,0 +1,75 @@
+// What a tree's limits throw back makes no energy. Newton's law leaves each row at a share of its own approach; where several are met at once, with
+// shares of their own, or what one throws drives another that leans on its limit, that may be more than there was. No more comes back than the
+// solve took, which stops all of them; what exceeds it is left out of the whole throw, and pins close in a step of their own.
+
+// 1 where a limit is met that throws back.
+PC_FN Real pc_is_thrown(PC_IO Slot n) {
+  Real most = PC_REAL(0.0);
+  if (!PC_ANY(pc_throws_back(PC_PASS n))) return most;  // lint: allow (zero otherwise)
+  for (uint i = 0u; i < 3u; i++) {
+    Mask met = pc_and(pc_throws_back(PC_PASS n), pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(0.5)));
+    most = pc_max(most, pc_select(pc_and(met, PC_LD(tree_rows, n, TREE_REBOUND + i) > PC_REAL(0.0)), PC_REAL(1.0), PC_REAL(0.0)));
+  }
+  return most;
+}
+// The share of what came since pc_keep_motion that may stay, where a limit has thrown back; 1 elsewhere.
+PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
+  PC_MEET;
+  Real zero = PC_REAL(0.0);
+  Real first = zero;
+  Real second = zero;
+  Real kept_energy = zero;
+  Real thrown = zero;
+  PC_ALL(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
+    Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
+    Vec3 dv = pc_sub(b.v, kept.l);
+    Vec3 dl = pc_sub(b.l, kept.a);
+    Vec3 dw = pc_sym_mul(b.inertia, dl);
+    Vec3 w = pc_sym_mul(b.inertia, kept.a);
+    precise Real one = pc_dot(kept.l, dv) * PC_LD(tree_rows, n, TREE_MASS) + pc_dot(w, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), dw));
+    Mask moves = PC_LD(tree_rows, n, TREE_MASS) > zero;
+    precise Real all_first = first + pc_select(moves, one, zero);
+    precise Real all_second = second + pc_select(moves, pc_node_energy(PC_PASS n, dv, dw), zero);
+    first = all_first;
+    second = all_second;
+    precise Real all = kept_energy + pc_select(moves, pc_node_energy(PC_PASS n, kept.l, w), zero);
+    kept_energy = all;
+    if (k > 0u) thrown = pc_max(thrown, pc_is_thrown(PC_PASS n));
+  }
+  PC_MEET;
+  precise Real taken = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY) - kept_energy;
+  Real back = pc_max(taken, zero);
+  // 2 share first + share^2 second = back
+  precise Real made = first + first + second;
+  precise Real inside = first * first + second * back;
+  Real root = pc_sqrt(pc_max(inside, zero));
+  precise Real both = first + root;
+  Real rising = pc_div(back, pc_max(both, PC_TINY));
+  precise Real turning = root - first;
+  Real falling = pc_div(turning, pc_max(second, PC_TINY));
+  Real share = pc_clamp(pc_select(first > zero, rising, falling), zero, PC_REAL(1.0));
+  return pc_select(pc_and(thrown > zero, made > back), share, PC_REAL(1.0));
+}
+PC_FN void pc_throw_less(PC_IO Slot m, Tree t, Real share, Mask these) {
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Index body = PC_ENDS(tree_ends, n, 0u);
+    Quad linear = PC_GATHER(motion, body, 0u);
+    Quad angular = PC_GATHER(motion, body, 1u);
+    Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
+    Mask moves = pc_and(these, linear.s > PC_REAL(0.0));
+    PC_SCATTER_IF(moves, motion, body, 0u, pc_quad(pc_madd(kept.l, pc_sub(linear.v, kept.l), share), linear.s));
+    PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_madd(kept.a, pc_sub(angular.v, kept.a), share), angular.s));
+    if (k > 0u) {
+      Six pushes = pc_ld6_tree(PC_PASS n, TREE_KEPT_PUSHES);
+      Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN);
+      Vec3 limit = pc_ld3_tree(PC_PASS n, TREE_LIMIT);
+      pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(these, pc_madd(pushes.l, pc_sub(pin, pushes.l), share), pin));
+      pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_select3(these, pc_madd(pushes.a, pc_sub(limit, pushes.a), share), limit));
+      Vec3 rebound = pc_ld3_tree(PC_PASS n, TREE_REBOUND);
+      if (PC_ANY(pc_throws_back(PC_PASS n))) pc_st3_tree(PC_PASS n, TREE_REBOUND, pc_select3(these, pc_zero3(), rebound));  // lint: allow (not read otherwise)
+    }
+  }
+}
