@@ -115,9 +115,9 @@ template <class Scalar> void Detector::bound(const WorldState& s, double dt, con
   narrow_lanes<float>(options.lanes)
       .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt), float(fall_), largest_turn,
               reach_.data(), tight_.data()});
-  scratch.looks.resize(count);
+  scratch.kinds.resize(count);
   for (std::uint32_t i = 0; i < count; i++)
-    scratch.looks[i] = {Scalar(margins_[i]), reach_[i], proxies_[i].kind, proxies_[i].responds};
+    scratch.kinds[i] = {Scalar(margins_[i]), reach_[i], proxies_[i].kind, proxies_[i].responds};
   for (const std::uint32_t i : odd_) {
     const float more = reach_[i] + (proxies_[i].responds ? float(margins_[i]) : 0.0f);
     const bool plane = proxies_[i].kind == ShapeKind::plane;

@@ -115,7 +115,6 @@ template <class Scalar> struct Detector::Meeting {
     out[39] = 2;
     std::fill(out + 40, out + 44, Scalar(0));
     s.contacts.features[row].fill(0xffffffffu);
-    d.gone_.push_back(row);
   }
 
   ShapeView<Scalar> view(const Proxy& p, std::uint32_t shape, std::uint32_t body) const {

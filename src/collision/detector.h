@@ -19,6 +19,7 @@
 #include "collision/standing.h"
 #include "collision/twist.h"
 #include "collision/view.h"
+#include "cpu/workers.h"
 #include "pcphys/constants.h"
 #include "pcphys/step.h"
 #include "world/state.h"
@@ -32,7 +33,15 @@ class Detector {
     double contact_margin = 0;  // [m]; 0: by the sizes of the shapes
     double least_bounce = 0;    // slower approaches do not bounce [m/s]
     std::size_t max_pairs = 0;
-    std::uint32_t lanes = 0;  // of the narrow phase; 0: the widest that the processor has
+    std::uint32_t lanes = 0;           // of the narrow phase; 0: the widest that the processor has
+    const Workers* workers = nullptr;  // to share looks among, if any
+
+    /// Looks are some microseconds each. FCL's are not known to go beside each other.
+    template <class Part> void share(std::size_t looks, const Part& part) const {
+      constexpr std::uint32_t grain = 16;
+      if (!workers || narrow == NarrowPhase::fcl) return part(0u, std::uint32_t(looks));
+      workers->run(std::uint32_t(looks), grain, part);
+    }
   };
   struct Found {
     std::uint32_t pairs = 0, contacts = 0, points = 0;
@@ -105,7 +114,7 @@ class Detector {
   };
 
   /// What of a shape chooses how its pairs are looked at.
-  template <class Scalar> struct Look {
+  template <class Scalar> struct Kind {
     Scalar margin;
     float reach;
     ShapeKind kind;
@@ -115,9 +124,10 @@ class Detector {
   template <class Scalar> struct Scratch {
     std::vector<ShapeView<Scalar>> shapes;  // world axes, p relative to the body's centre of mass
     AlignedBytes rows;                      // of shapes: narrow_bounds.inl
-    std::vector<Look<Scalar>> looks;        // of shapes
+    std::vector<Kind<Scalar>> kinds;        // of shapes
     PairLanes<Scalar> lanes;
-    AlignedBytes contacts;  // the table of the next step
+    std::vector<Manifold<Scalar>> manifolds;  // of pairs that do not go in lanes
+    AlignedBytes contacts;                    // the table of the next step
   };
 
   /// A pair of which a contact comes.
@@ -125,7 +135,6 @@ class Detector {
     std::uint32_t rows[2];  // in the order of the contact's bodies
     double impact = 0;      // impact_time of the contact [s]
     Manifold<Scalar>* manifold;
-    Manifold<Scalar> own;  // where nothing else holds it
   };
 
   /// What the narrow phase looks at: pairs with a body that goes, or that stands and was stirred.
@@ -163,10 +172,17 @@ class Detector {
   void list_near();
   /// Finds the manifolds of pairs that go in lanes, and marks all pairs that may have one.
   template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
-  /// The manifold of a marked pair. False where no contact comes of it.
-  template <class Scalar>
-  bool touches(const WorldState& state, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
-               Touch<Scalar>& touch);
+  /// Calls does(i) for the pairs that may have a manifold.
+  template <class Does> void each_candidate(const Does& does) {
+    if (round_)
+      marks_.each(does);
+    else
+      for (const std::uint32_t i : near_) does(i);
+  }
+  /// Finds the manifolds of those that do not go in lanes, in their order.
+  template <class Scalar> void find_manifolds(const WorldState& state, const Options& options, Scratch<Scalar>& scratch);
+  /// The manifold of a pair, `found` of which had none in lanes. False where no contact comes of it.
+  template <class Scalar> bool touches(Scratch<Scalar>& scratch, std::uint32_t pair, std::size_t& found, Touch<Scalar>& touch);
   template <class Scalar>
   Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
                  Touch<Scalar>& touch) const;
@@ -189,6 +205,12 @@ class Detector {
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
   template <class Scalar> Scratch<Scalar>& scratch();
+  /// A contact that is looked at in a sub-step: its place, how far its trees may send the two against each other [m], and whether its rows acted.
+  struct Look {
+    std::uint32_t at;
+    float from_others;
+    bool acted;
+  };
   template <class Scalar> struct Substep;
   template <class Scalar> struct Meeting;
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
@@ -232,7 +254,9 @@ class Detector {
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
   std::vector<std::uint32_t> renewed_, struck_, unseen_, on_standing_, inner_;  // places in the contacts of a sub-step
-  std::vector<float> times_struck_;                                             // of bodies, when impacts were looked for last
+  std::vector<Look> looks_;
+  std::vector<std::uint32_t> alone_;              // pairs that do not go in lanes
+  std::vector<float> times_struck_;               // of bodies, when impacts were looked for last
   std::vector<double> soonest_;                   // of bodies: when in the sub-step the first impact is [s]
   std::uint32_t waiting_ = 0;                     // impacts
   std::vector<std::vector<std::uint32_t>> anew_;  // by level: rows that were renewed in the sub-step before

@@ -36,6 +36,7 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
   for (std::size_t i = begin; i < struck_.size(); i++) {
     if (!standing(struck_[i]).waits) continue;
     Meeting<Scalar>{*this, look.s, look.bodies, look.options, h, look.contacts[struck_[i]]}.stand_aside();
+    gone_.push_back(look.contacts[struck_[i]]);
     waiting_++;
   }
   std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });

@@ -81,6 +81,7 @@ template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& l
   std::erase_if(inner_, [&](std::uint32_t at) { return !is_covered(at); });
   for (const std::uint32_t at : inner_) {
     meeting(at).stand_aside();
+    gone_.push_back(row_of(at));
     standings_[row_of(at)].touches = false;  // it is looked at again while it is near
     renewed_.push_back(at);
   }

@@ -40,13 +40,13 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
   PairLanes<Scalar>& lanes = scratch.lanes;
   lanes.begin(pairs_.pairs().size(), near_.size());
   marks_.clear(pairs_.pairs().size());
-  const Look<Scalar>* looks = scratch.looks.data();
+  const Kind<Scalar>* kinds = scratch.kinds.data();
   const Pair* pairs = pairs_.pairs().data();
   const bool native = options.narrow == NarrowPhase::native;
   for (const std::uint32_t i : near_) {
     auto [a, b] = pairs[i];
-    if (!looks[a].responds) std::swap(a, b);  // as in_order
-    const Look<Scalar>&x = looks[a], &y = looks[b];
+    if (!kinds[a].responds) std::swap(a, b);  // as in_order
+    const Kind<Scalar>&x = kinds[a], &y = kinds[b];
     const PairKind kind = pair_kind(x.kind, y.kind);
     if (native && kind != PairKind::other)
       lanes.add(kind, i, a, b, std::min(x.margin, y.margin) + Scalar(x.reach + y.reach));
@@ -56,19 +56,30 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
   lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.rows.data()), marks_);
 }
 
+template <class Scalar> void Detector::find_manifolds(const WorldState& s, const Options& options, Scratch<Scalar>& scratch) {
+  alone_.clear();
+  each_candidate([&](std::uint32_t i) {
+    if (!round_ || !scratch.lanes.manifold(i)) alone_.push_back(i);
+  });
+  scratch.manifolds.resize(alone_.size());
+  options.share(alone_.size(), [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t k = begin; k < end; k++) {
+      const Sight<Scalar> view = sight(s, scratch, alone_[k]);
+      scratch.manifolds[k].count = 0;
+      find(options, view, scratch.shapes[view.shapes[0]], view.there, alone_[k], scratch.manifolds[k]);
+    }
+  });
+  for (const std::uint32_t i : alone_) hinted_ |= hints_[i] != 0;
+}
+
 template <class Scalar>
-bool Detector::touches(const WorldState& s, const Options& options, Scratch<Scalar>& scratch, std::uint32_t pair,
-                       Touch<Scalar>& touch) {
+bool Detector::touches(Scratch<Scalar>& scratch, std::uint32_t pair, std::size_t& found, Touch<Scalar>& touch) {
   const Pair shapes = in_order(pair);
   const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
   touch.rows[0] = a.body, touch.rows[1] = b.body;
   touch.impact = a.jointed || b.jointed ? -1 : 0;
   touch.manifold = round_ ? scratch.lanes.manifold(pair) : nullptr;
-  if (!touch.manifold) {
-    const Sight<Scalar> view = sight(s, scratch, pair);
-    touch.manifold = &touch.own;
-    find(options, view, scratch.shapes[shapes.a], view.there, pair, touch.own);
-  }
+  if (!touch.manifold) touch.manifold = &scratch.manifolds[found++];
   return touch.manifold->count > 0;
 }
 
@@ -197,6 +208,8 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   found.pairs = std::uint32_t(pairs.size());
   list_near();
   if (round_) sort_out(options, scratch);
+  find_manifolds(s, options, scratch);
+  std::size_t of_alone = 0;
   const BodyReader<Scalar> bodies(s.tables);
   Touch<Scalar> touch;
   touched_.clear();
@@ -212,7 +225,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     }
   };
   const auto add = [&](std::uint32_t i) {
-    if (!touches(s, options, scratch, i, touch)) return;
+    if (!touches(scratch, i, of_alone, touch)) return;
     const auto [a, b] = pairs[i];
     const auto [row_a, row_b] = touch.rows;
     Manifold<Scalar>& manifold = *touch.manifold;
@@ -250,10 +263,7 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
     found.impacts |= touch.impact >= 0;
   };
-  if (round_)
-    marks_.each(add);
-  else
-    for (const std::uint32_t i : near_) add(i);
+  each_candidate(add);
   keep_until(nullptr);
   found.points += found.kept_points;
   drop_distant(next_, scratch.contacts, reals * sizeof(Scalar));

@@ -15,7 +15,7 @@ void Detector::find(const Options& options, const Sight<Scalar>& view, const Sha
   if (options.narrow == NarrowPhase::fcl)
     fcl_hook()(a, b, view.margin, manifold);
   else
-    narrow(a, b, view.margin, hints_[pair], manifold), hinted_ |= hints_[pair] != 0;
+    narrow(a, b, view.margin, hints_[pair], manifold);
 }
 
 float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
@@ -44,29 +44,46 @@ template <class Scalar> void Detector::find_sent(const Substep<Scalar>& look) {
     if (trees_[row] != 0) sent_[trees_[row]] = std::max(sent_[trees_[row]], way_of(look, row).goes);
 }
 
+/// What the bounds of both bodies' motion settle needs no look at the two together. The others are looked at by as many threads as there are:
+/// a look writes what is of its own contact alone.
 template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
   find_sent(look);
   const auto sent = [&](std::uint32_t row) { return trees_.empty() || trees_[row] == 0 ? 0.0f : sent_[trees_[row]]; };
+  const auto stands_on = [&](std::uint32_t at, bool anew) {
+    const Standing& c = standings_[look.contacts[at]];
+    if (!c.acts || !look.s.stands(c.rows[1])) return;
+    on_standing_.push_back(at);
+    if (anew) inner_.push_back(at);
+  };
+  looks_.clear();
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
     if (row == 0) continue;
-    Standing& c = standings_[row];
+    const Standing& c = standings_[row];
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     const float moved = a.went + b.went + c.looked, from_others = c.jointed ? sent(c.rows[0]) + sent(c.rows[1]) : 0.0f;
     const float goes = std::max(a.goes + b.goes, from_others);
-    // what the bounds of both bodies' motion settle needs no look at the two together
     const bool rests = c.touches && !c.struck && goes <= float(constants::quick_share) * c.thick &&
                        moved <= float(constants::manifold_share) * c.thick;
     const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
-    if (!rests && !far) {
-      Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
-      m.find(double(from_others));
-      if (m.out[39] != 0) renewed_.push_back(at);
-      if (c.struck) struck_.push_back(at);
-    }
-    if (!c.acts || !look.s.stands(c.rows[1])) continue;
-    on_standing_.push_back(at);
-    if (look.first || (!rests && !far)) inner_.push_back(at);
+    if (rests || far)
+      stands_on(at, look.first);
+    else
+      looks_.push_back({at, from_others, c.acts});
+  }
+  const auto look_at = [&](std::uint32_t begin, std::uint32_t end) {
+    for (const Look& l : std::span(looks_).subspan(begin, end - begin))
+      Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, look.contacts[l.at]}.find(double(l.from_others));
+  };
+  look.options.share(looks_.size(), look_at);
+  const Scalar* const rows = look.s.tables.template data<Scalar>(Buffer::contact);
+  for (const Look& l : looks_) {
+    const std::uint32_t row = look.contacts[l.at];
+    const Standing& c = standings_[row];
+    if (rows[row * contact_reals + 39] != 0) renewed_.push_back(l.at);
+    if (c.struck) struck_.push_back(l.at);
+    if (l.acted && !c.acts) gone_.push_back(row);
+    stands_on(l.at, true);
   }
   drop_inner_edges(look);
   put_off(look, 0);

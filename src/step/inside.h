@@ -87,7 +87,8 @@ struct Stepper::Inside final : Collider {
   }
 
   Detector::Options detection() const {
-    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs, settings.lanes};
+    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs, settings.lanes,
+            runner.workers()};
   }
 
   /// Plans are of the kernels of the host's own that there are, and so are the places that take part.

@@ -72,8 +72,8 @@ class Runner final : Keeper {
   /// What backends and copies of this step's buffers take.
   void list_memory(MemoryUses& uses) const;
   std::string device(Place place) const;
-  /// After `prepare`.
-  const Workers& workers() const { return *workers_; }
+  /// From `prepare` on.
+  const Workers* workers() const { return workers_.get(); }
   /// Told what contacts do, from the next step on, where no stage is on a device; null: nobody is. It outlives the runner, or is taken back.
   void trace(ContactTrace* trace) {
     tracer_.told = trace;
