@@ -216,6 +216,7 @@ class Detector {
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
   template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
   template <class Scalar> void find_sent(const Substep<Scalar>& look);
+  template <class Scalar> void point_of(const Meeting<Scalar>& x, std::uint32_t point, Scalar* at) const;
   template <class Scalar> bool covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const;
   template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look);
   template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
@@ -253,7 +254,8 @@ class Detector {
   std::vector<Way> ways_;              // of bodies
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
-  std::vector<std::uint32_t> renewed_, struck_, unseen_, on_standing_, inner_;  // places in the contacts of a sub-step
+  std::vector<std::uint32_t> renewed_, struck_, unseen_, on_standing_, inner_, beside_;  // places in the contacts of a sub-step
+  std::vector<std::uint32_t> touching_;  // by body: how much of what stands it touches
   std::vector<Look> looks_;
   std::vector<std::uint32_t> alone_;              // pairs that do not go in lanes
   std::vector<float> times_struck_;               // of bodies, when impacts were looked for last
