@@ -7,6 +7,7 @@
 #include "contact_low.inl"
 #include "contact_carried.inl"
 #include "contact_blow.inl"
+#include "contact_calming.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
@@ -33,6 +34,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // (in short sub-steps of single precision a visit changes a heavy body by a few roundings)
   Mask keeps_low = pc_and(PC_INFO(fine) > PC_REAL(0.0), pc_uneven(a, b));
   BodyState before_a = a; BodyState before_b = b;
+  if (PC_ANY(blow)) {  // lint: allow (a share of one changes nothing)
+    // (its arms may be those of another pose by now: it acts by no more than takes most energy out)
+    Real calming = pc_clamp(pc_calming_share(a, b, arms, r.impulse, r.couple), PC_REAL(0.0), PC_REAL(1.0));
+    Real part = pc_select(blow, calming, PC_REAL(1.0));
+    r.impulse = pc_scale(r.impulse, part); r.couple = pc_scale(r.couple, part);
+  }
   pc_apply_low(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple, keeps_low);
   if (PC_ANY(blow)) {  // lint: allow (the same in lanes that are not)
     pc_count_blow(PC_PASS ia, pc_and(blow, a.inverse_mass > PC_REAL(0.0)), pc_sub(a.v, before_a.v), pc_sub(a.l, before_a.l));

@@ -114,20 +114,16 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     wanted = pc_min(wanted, left);
   }
   if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (as above)
-    Real share = pc_rebound_share(PC_PASS m, t);
-    Real less = pc_select(pc_and(steps > PC_REAL(0.5), share < PC_REAL(1.0)), PC_REAL(1.0), PC_REAL(0.0));
-    if (PC_ANY(less > PC_REAL(0.5))) {  // lint: allow (as above)
-      pc_throw_less(PC_PASS m, t, share, less > PC_REAL(0.5));
-      pc_tree_residual(PC_PASS m, t, less, PC_INFO(seen_turn));
-      pc_newton_step(PC_PASS m, t, less);
-    }
     Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
     if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
-    if (PC_ANY(strayed > PC_REAL(0.5))) {  // lint: allow (as above)
-      pc_take_back(PC_PASS m, t, strayed > PC_REAL(0.5));
+    Real kept = pc_select(strayed > PC_REAL(0.5), PC_REAL(0.0), pc_rebound_share(PC_PASS m, t));
+    Real again = pc_select(kept < PC_REAL(1.0), steps, PC_REAL(0.0));
+    if (PC_ANY(again > PC_REAL(0.5))) {  // lint: allow (as above)
+      pc_take_back(PC_PASS m, t, kept, again > PC_REAL(0.5));
+      Real turned = pc_select(strayed > PC_REAL(0.5), PC_INFO(strayed_turn), PC_INFO(seen_turn));
       for (uint turn = 0u; turn < 2u; turn++) {
-        pc_tree_residual(PC_PASS m, t, strayed, PC_INFO(strayed_turn));
-        pc_newton_step(PC_PASS m, t, strayed);
+        pc_tree_residual(PC_PASS m, t, again, turned);
+        pc_newton_step(PC_PASS m, t, again);
       }
     }
   }

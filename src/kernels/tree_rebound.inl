@@ -52,7 +52,12 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   Real share = pc_clamp(pc_select(first > zero, rising, falling), zero, PC_REAL(1.0));
   return pc_select(pc_and(thrown > zero, made > back), share, PC_REAL(1.0));
 }
-PC_FN void pc_throw_less(PC_IO Slot m, Tree t, Real share, Mask these) {
+// (a share of none is what was, whatever there is now)
+PC_FN Vec3 pc_share_since(Vec3 before, Vec3 now, Real share) {
+  return pc_select3(share > PC_REAL(0.0), pc_madd(before, pc_sub(now, before), share), before);
+}
+// Of what came since pc_keep_motion a share stays, and no limit throws back any more.
+PC_FN void pc_take_back(PC_IO Slot m, Tree t, Real share, Mask these) {
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     Index body = PC_ENDS(tree_ends, n, 0u);
@@ -60,14 +65,14 @@ PC_FN void pc_throw_less(PC_IO Slot m, Tree t, Real share, Mask these) {
     Quad angular = PC_GATHER(motion, body, 1u);
     Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
     Mask moves = pc_and(these, linear.s > PC_REAL(0.0));
-    PC_SCATTER_IF(moves, motion, body, 0u, pc_quad(pc_madd(kept.l, pc_sub(linear.v, kept.l), share), linear.s));
-    PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_madd(kept.a, pc_sub(angular.v, kept.a), share), angular.s));
+    PC_SCATTER_IF(moves, motion, body, 0u, pc_quad(pc_share_since(kept.l, linear.v, share), linear.s));
+    PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_share_since(kept.a, angular.v, share), angular.s));
     if (k > 0u) {
       Six pushes = pc_ld6_tree(PC_PASS n, TREE_KEPT_PUSHES);
       Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN);
       Vec3 limit = pc_ld3_tree(PC_PASS n, TREE_LIMIT);
-      pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(these, pc_madd(pushes.l, pc_sub(pin, pushes.l), share), pin));
-      pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_select3(these, pc_madd(pushes.a, pc_sub(limit, pushes.a), share), limit));
+      pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(these, pc_share_since(pushes.l, pin, share), pin));
+      pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_select3(these, pc_share_since(pushes.a, limit, share), limit));
       Vec3 rebound = pc_ld3_tree(PC_PASS n, TREE_REBOUND);
       if (PC_ANY(pc_throws_back(PC_PASS n))) pc_st3_tree(PC_PASS n, TREE_REBOUND, pc_select3(these, pc_zero3(), rebound));  // lint: allow (not read otherwise)
     }

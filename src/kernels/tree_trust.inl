@@ -1,7 +1,6 @@
 // Whether Newton's steps have found their way. From far off, after a blow or in a whip, they do not, and what they add is energy of any size.
 // Where they more than double the energy of the motion within the tree, all is taken back, and bodies are seen ahead until they have turned by
 // `strayed_turn`: pins then make none, and gaps that this leaves are closed by the push.
-
 #include "tree_energy.inl"
 
 const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other
@@ -43,21 +42,4 @@ PC_FN Real pc_strayed(PC_IO Slot m, Tree t) {
   PC_MEET;
   precise Real most = before + before;
   return pc_select(after > most, PC_REAL(1.0), PC_REAL(0.0));
-}
-PC_FN void pc_take_back(PC_IO Slot m, Tree t, Mask strayed) {
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    Index body = PC_ENDS(tree_ends, n, 0u);
-    Quad linear = PC_GATHER(motion, body, 0u);
-    Quad angular = PC_GATHER(motion, body, 1u);
-    Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
-    Mask moves = pc_and(strayed, linear.s > PC_REAL(0.0));
-    PC_SCATTER_IF(moves, motion, body, 0u, pc_quad(kept.l, linear.s));
-    PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(kept.a, angular.s));
-    if (k > 0u) {
-      Six pushes = pc_ld6_tree(PC_PASS n, TREE_KEPT_PUSHES);
-      pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(strayed, pushes.l, pc_ld3_tree(PC_PASS n, TREE_PIN)));
-      pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_select3(strayed, pushes.a, pc_ld3_tree(PC_PASS n, TREE_LIMIT)));
-    }
-  }
 }
