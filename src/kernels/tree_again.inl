@@ -120,9 +120,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Real again = pc_select(kept < PC_REAL(1.0), steps, PC_REAL(0.0));
     if (PC_ANY(again > PC_REAL(0.5))) {  // lint: allow (as above)
       pc_take_back(PC_PASS m, t, kept, again > PC_REAL(0.5));
-      Real turned = pc_select(strayed > PC_REAL(0.5), PC_INFO(strayed_turn), PC_INFO(seen_turn));
       for (uint turn = 0u; turn < 2u; turn++) {
-        pc_tree_residual(PC_PASS m, t, again, turned);
+        pc_tree_residual(PC_PASS m, t, again, PC_INFO(strayed_turn));
         pc_newton_step(PC_PASS m, t, again);
       }
     }
