@@ -110,8 +110,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real s2 = pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise) - (shift.n + b2 * shift.turn1 - a2 * shift.turn2); precise Real s3 = pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise) - (shift.n + b3 * shift.turn1 - a3 * shift.turn2);
   pc_st_new(PC_PASS m, these, ROW_S, s0); pc_st_new(PC_PASS m, these, ROW_S + 1u, s1); pc_st_new(PC_PASS m, these, ROW_S + 2u, s2); pc_st_new(PC_PASS m, these, ROW_S + 3u, s3);
   pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
-  // contact_solve leaves alone what has no point; of what meets within the sub-step it stops the approach that contact_impact leaves
-  Real acts = pc_select(over, zero, w0); pc_st_new(PC_PASS m, all, ROW_K, pc_select(acts > zero, PC_LD(contact_rows, m, ROW_K), zero));
+  // contact_solve leaves alone what has no point; of what meets within the sub-step, and does not bounce, it stops the approach that
+  // contact_impact leaves
+  Real acts = pc_select(pc_or(over, pc_and(flight > zero, material.v.z > zero)), zero, w0); pc_st_new(PC_PASS m, all, ROW_K, pc_select(acts > zero, PC_LD(contact_rows, m, ROW_K), zero));
 #ifndef PC_FRICTIONLESS
   pc_st_new(PC_PASS m, these, ROW_MU_STATIC, material.v.x); pc_st_new(PC_PASS m, these, ROW_MU_KINETIC, material.v.y); pc_st_new(PC_PASS m, these, ROW_RADIUS, radius);
 #endif

@@ -39,7 +39,9 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
     if (k > 0u) thrown = pc_max(thrown, pc_is_thrown(PC_PASS n));
   }
   PC_MEET;
-  precise Real taken = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY) - kept_energy;
+  Real energy = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY);
+  precise Real taken = energy - kept_energy;
+  precise Real slightly = energy * PC_REAL(1e-4);  // what one limit gives back whole is within rounding of it
   Real back = pc_max(taken, zero);
   // 2 share first + share^2 second = back
   precise Real made = first + first + second;
@@ -50,7 +52,8 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   precise Real turning = root - first;
   Real falling = pc_div(turning, pc_max(second, PC_TINY));
   Real share = pc_clamp(pc_select(first > zero, rising, falling), zero, PC_REAL(1.0));
-  return pc_select(pc_and(thrown > zero, made > back), share, PC_REAL(1.0));
+  precise Real most = back + slightly;
+  return pc_select(pc_and(thrown > zero, made > most), share, PC_REAL(1.0));
 }
 // (a share of none is what was, whatever there is now)
 PC_FN Vec3 pc_share_since(Vec3 before, Vec3 now, Real share) {

@@ -13,6 +13,7 @@ template <class Scalar> class Slowness {
   Slowness(const WorldState& state, const AlignedBytes* before, double dt, const StepSettings& settings)
       : state_(state),
         motion_(state.tables.data<Scalar>(Buffer::motion)),
+        parts_(state.tables.data<Scalar>(Buffer::velocity_parts)),
         pose_(state.tables.data<Scalar>(Buffer::pose)),
         before_(before ? reinterpret_cast<const Scalar*>(before->data()) : nullptr),
         inverse_(state.tables.data<Scalar>(Buffer::mass) + 4),
@@ -24,7 +25,10 @@ template <class Scalar> class Slowness {
     const Scalar* motion = motion_ + row * reals_of(Buffer::motion);
     const Vec3 u = at(motion), l = at(motion + 4);
     if (!state_.responds(row)) return u == Vec3{} && l == Vec3{};  // what carries others moves them however slow it is
-    return dot(u, u) <= speed_ * speed_ && (!before_ || went_little(row)) && spins_little(row, l);
+    // as it is read: what hangs on springs is stored half a sub-step's fall away from rest
+    const Scalar* parts = parts_ + row * reals_of(Buffer::velocity_parts);
+    const Vec3 v = u + at(parts);
+    return dot(v, v) <= speed_ * speed_ && (!before_ || went_little(row)) && spins_little(row, l + at(parts + 4));
   }
 
  private:
@@ -48,7 +52,7 @@ template <class Scalar> class Slowness {
   }
 
   const WorldState& state_;
-  const Scalar *motion_, *pose_, *before_, *inverse_;
+  const Scalar *motion_, *parts_, *pose_, *before_, *inverse_;
   double speed_, spin_, dt_;
 };
 
