@@ -131,8 +131,9 @@ template <class Scalar> struct Detector::Meeting {
   }
 
   /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that back, which rows that are
-  /// solved together know and an impact does not.
+  /// solved together know and an impact does not. (What bounces does so however slowly it comes.)
   bool settles(const Manifold<Scalar>& m) const {
+    if (c.bounces) return false;
     double closing = 0;
     for (std::uint32_t i = 0; i < m.count; i++)
       closing = std::max(closing, double(passing(ta, tb, m.normal, m.points[i].p, apart).closing));

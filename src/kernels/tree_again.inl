@@ -116,7 +116,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (as above)
     Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
     if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
-    Real kept = pc_select(strayed > PC_REAL(0.5), PC_REAL(0.0), pc_rebound_share(PC_PASS m, t));
+    // (of what is thrown back the energy before the solve tells, not what a stop has left of it)
+    Real thrown = pc_tree_is_thrown(PC_PASS m, t);
+    strayed = pc_select(thrown > PC_REAL(0.5), PC_REAL(0.0), strayed);
+    Real kept = pc_select(strayed > PC_REAL(0.5), PC_REAL(0.0), PC_REAL(1.0));
+    if (PC_ANY(thrown > PC_REAL(0.5))) kept = pc_select(thrown > PC_REAL(0.5), pc_rebound_share(PC_PASS m, t), kept);  // lint: allow (as above)
     Real again = pc_select(kept < PC_REAL(1.0), steps, PC_REAL(0.0));
     if (PC_ANY(again > PC_REAL(0.5))) {  // lint: allow (as above)
       pc_take_back(PC_PASS m, t, kept, again > PC_REAL(0.5));

@@ -12,14 +12,19 @@ PC_FN Real pc_is_thrown(PC_IO Slot n) {
   }
   return most;
 }
-// The share of what came since pc_keep_motion that may stay, where a limit has thrown back; 1 elsewhere.
+PC_FN Real pc_tree_is_thrown(PC_IO Slot m, Tree t) {
+  Real most = PC_REAL(0.0);
+  PC_NODES(k, 1u, t) most = pc_max(most, pc_is_thrown(PC_PASS PC_NODE(m, t.first + k)));
+  PC_MOST(most);
+  return most;
+}
+// The share of what came since pc_keep_motion that may stay, where a limit has thrown back.
 PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   PC_MEET;
   Real zero = PC_REAL(0.0);
   Real first = zero;
   Real second = zero;
   Real kept_energy = zero;
-  Real thrown = zero;
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
@@ -36,7 +41,6 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
     second = all_second;
     precise Real all = kept_energy + pc_select(moves, pc_node_energy(PC_PASS n, kept.l, w), zero);
     kept_energy = all;
-    if (k > 0u) thrown = pc_max(thrown, pc_is_thrown(PC_PASS n));
   }
   PC_MEET;
   Real energy = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY);
@@ -51,9 +55,10 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   Real rising = pc_div(back, pc_max(both, PC_TINY));
   precise Real turning = root - first;
   Real falling = pc_div(turning, pc_max(second, PC_TINY));
-  Real share = pc_clamp(pc_select(first > zero, rising, falling), zero, PC_REAL(1.0));
+  Real exact = pc_select(first > zero, rising, falling);
+  Real share = pc_select(exact > zero, pc_min(exact, PC_REAL(1.0)), zero);  // none where it is no number
   precise Real most = back + slightly;
-  return pc_select(pc_and(thrown > zero, made > most), share, PC_REAL(1.0));
+  return pc_select(made > most, share, PC_REAL(1.0));
 }
 // (a share of none is what was, whatever there is now)
 PC_FN Vec3 pc_share_since(Vec3 before, Vec3 now, Real share) {
