@@ -144,15 +144,15 @@ PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share) {
 PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    Real part = pc_select(takes, share, PC_REAL(0.0));
     Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
     Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
     Vec3 aim_a = pc_ld3_net(PC_PASS s, NET_AIM);
     Vec3 aim_b = pc_ld3_net(PC_PASS s, NET_AIM + 3u);
-    Vec3 impulse = pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), part);
-    pc_st3_net(PC_PASS s, NET_IMPULSE, impulse);
-    pc_st3_net(PC_PASS s, NET_ARM_A, pc_madd(ra, pc_sub(aim_a, ra), part));
-    pc_st3_net(PC_PASS s, NET_ARM_B, pc_madd(rb, pc_sub(aim_b, rb), part));
+    Vec3 impulse = pc_ld3_net(PC_PASS s, NET_IMPULSE);
+    Vec3 taken = pc_madd(impulse, pc_ld3_net(PC_PASS s, NET_FOUND), share);
+    pc_st3_net(PC_PASS s, NET_IMPULSE, pc_select3(takes, taken, impulse));
+    pc_st3_net(PC_PASS s, NET_ARM_A, pc_select3(takes, pc_madd(ra, pc_sub(aim_a, ra), share), ra));
+    pc_st3_net(PC_PASS s, NET_ARM_B, pc_select3(takes, pc_madd(rb, pc_sub(aim_b, rb), share), rb));
     pc_st3_net(PC_PASS s, NET_AIM, pc_select3(takes, pc_ld3_net(PC_PASS s, NET_MID), aim_a));
     pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_select3(takes, pc_ld3_net(PC_PASS s, NET_MID + 3u), aim_b));
   }
@@ -160,7 +160,11 @@ PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
 
 #include "net_search.inl"
 
-PC_FN void pc_net_begin(PC_IO Slot m, Net n) {
+// (a net that is not asked keeps what it has, to the bit, where nets beside it are)
+PC_FN void pc_net_keep(PC_IO Slot b, uint f, Mask these, Vec3 v) {
+  pc_st3_net(PC_PASS b, f, pc_select3(these, v, pc_ld3_net(PC_PASS b, f)));
+}
+PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     Index row = pc_net_row(PC_PASS m, n, k);
@@ -172,9 +176,9 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n) {
     Vec3 l = pc_sub(angular.v, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     pc_st3_net(PC_PASS b, NET_PUSHED, push);
     pc_st3_net(PC_PASS b, NET_PUSHED + 3u, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
-    pc_st3_net(PC_PASS b, NET_VELOCITY, pc_madd(linear.v, push, -linear.s));
-    pc_st3_net(PC_PASS b, NET_MOMENTUM, l);
-    pc_st3_net(PC_PASS b, NET_SPIN, pc_sym_mul(inverse, l));
+    pc_net_keep(PC_PASS b, NET_VELOCITY, asked, pc_madd(linear.v, push, -linear.s));
+    pc_net_keep(PC_PASS b, NET_MOMENTUM, asked, l);
+    pc_net_keep(PC_PASS b, NET_SPIN, asked, pc_sym_mul(inverse, l));
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
@@ -230,8 +234,8 @@ PC_FN Merit pc_net_merit(PC_IO Slot m, Net n, Real share) {
 }
 #include "net_bound.inl"
 
-// Where there is something to solve: the first time in a sub-step, and where others have changed what it left. Otherwise
-// what happens in other islands would decide whether a net is solved once more.
+// Where there is something to solve: the first time in a sub-step, and where others have changed what it left.
+// Otherwise what happens in other islands would decide whether a net is solved once more.
 PC_FN Mask pc_net_wants(PC_IO Slot m, Net n) {
   Mask wants = PC_LD(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH) > PC_REAL(0.5);
   for (uint k = 0u; k < n.bodies; k++) {
@@ -255,7 +259,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real one = PC_REAL(1.0);
   Mask asked = pc_net_wants(PC_PASS m, n);
   if (!PC_ANY(asked)) return;  // lint: allow (nothing is stored otherwise)
-  pc_net_begin(PC_PASS m, n);
+  pc_net_begin(PC_PASS m, n, asked);
   uint rounds = PC_COUNT(net_rounds);
   Real share = zero;
   Real level = zero;
@@ -267,7 +271,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Mask better = pc_or(first, pc_or(now.level < bound, now.open < open));
     level = pc_select(better, now.level, level);
     open = pc_select(better, now.open, open);
-    pc_net_take(PC_PASS m, n, share, better);
+    pc_net_take(PC_PASS m, n, share, pc_and(asked, better));
     precise Real enough = now.given * PC_INFO(net_accuracy);
     Mask goes = pc_and(asked, pc_and(better, now.open > enough));
     Mask back = pc_and(asked, pc_select(better, zero, one) > PC_REAL(0.5));
@@ -289,6 +293,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Quad linear = PC_GATHER(motion, row, 0u);
     Quad angular = PC_GATHER(motion, row, 1u);
     Mask moves = pc_and(asked, linear.s > zero);
+    Mask kept = pc_select(asked, zero, one) > PC_REAL(0.5);
+    pc_net_keep(PC_PASS b, NET_PUSH, kept, pc_ld3_net(PC_PASS b, NET_PUSHED));
+    pc_net_keep(PC_PASS b, NET_PUSH + 3u, kept, pc_ld3_net(PC_PASS b, NET_PUSHED + 3u));
     precise Real made = PC_LD(net_rows, b, NET_MADE) + pc_net_count(PC_PASS b);
     PC_ST(net_rows, b, NET_MADE, pc_select(asked, made, PC_LD(net_rows, b, NET_MADE)));
     linear.v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
