@@ -61,8 +61,27 @@ template <class Scalar> struct Detector::Substep {
   std::span<const std::uint32_t> contacts;
   const Options& options;
   double h;
-  bool first, last;  // the first sub-step of the step; the last look of the sub-step
+  bool first = false, last = false;  // the first sub-step of the step; the last look of the sub-step
 };
+
+/// Looks, of which `does` is one. The rows that it renews are those that count as such until the level is looked at
+/// again.
+template <class Does>
+void Detector::look_in(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options,
+                       const Does& does) {
+  meetings_++;
+  renewed_.clear();
+  if (anew_.size() <= level) anew_.resize(level + 1);
+  const auto in = [&]<class Scalar>(Scalar) {
+    Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
+    for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
+    const Bodies<Scalar> bodies(s.tables);
+    does(Substep<Scalar>{s, bodies, contacts, options, h});
+  };
+  s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
+  anew_[level].clear();
+  for (const std::uint32_t at : renewed_) anew_[level].push_back(contacts[at]);
+}
 
 /// One contact in one sub-step.
 template <class Scalar> struct Detector::Meeting {
@@ -130,8 +149,9 @@ template <class Scalar> struct Detector::Meeting {
       narrow(x, y, look, c.hint, m);
   }
 
-  /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that back, which rows that are
-  /// solved together know and an impact does not. (What bounces does so however slowly it comes.)
+  /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that
+  /// back, which rows that are solved together know and an impact does not. (What bounces does so however slowly it
+  /// comes.)
   bool settles(const Manifold<Scalar>& m) const {
     if (c.bounces) return false;
     double closing = 0;
@@ -140,7 +160,8 @@ template <class Scalar> struct Detector::Meeting {
     return closing <= 2 * length(s.gravity) * h;
   }
 
-  /// Shapes may be as near by their supports as they are at no point of the manifold: then the nearest points are those that act.
+  /// Shapes may be as near by their supports as they are at no point of the manifold: then the nearest points are those
+  /// that act.
   void find_together(const Manifold<Scalar>& m) {
     const double most = std::max(0.0, double(least_separation(m))) + seam_share * thick;
     c.together = 0;

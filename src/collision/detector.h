@@ -57,33 +57,37 @@ class Detector {
 
   /// Broad phase. Errors (too many pairs, a pose that is not finite) leave the world as it was.
   Status find_pairs(const WorldState& state, double dt, const Options& options);
-  /// Rows of bodies, ascending, that in the contacts to come touch nothing that stands or is driven. They must stay where they are until then.
+  /// Rows of bodies, ascending, that in the contacts to come touch nothing that stands or is driven. They must stay
+  /// where they are until then.
   void let_through(std::span<const std::uint32_t> bodies) { through_ = bodies; }
   /// Narrow phase: replaces the world's contacts.
   Status find_contacts(WorldState& state, const Options& options, Found& found);
-  /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by more than a share of
-  /// what they were made for, and of shapes that are apart whether, when and how they meet in it. `contacts`: rows, 0 among them (padding);
-  /// those of one level (octave) come together, from its `first` sub-step of the step on.
+  /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by
+  /// more than a share of what they were made for, and of shapes that are apart whether, when and how they meet in it.
+  /// `contacts`: rows, 0 among them (padding); those of one level (octave) come together, from its `first` sub-step of
+  /// the step on.
   void meet(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h,
             const Options& options);
-  /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for others. `last`: none
-  /// waits any longer.
+  /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for
+  /// others. `last`: none waits any longer.
   void meet_again(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, bool last, double h,
                   const Options& options);
   /// Whether impacts wait for others that come before them.
   bool waits() const { return waiting_ > 0; }
-  /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before; and of impacts that may
-  /// act, since their bodies were struck after they were looked for last.
+  /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before;
+  /// and of impacts that may act, since their bodies were struck after they were looked for last.
   std::span<const std::uint32_t> renewed() const { return renewed_; }
   std::span<const std::uint32_t> struck() const { return unseen_; }
-  /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points see it [m].
+  /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points
+  /// see it [m].
   std::span<const Vec3> origins() const { return origins_; }
   /// After the step: contacts that came apart in it have no points.
   void let_go(WorldState& state);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
   /// After the step: whether some body went further than it was looked for, so far that it could be past what stands.
-  /// `before`: the poses that the step began with. `find_pairs` looks as far for them as they went, until `forget_strays`.
+  /// `before`: the poses that the step began with. `find_pairs` looks as far for them as they went, until
+  /// `forget_strays`.
   bool find_strays(const WorldState& state, const AlignedBytes& before);
   void forget_strays();
   /// Rows of bodies that sleep and that something touches which does not.
@@ -186,7 +190,8 @@ class Detector {
   template <class Scalar>
   Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
                  Touch<Scalar>& touch) const;
-  /// Of a contact whose shapes are far apart: the gap that they have to come across, and how far each comes by itself [m].
+  /// Of a contact whose shapes are far apart: the gap that they have to come across, and how far each comes by itself
+  /// [m].
   struct Distant {
     std::uint32_t row;
     double gap, comes[2];
@@ -205,7 +210,8 @@ class Detector {
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
   template <class Scalar> Scratch<Scalar>& scratch();
-  /// A contact that is looked at in a sub-step: its place, how far its trees may send the two against each other [m], and whether its rows acted.
+  /// A contact that is looked at in a sub-step: its place, how far its trees may send the two against each other [m],
+  /// and whether its rows acted.
   struct Look {
     std::uint32_t at;
     float from_others;
@@ -213,6 +219,9 @@ class Detector {
   };
   template <class Scalar> struct Substep;
   template <class Scalar> struct Meeting;
+  template <class Does>
+  void look_in(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options,
+               const Does& does);
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
   template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
   template <class Scalar> void find_sent(const Substep<Scalar>& look);

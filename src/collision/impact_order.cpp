@@ -12,8 +12,8 @@ constexpr double at_once = 1e-3;
 
 }  // namespace
 
-/// Impacts come in the order of time: what meets later than something else meets one of the two waits, since that one then goes elsewhere.
-/// Of those in `struck_` from `begin` on.
+/// Impacts come in the order of time: what meets later than something else meets one of the two waits, since that one
+/// then goes elsewhere. Of those in `struck_` from `begin` on.
 template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std::size_t begin) {
   const auto standing = [&](std::uint32_t at) -> Standing& { return standings_[look.contacts[at]]; };
   const auto soonest = [&](const Standing& c, int side) -> double* {
@@ -85,7 +85,8 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows) delta[body * reals_of(Buffer::delta) + 9] = 1;
 }
 
-/// Contacts that may have an impact: those that meet, and touching ones that bounce; after the `first` sweep those of marked bodies.
+/// Contacts that may have an impact: those that meet, and touching ones that bounce; after the `first` sweep those of
+/// marked bodies.
 template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, bool first) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
@@ -100,20 +101,12 @@ template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, 
 
 void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool last, double h,
                           const Options& options) {
-  meetings_++;
-  renewed_.clear();
-  const auto in = [&]<class Scalar>(Scalar) {
-    Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
-    for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
-    const Bodies<Scalar> bodies(s.tables);
-    const Substep<Scalar> look{s, bodies, contacts, options, h, false, last};
+  look_in(s, contacts, level, h, options, [&](auto look) {
+    look.last = last;
     mark_struck(look);
     meet_struck(look);
     find_unseen(look, false);
-  };
-  s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
-  anew_[level].clear();
-  for (const std::uint32_t at : renewed_) anew_[level].push_back(contacts[at]);
+  });
 }
 
 template void Detector::put_off(const Substep<float>&, std::size_t);

@@ -24,8 +24,8 @@ template <class Scalar> bool nearest(const ShapeView<Scalar>& shape, const Scala
   return true;
 }
 
-/// Whether a shape that holds `point` to within `seam` reaches further against `normal`, which points into it, `beside` the point: on the side to
-/// which the normal leans from `other` [m].
+/// Whether a shape that holds `point` to within `seam` reaches further against `normal`, which points into it, `beside`
+/// the point: on the side to which the normal leans from `other` [m].
 template <class Scalar>
 bool reaches_beyond(const ShapeView<Scalar>& shape, const Scalar* point, const Scalar* normal, const Scalar* other, Scalar seam,
                     Scalar beside) {
@@ -47,8 +47,8 @@ bool reaches_beyond(const ShapeView<Scalar>& shape, const Scalar* point, const S
 
 }  // namespace
 
-/// A point of a contact on what stands, seen from the body's centre as it is now. What meets later in the sub-step has its points where they
-/// then are.
+/// A point of a contact on what stands, seen from the body's centre as it is now. What meets later in the sub-step has
+/// its points where they then are.
 template <class Scalar> void Detector::point_of(const Meeting<Scalar>& x, std::uint32_t point, Scalar* at) const {
   const Vec3 moved = origins_[x.row] - x.bodies.poses().position(x.row_a);
   const Scalar* const p = x.out + 4 + 4 * point;
@@ -56,8 +56,8 @@ template <class Scalar> void Detector::point_of(const Meeting<Scalar>& x, std::u
   for (int k = 0; k < 3; k++) at[k] = p[k] + since[k] + x.out[k] * open;
 }
 
-/// Whether y's surface goes on beyond x's normal at a point that x has, and x's does not beyond that of y: the two are in one surface. (Where
-/// each goes on beyond the other's they meet in a hollow, and the body touches both.)
+/// Whether y's surface goes on beyond x's normal at a point that x has, and x's does not beyond that of y: the two are
+/// in one surface. (Where each goes on beyond the other's they meet in a hollow, and the body touches both.)
 template <class Scalar> bool Detector::covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const {
   if (y.row == x.row || !y.c.acts) return false;
   Scalar at[3], below = 0;
@@ -80,8 +80,8 @@ template <class Scalar> bool Detector::covers(const Meeting<Scalar>& y, const Me
          !reaches_beyond(place(x), at, y.out, x.out, seam, beside + 4 * below);
 }
 
-/// Where all points at which a contact with what stands is closed lie in other things that stand, whose surface goes on beyond its normal,
-/// there is nothing to hit. `inner_`: places of those that may go, ascending.
+/// Where all points at which a contact with what stands is closed lie in other things that stand, whose surface goes on
+/// beyond its normal, there is nothing to hit. `inner_`: places of those that may go, ascending.
 template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& look) {
   if (inner_.empty()) return;
   const auto row_of = [&](std::uint32_t at) { return look.contacts[at]; };

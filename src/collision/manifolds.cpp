@@ -88,8 +88,8 @@ template <class Scalar> bool holds(const Scalar* contact) {
   return contact[3] > 0 && std::max({contact[20], contact[21], contact[22], contact[23]}) > 0;
 }
 
-/// How a pair stands when the step begins, whose contact held something in the last one or not. Rows of shapes that are apart are of no
-/// manifold yet.
+/// How a pair stands when the step begins, whose contact held something in the last one or not. Rows of shapes that are
+/// apart are of no manifold yet.
 template <class Scalar>
 Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
                          Touch<Scalar>& touch) const {
@@ -113,8 +113,8 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   return c;
 }
 
-/// Shapes that are further apart than they are thick: how far each comes towards the other by its own motion, unless something sends it
-/// elsewhere.
+/// Shapes that are further apart than they are thick: how far each comes towards the other by its own motion, unless
+/// something sends it elsewhere.
 Detector::Distant Detector::distant(std::uint32_t row, const Standing& c, const Vec3& normal) const {
   const auto comes = [&](int side) {
     const Proxy& p = proxies_[c.shapes[side]];
@@ -127,8 +127,8 @@ Detector::Distant Detector::distant(std::uint32_t row, const Standing& c, const 
   return {row, c.gap - margin(c.shapes[0], c.shapes[1]), {comes(0), comes(1)}};
 }
 
-/// Bodies of a contact are of one island and need one another's sub-steps. So distant pairs are none that do not come together, wherever
-/// contacts with others may send their bodies.
+/// Bodies of a contact are of one island and need one another's sub-steps. So distant pairs are none that do not come
+/// together, wherever contacts with others may send their bodies.
 void Detector::drop_distant(ContactColumns& contacts, AlignedBytes& table, std::size_t row_bytes) {
   if (distant_.empty()) return;
   sent_elsewhere_.assign(levers_.size(), false);

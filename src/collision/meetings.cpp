@@ -1,8 +1,9 @@
 // The narrow phase within a step: which contacts act in a sub-step, and with what geometry.
 //
-// A manifold is found again when its bodies have moved against each other by more than a share of their size since. Of shapes that are
-// apart a bound of their gap is kept, less what their motion may have taken of it. Where that is more than the way of the sub-step they do
-// not meet and their rows push nothing; else conservative advancement finds the instant at which they do, and the manifold there.
+// A manifold is found again when its bodies have moved against each other by more than a share of their size since. Of
+// shapes that are apart a bound of their gap is kept, less what their motion may have taken of it. Where that is more
+// than the way of the sub-step they do not meet and their rows push nothing; else conservative advancement finds the
+// instant at which they do, and the manifold there.
 #include <algorithm>
 
 #include "collision/contact_meeting.h"
@@ -44,8 +45,8 @@ template <class Scalar> void Detector::find_sent(const Substep<Scalar>& look) {
     if (trees_[row] != 0) sent_[trees_[row]] = std::max(sent_[trees_[row]], way_of(look, row).goes);
 }
 
-/// What the bounds of both bodies' motion settle needs no look at the two together. The others are looked at by as many threads as there are:
-/// a look writes what is of its own contact alone.
+/// What the bounds of both bodies' motion settle needs no look at the two together. The others are looked at by as many
+/// threads as there are: a look writes what is of its own contact alone.
 template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
   find_sent(look);
   const auto sent = [&](std::uint32_t row) { return trees_.empty() || trees_[row] == 0 ? 0.0f : sent_[trees_[row]]; };
@@ -91,24 +92,15 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
 
 void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h,
                     const Options& options) {
-  meetings_++;
-  renewed_.clear();
   struck_.clear();
   on_standing_.clear();
   inner_.clear();
-  if (anew_.size() <= level) anew_.resize(level + 1);
-  const auto in = [&]<class Scalar>(Scalar) {
-    Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
-    for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
-    const Bodies<Scalar> bodies(s.tables);
-    const Substep<Scalar> look{s, bodies, contacts, options, h, first, false};
+  look_in(s, contacts, level, h, options, [&](auto look) {
+    look.first = first;
     meet_in(look);
     mark_struck(look);
     find_unseen(look, true);
-  };
-  s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
-  anew_[level].clear();
-  for (const std::uint32_t at : renewed_) anew_[level].push_back(contacts[at]);
+  });
 }
 
 void Detector::let_go(WorldState& s) {

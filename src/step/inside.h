@@ -21,6 +21,7 @@
 #include "plan/tears.h"
 #include "step/called_forces.h"
 #include "step/check_settings.h"
+#include "step/contact_looks.h"
 #include "step/force_jumps.h"
 #include "step/own_work.h"
 #include "step/plans.h"
@@ -34,7 +35,7 @@
 
 namespace pcphys {
 
-struct Stepper::Inside final : Collider {
+struct Stepper::Inside {
   using Clock = std::chrono::steady_clock;
   static constexpr int most_tries = 8;
 
@@ -75,9 +76,7 @@ struct Stepper::Inside final : Collider {
   ForceJumps jumps;
   StepPlan no_plan;
   Clock::time_point began;
-  // of the sub-step in hand: rows of contacts, the block of each so many of them, and the blocks of some
-  std::vector<std::uint32_t> to_meet, blocks, some;
-  std::vector<Range> renewed, struck;
+  ContactLooks looks{detector, schedule.contacts};
 
   void lap(Timer timer) {
     if (!settings.timings) return;
@@ -87,8 +86,8 @@ struct Stepper::Inside final : Collider {
   }
 
   Detector::Options detection() const {
-    return {settings.narrow, settings.contact_margin, settings.restitution_threshold, settings.max_pairs, settings.lanes,
-            runner.workers()};
+    return {settings.narrow,    settings.contact_margin, settings.restitution_threshold,
+            settings.max_pairs, settings.lanes,          runner.workers()};
   }
 
   /// Plans are of the kernels of the host's own that there are, and so are the places that take part.
@@ -109,41 +108,6 @@ struct Stepper::Inside final : Collider {
   const void* fill(const WorldState& s, double h) {
     return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0),
                       octaves_of(octaves.used()));
-  }
-
-  void collide(WorldState& s, unsigned octave, bool first, double h) override {
-    const std::uint32_t width = schedule.contacts.width();
-    to_meet.clear();
-    blocks.clear();
-    for (const Range& range : schedule.contacts.ranges(octave))
-      for (std::uint32_t block = range.begin; block < range.end; block++) {
-        const auto rows = schedule.contacts.order().begin() + block * width;
-        to_meet.insert(to_meet.end(), rows, rows + width);
-        blocks.push_back(block);
-      }
-    detector.meet(s, to_meet, octave, first, h, detection());
-    blocks_of(detector.renewed(), renewed);
-    blocks_of(detector.struck(), struck);
-  }
-  bool waits() const override { return detector.waits(); }
-  void collide_again(WorldState& s, unsigned octave, bool last, double h) override {
-    detector.meet_again(s, to_meet, octave, last, h, detection());
-    blocks_of(detector.renewed(), renewed);
-    blocks_of(detector.struck(), struck);
-  }
-  std::span<const Range> renewed_blocks() const override { return renewed; }
-  std::span<const Range> struck_blocks() const override { return struck; }
-  /// Of places in `to_meet`.
-  void blocks_of(std::span<const std::uint32_t> places, std::vector<Range>& ranges) {
-    const std::uint32_t width = schedule.contacts.width();
-    some.assign(places.begin(), places.end());
-    for (std::uint32_t& place : some) place /= width;
-    std::ranges::sort(some);
-    ranges.clear();
-    for (const std::uint32_t place : some) {
-      const std::uint32_t block = blocks[place];
-      if (ranges.empty() || block >= ranges.back().end) ranges.push_back({block, block + 1});
-    }
   }
 
   Status prepare(Precision precision) {
@@ -356,7 +320,8 @@ struct Stepper::Inside final : Collider {
     if (plan->flight && settings.body_events) recorder.keep_poses(s);
     ran = true;
     runner.watch(watched);
-    if (ok = runner.run(s, schedule, fill(s, h), report, this); !ok) return undo(s, ok);
+    looks.look_with(detection());
+    if (ok = runner.run(s, schedule, fill(s, h), report, &looks); !ok) return undo(s, ok);
     if (wanted.islands && !schedule.islands.take())
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
@@ -402,13 +367,7 @@ struct Stepper::Inside final : Collider {
   }
 
   /// What the device is asked about islands, if it is.
-  void list_islands(const WorldState& s, PlanSignature& wanted) {
-    IslandLists& islands = schedule.islands;
-    if (!finds_islands()) return islands.forget();
-    if (regrouped || !islands.listed()) islands.list(s);
-    wanted.islands = !islands.known();
-    wanted.islands_known = islands.known();
-  }
+  void list_islands(const WorldState& s, PlanSignature& wanted);
   bool finds_islands() const { return settings.sleep && settings.islands == Place::gl; }
 
   /// Who comes when in pair kernels and reductions.

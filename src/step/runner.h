@@ -22,7 +22,8 @@ class Collider {
   virtual ~Collider() = default;
   /// Of islands of one level, in a sub-step of h [s]; `first`: of the step.
   virtual void collide(WorldState& state, unsigned octave, bool first, double h) = 0;
-  /// Once more, where impacts have sent bodies elsewhere since, or waited for others; `last`: for the last time in the sub-step.
+  /// Once more, where impacts have sent bodies elsewhere since, or waited for others; `last`: for the last time in the
+  /// sub-step.
   virtual void collide_again(WorldState& state, unsigned octave, bool last, double h) = 0;
   virtual bool waits() const = 0;
   /// Blocks of contacts, whose rows it has made other than they were in the sub-step before; and blocks with impacts.
@@ -40,13 +41,13 @@ class Runner final : Keeper {
   /// Makes the backends that the settings ask for, keeping those that still fit.
   /// `own`: kernels of the host's own, which may want a place that no stage is put on.
   Status prepare(const StepSettings& settings, Precision precision, const OwnKernels& own = {});
-  /// Everything a plan binds: lists and colours packed for their backends, buffers attached. Where nothing of it has changed since
-  /// the last step, that step's bindings stand. The plan stays where it is until another one is bound.
+  /// Everything a plan binds: lists and colours packed for their backends, buffers attached. Where nothing of it has
+  /// changed since the last step, that step's bindings stand. The plan stays where it is until another one is bound.
   Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
   /// Runs the plan that was bound.
   Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider = nullptr);
-  /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others is an error
-  /// (check_written).
+  /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others
+  /// is an error (check_written).
   void watch(bool kernels) { watched_ = kernels; }
 
   /// Before a step changes a buffer of a table, so that `undo` can put it back. Contacts are not copied: the detector
@@ -63,7 +64,8 @@ class Runner final : Keeper {
   void undo(WorldState& state);
   /// What a kernel of the host's own would say there. After `prepare`.
   Status check(Place place, const OwnKernel& kernel) { return at(place).backend->prepare(kernel); }
-  /// Whether the last run left some body where it was, since it would have left the range of numbers (StepPlan::flight).
+  /// Whether the last run left some body where it was, since it would have left the range of numbers
+  /// (StepPlan::flight).
   bool left() const { return left_; }
   /// The plans that were bound are gone.
   void unbind() { bound_ = {}; }
@@ -74,7 +76,8 @@ class Runner final : Keeper {
   std::string device(Place place) const;
   /// From `prepare` on.
   const Workers* workers() const { return workers_.get(); }
-  /// Told what contacts do, from the next step on, where no stage is on a device; null: nobody is. It outlives the runner, or is taken back.
+  /// Told what contacts do, from the next step on, where no stage is on a device; null: nobody is. It outlives the
+  /// runner, or is taken back.
   void trace(ContactTrace* trace) {
     tracer_.told = trace;
     bound_ = {};
@@ -100,8 +103,8 @@ class Runner final : Keeper {
     }
   };
 
-  /// What a step's bindings follow from. (The table of contacts, which changes places with its next one in each step, is
-  /// attached anew each time.)
+  /// What a step's bindings follow from. (The table of contacts, which changes places with its next one in each step,
+  /// is attached anew each time.)
   struct Bound {
     const StepPlan* plan = nullptr;
     std::uint64_t world = 0, layout = 0, schedule = 0;
@@ -112,8 +115,8 @@ class Runner final : Keeper {
   struct Call {
     const PlanEntry* entry;  // the first of them
     std::uint32_t first = 0, count = 0;
-    bool last = false;  // of a stage that is clocked
-    bool ends = false;  // a sub-step
+    bool last = false;                               // of a stage that is clocked
+    bool ends = false;                               // a sub-step
     std::uint32_t narrowed = 0, narrowed_count = 0;  // of a collide entry: runs that go over some blocks alone
   };
   struct Narrowed {

@@ -21,6 +21,14 @@ Status Stepper::Inside::check_kernel(const WorldState& s, const OwnKernel& kerne
   return runner.check(place, kernel);
 }
 
+void Stepper::Inside::list_islands(const WorldState& s, PlanSignature& wanted) {
+  IslandLists& islands = schedule.islands;
+  if (!finds_islands()) return islands.forget();
+  if (regrouped || !islands.listed()) islands.list(s);
+  wanted.islands = !islands.known();
+  wanted.islands_known = islands.known();
+}
+
 Status Stepper::Inside::order_own(const WorldState& s, double dt, Schedule& of) const {
   OwnLists& lists = of.own;
   lists.order(s, own.kernels(), of.octave_of());
