@@ -1,6 +1,7 @@
 // Twice an energy, by the whole tree's mass.
 PC_FN Real pc_node_energy(PC_IO Slot n, Vec3 v, Vec3 w) {
-  precise Real twice = pc_dot(v, v) * PC_LD(tree_rows, n, TREE_MASS) + pc_dot(w, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w));
+  Real turning = pc_dot(w, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w));
+  precise Real twice = pc_dot(v, v) * PC_LD(tree_rows, n, TREE_MASS) + turning;
   return twice;
 }
 // Of the tree's bodies as they move now, all of them.

@@ -1,14 +1,18 @@
-// What a tree's limits throw back makes no energy. Newton's law leaves each row at a share of its own approach; where several are met at once, with
-// shares of their own, or what one throws drives another that leans on its limit, that may be more than there was. No more comes back than the
-// solve took, which stops all of them; what exceeds it is left out of the whole throw, and pins close in a step of their own.
+// What a tree's limits throw back makes no energy. Newton's law leaves each row at a share of its own approach; where
+// several are met at once, with shares of their own, or what one throws drives another that leans on its limit, that
+// may be more than there was. No more comes back than the solve took, which stops all of them; what exceeds it is left
+// out of the whole throw, and pins close in a step of their own.
 
 // 1 where a limit is met that throws back.
 PC_FN Real pc_is_thrown(PC_IO Slot n) {
   Real most = PC_REAL(0.0);
   if (!PC_ANY(pc_throws_back(PC_PASS n))) return most;  // lint: allow (zero otherwise)
   for (uint i = 0u; i < 3u; i++) {
-    Mask met = pc_and(pc_throws_back(PC_PASS n), pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(0.5)));
-    most = pc_max(most, pc_select(pc_and(met, PC_LD(tree_rows, n, TREE_REBOUND + i) > PC_REAL(0.0)), PC_REAL(1.0), PC_REAL(0.0)));
+    Mask on = PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5);
+    Mask is_row = PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(0.5);
+    Mask leaves = PC_LD(tree_rows, n, TREE_REBOUND + i) > PC_REAL(0.0);
+    Mask met = pc_and(pc_throws_back(PC_PASS n), pc_and(on, is_row));
+    most = pc_max(most, pc_select(pc_and(met, leaves), PC_REAL(1.0), PC_REAL(0.0)));
   }
   return most;
 }
@@ -33,7 +37,8 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
     Vec3 dl = pc_sub(b.l, kept.a);
     Vec3 dw = pc_sym_mul(b.inertia, dl);
     Vec3 w = pc_sym_mul(b.inertia, kept.a);
-    precise Real one = pc_dot(kept.l, dv) * PC_LD(tree_rows, n, TREE_MASS) + pc_dot(w, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), dw));
+    Real turned = pc_dot(w, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), dw));
+    precise Real one = pc_dot(kept.l, dv) * PC_LD(tree_rows, n, TREE_MASS) + turned;
     Mask moves = PC_LD(tree_rows, n, TREE_MASS) > zero;
     precise Real all_first = first + pc_select(moves, one, zero);
     precise Real all_second = second + pc_select(moves, pc_node_energy(PC_PASS n, dv, dw), zero);
@@ -45,7 +50,8 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   PC_MEET;
   Real energy = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY);
   precise Real taken = energy - kept_energy;
-  precise Real slightly = energy * PC_REAL(1e-4);  // what one limit gives back whole is within rounding of it
+  // (what one limit gives back whole is within rounding of it)
+  precise Real slightly = energy * PC_INFO(rounding) * PC_REAL(64.0);
   Real back = pc_max(taken, zero);
   // 2 share first + share^2 second = back
   precise Real made = first + first + second;
@@ -82,7 +88,7 @@ PC_FN void pc_take_back(PC_IO Slot m, Tree t, Real share, Mask these) {
       pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(these, pc_share_since(pushes.l, pin, share), pin));
       pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_select3(these, pc_share_since(pushes.a, limit, share), limit));
       Vec3 rebound = pc_ld3_tree(PC_PASS n, TREE_REBOUND);
-      if (PC_ANY(pc_throws_back(PC_PASS n))) pc_st3_tree(PC_PASS n, TREE_REBOUND, pc_select3(these, pc_zero3(), rebound));  // lint: allow (not read otherwise)
+      pc_st3_tree(PC_PASS n, TREE_REBOUND, pc_select3(these, pc_zero3(), rebound));
     }
   }
 }
