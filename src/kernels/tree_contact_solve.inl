@@ -1,7 +1,7 @@
 // Visits a manifold with a body of a tree, inside the space that the joints leave: what is pending in the trees moves the rows
 // (tree_reach.inl), they are solved as those of free bodies are (contact_visit.inl), and the impulse goes into what is pending. The
 // velocities of trees follow with tree_flush.
-#define PC_MEAN
+#define PC_TREES
 #include "tree_math.inl"
 #include "contact_way.inl"
 #include "contact_rows.inl"
@@ -49,7 +49,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
-  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, pc_both_move(PC_PASS w, m), pc_bounce(PC_PASS w, m), acts);
+  Mask both_move = pc_both_move(PC_PASS w, m);
+  Real preload = pc_preload(PC_PASS both_move);
+  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, preload, both_move, pc_bounce(PC_PASS w, m), acts);
   r.impulse = pc_select3(acts, r.impulse, pc_zero3());
   r.couple = pc_select3(acts, r.couple, pc_zero3());
 
@@ -67,11 +69,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Six along = pc_six(Vec3(pc_dot(t1, r.impulse), pc_dot(t2, r.impulse), pc_dot(n, r.impulse)), Vec3(pc_dot(t1, r.couple), pc_dot(t2, r.couple), pc_dot(n, r.couple)));
   pc_push_side(PC_PASS w, m, 0u, turning, along); pc_push_side(PC_PASS w, m, 1u, turning, along);
 }
-#undef PC_MEAN
-#undef pc_kept
+#undef PC_TREES
 #undef pc_thrown
 #undef pc_lasts
-#undef PC_PRELOAD
+#undef PC_BACK
 #undef PC_SOME_ACT
 #undef PC_ACTS
 #undef PC_ACTING

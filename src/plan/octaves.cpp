@@ -18,12 +18,6 @@ std::uint8_t highest_octave(const StepSettings& settings) {
   return octave;
 }
 
-std::uint8_t highest_loop_octave(const StepSettings& settings) {
-  std::uint8_t octave = highest_octave(settings);
-  while (octave > 0 && octave + 1u < octave_count && settings.substeps << (octave + 1) <= constants::most_loop_substeps) octave++;
-  return octave;
-}
-
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
   uneven ? loads_.find(state, trees) : loads_.forget_contacts();
   columns_.forget();
@@ -44,8 +38,8 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
     w.more = w.octave > highest;
     w.octave = std::min(w.octave, highest);
   }
-  loops_.want(state, h, highest, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
-  wanted_.insert(wanted_.end(), sudden_.begin(), sudden_.end());
+  loops_.want(state, h, highest, wanted_);
+  wanted_.insert(wanted_.end(), torn_.begin(), torn_.end());
   h_ = h, highest_ = highest;
   before_.swap(of_bodies_);
   of_bodies_.clear();
@@ -74,11 +68,9 @@ void Octaves::assign(const WorldState& state, bool together) {
   limits_.clear();
   for (const Wanted& w : wanted_) {
     const std::uint32_t root = islands_.root(w.body);
-    const bool whole = w.any_size || islands_.size(root) <= constants::large_island;
-    const std::uint8_t octave = whole ? w.octave : std::uint8_t{1};
-    of_bodies_[root] = std::max(of_bodies_[root], octave);
+    of_bodies_[root] = std::max(of_bodies_[root], w.octave);
     highest_of_all = std::max(highest_of_all, of_bodies_[root]);
-    if (w.more || octave < w.octave) limits_.push_back(root);
+    if (w.more) limits_.push_back(root);
   }
   count_limited();
   for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
@@ -95,28 +87,16 @@ void Octaves::count_limited() {
   for (const std::uint32_t root : limits_) limited_ += islands_.size(root);
 }
 
-bool Octaves::find_tighter(const WorldState& state, const Forest& forest, const Tears& tears) {
-  bool tighter = loops_.find_tighter(state, islands_);
-  if (highest_ < sudden_octaves) return tighter;
-  // those that want so many octaves more than the step was made in get them, or all there are
-  const auto again = [&](unsigned more, bool all) {
-    for (const Wanted& w : wanted_) {
-      const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
-      if (w.octave < made + more) continue;
-      islands_.build(state);
-      if (islands_.size(islands_.root(w.body)) > constants::large_island) continue;
-      sudden_.push_back({w.body, all ? highest_ : w.octave, false});
-      tighter = true;
-    }
-    wanted_.clear();
-  };
+bool Octaves::find_tighter(const WorldState& state, const Tears& tears) {
+  bool tighter = loops_.find_tighter(state);
   wanted_.clear();
-  want_for_sudden_spins(state, forest, h_, highest_, wanted_);
-  again(sudden_octaves, true);
-  want_for_cracks(state, forest, h_, highest_, wanted_);
-  again(sudden_octaves, false);
   tears.want(state, h_, highest_, wanted_);
-  again(1, true);
+  for (const Wanted& w : wanted_) {
+    const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
+    if (w.octave <= made) continue;
+    torn_.push_back(w);
+    tighter = true;
+  }
   return tighter;
 }
 

@@ -24,8 +24,6 @@ inline constexpr std::uint32_t most_substeps = 1000;
 
 /// The highest octave within StepSettings::refinement and the most sub-steps of a step.
 std::uint8_t highest_octave(const StepSettings& settings);
-/// Of loops: further, up to constants::most_loop_substeps, unless `refinement` switches octaves off.
-std::uint8_t highest_loop_octave(const StepSettings& settings);
 
 class Octaves {
  public:
@@ -43,10 +41,10 @@ class Octaves {
   /// Before the first try of a step.
   void begin() {
     loops_.begin();
-    sudden_.clear();
+    torn_.clear();
   }
   /// After a try: whether the step is to be made again, with more sub-steps.
-  bool find_tighter(const WorldState& state, const Forest& forest, const Tears& tears);
+  bool find_tighter(const WorldState& state, const Tears& tears);
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
@@ -69,7 +67,7 @@ class Octaves {
   Pulls pulls_;
   Islands islands_;
   std::vector<Wanted> wanted_;
-  std::vector<Wanted> sudden_;  // by bodies that a try of this step tore, spun up or cracked
+  std::vector<Wanted> torn_;  // of bodies that a try of this step tore
   double h_ = 0;                // of octave 0 in the last `choose`, as is
   std::uint8_t highest_ = 0;
   std::vector<std::uint8_t> of_bodies_, before_;

@@ -303,7 +303,7 @@ struct Stepper::Inside {
     wanted.second_order = fourth.reasons();
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
-    add_contacts(wanted, schedule, found, Settling(h, s.gravity).visits);
+    add_contacts(wanted, schedule, found);
     if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
     jumps.act(s, own.ordered(), schedule.moving_bodies(), h, dt, runner);
     if (other) s.tables.resize(Table::node, 1);
@@ -326,7 +326,7 @@ struct Stepper::Inside {
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
                            "(StepSettings::islands). The world is as it was."});
-    tighter = once_more(octaves.find_tighter(s, schedule.trees.forest(), tears));
+    tighter = once_more(octaves.find_tighter(s, tears));
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
     if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
@@ -340,7 +340,7 @@ struct Stepper::Inside {
     strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
     s.last_substep = h;
-    s.settling = Settling(h, s.gravity).left(s.settling);
+    if (s.settling > 0) s.settling--;
     tell(wanted, found);
     return {};
   }
