@@ -64,7 +64,7 @@ inline constexpr double margin_share = 0.02;
 inline constexpr double pressed = 0.01, uneven_masses = 16;
 /// And what is slender: where what a column as high as the island would shrink by, as a share of the island's width, times
 /// its height over its width, is more than this. Towers lean by themselves from there on.
-inline constexpr double column_lean = 0.05;
+inline constexpr double column_lean = 0.02;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
 /// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in

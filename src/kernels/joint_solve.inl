@@ -1,5 +1,5 @@
 // Visits a joint: the angle rows one after the other, then the pin block (the original's order), as soft
-// constraints with accumulated impulses. The relax pass is this same text with joint_rate 0, mass scale 1,
+// constraints with accumulated impulses. The relax pass is this same text with soft_rate 0, mass scale 1,
 // impulse scale 0.
 #include "body_state.inl"
 #include "joint_rows.inl"

@@ -1,4 +1,4 @@
-// Start of a step of a tree of fourth order (smooth_stage.inl): what all of its stages read of bodies and joints.
+// Start of a step of a tree of fourth order (smooth_step.inl): what all of its stages read of bodies and joints.
 #include "smooth_rows.inl"
 #include "tree_store.inl"
 

@@ -2,7 +2,7 @@
 // tree_contact_solve does: what is pending comes down to the bodies, the rows are solved, the impulse goes up to the root.
 //
 // The pin is rigid: its gap stays what it was over the whole sub-step (SHAKE), with the arms turned as the bodies will turn, so no
-// energy is lost to the chord; and a share of the gap is closed. The relax pass is this same text with joint_rate 0: it looks back on the
+// energy is lost to the chord; and a share of the gap is closed. The relax pass is this same text with soft_rate 0: it looks back on the
 // same sub-step, from the same arms, and takes out no more than what closed the gap.
 #include "tree_math.inl"
 #include "joint_way.inl"
