@@ -156,4 +156,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_NODES(k, 1u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
   pc_tree_stops(PC_PASS m, t);
   pc_tree_apply(PC_PASS m, t, push, turn);
+  PC_NODES(k, 0u, t) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_TOUCH, PC_REAL(0.0));  // no contact has yet
 }
