@@ -157,9 +157,10 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   at[9] = Scalar(at[8] * Scalar(real(0.5, 1)));
   at[10] = Scalar(rarely() ? 0 : real(0, 1));
   at[11] = Scalar(rarely() ? real(0, 1.0 / 240) : -double(below(2)));  // meets within the sub-step, rests, hangs on joints
-  for (int i = 16; i < 19; i++) at[i] = Scalar(either(1));  // from one body to the other
-  at[19] = Scalar(rarely() ? 2 : below(2));                 // its rows act no longer, stand, were found anew
-  for (int i = 20; i < 24; i++) at[i] = Scalar(below(5));   // which point each was
+  Scalar* const contact = state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals;
+  for (int i = 0; i < 3; i++) contact[place::apart + i] = Scalar(either(1));  // from one body to the other
+  contact[place::found_anew] = Scalar(rarely() ? 2 : below(2));  // its rows act no longer, stand, were found anew
+  for (int i = 0; i < 4; i++) contact[place::from_point + i] = Scalar(below(5));  // which point each was
 }
 
 template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {

@@ -59,12 +59,13 @@ inline constexpr double quick_share = 0.1;
 /// what happens is the same at any size.
 inline constexpr double margin_share = 0.02;
 /// What is pressed in by more than this share of its size (twice the radius of gyration) by what stands on it gets as many
-/// sub-steps as bring it down to that. A free body may carry one that is heavier where it is so many times as heavy, or as
-/// many of its own kind as its island is high (plan/loads.h, plan/columns.h).
-inline constexpr double pressed = 0.01, uneven_masses = 16;
+/// sub-steps as bring it down to that: by as many of its own kind as its island is high (plan/columns.h), or, by the
+/// second share, by one body so many times as heavy, which sinks where the other rows of its manifold do not
+/// (plan/loads.h).
+inline constexpr double pressed = 0.01, load_pressed = 0.001, uneven_masses = 16;
 /// And what is slender: where what a column as high as the island would shrink by, as a share of the island's width, times
 /// its height over its width, is more than this. Towers lean by themselves from there on.
-inline constexpr double column_lean = 0.02;
+inline constexpr double column_lean = 0.01;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
 /// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in
@@ -85,6 +86,9 @@ inline constexpr double loop_stiffness = 0.02;
 /// Where a step brings this many times the tension that it was made for, and that asks for more, it is made again with
 /// all there are.
 inline constexpr double loop_snap = 2;
+/// Loops may ask for as many as this, beyond StepSettings::refinement: a pin that closes a loop near its dead centre throws
+/// what the sub-step does not resolve.
+inline constexpr std::uint32_t most_loop_substeps = 512;
 /// Of what a sub-step is too long to resolve in the turning of a tree's bodies, this share is taken out
 /// (docs/joints.md).
 inline constexpr double tree_damping = 0.4;
@@ -95,9 +99,10 @@ inline constexpr double tree_spin_floor = 6e-5;
 inline constexpr double stiff_pins = 1;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
-/// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints: so
-/// many roundings (of relative size epsilon). What a tree holds by itself answers nothing but those.
-inline constexpr double loop_roundings = 800;
+/// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints:
+/// what a tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least;
+/// shorter sub-steps have more, as much as leaves it the same spring, and `loop_give_most` at most.
+inline constexpr double loop_give = 1e-7, loop_roundings = 800, loop_give_most = 1e-4;
 /// Contacts keep how they reach into a joint tree, from sub-step to sub-step of a step, until its bodies may have
 /// turned by this [rad].
 inline constexpr double kept_turn = 0.005;
@@ -121,7 +126,7 @@ inline constexpr double gap_roundings = 1;
 inline constexpr unsigned impact_sweeps = 8;
 /// Nets of springs (kernels/net_solve.inl): looks at a sub-step's lengths, and most search directions after each. What was
 /// solved is dropped where the sub-step would make more energy than this share of what the net has.
-inline constexpr unsigned net_rounds = 4, net_searches = 12;
+inline constexpr unsigned net_rounds = 8, net_searches = 12;
 inline constexpr double net_made = 1e-5;
 /// A Newton step's equations are solved to this many roundings.
 inline constexpr double net_roundings = 10;

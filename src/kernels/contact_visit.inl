@@ -6,8 +6,8 @@
 
 // What one normal row asks for, as a change of its impulse. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of their impulse.
-// Where one body stands that is a share of what the manifold's load goes beyond a few weights of the body (`loose`), so
-// that what lies alone does not sink, also where one side of it carries more.
+// That is a share of what the manifold's load goes beyond a few weights of what answers it (`loose`), so that what lies
+// alone does not sink, also where one side of it carries more.
 #ifdef PC_TREES
 // What a row that bounces asks for: to leave with `back`, above 0.
 PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real bounce = mass * (back - vn); return pc_select(back > PC_REAL(0.0), bounce, change); }
@@ -52,8 +52,6 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real lo
   return pc_row_after(impulse, pc_row_change(PC_PASS vn, s, mass, impulse, loose), PC_REAL(1.0));
 }
 
-// Between bodies that move what a row lets go of is what lets piles rest.
-PC_FN Real pc_preload(PC_IO Mask both_move) { return pc_select(both_move, PC_REAL(0.0), PC_INFO(contact_preload)); }
 #ifdef PC_TREES
 // Share of its friction that a contact between bodies that move has, unless one tree joins them, by its overlap: all up to a quarter of the shorter arm, none from half of it on.
 // What a blow has driven in between two bodies that push it against each other would be held there by friction for good (docs/joint-trees.md).
@@ -80,7 +78,7 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
 // Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
 // holds the two. (What has just come is a blow. After it a body may be slow, but it moves.)
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
-PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2, Real preload PC_BACK PC_ACTING) {
+PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2 PC_BACK PC_ACTING) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
@@ -106,8 +104,9 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real thrown = PC_REAL(0.0);
 #endif
   precise Real coming = load - (v.vn + gap_rate - thrown) * stops;
-  precise Real share = mass * preload * pc_inverse_or_zero(coming);
-  precise Real loose = PC_REAL(1.0) - pc_min(share, PC_REAL(1.0));
+  precise Real kept = mass * PC_INFO(contact_preload);
+  precise Real beyond = PC_REAL(1.0) - kept * pc_inverse_or_zero(coming);
+  Real loose = pc_select(coming > kept, beyond, PC_REAL(0.0));
   Mask waits = pc_and(load < PC_TINY, pc_max(gap_rate, PC_INFO(load_ahead)) > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
 #ifdef PC_TREES

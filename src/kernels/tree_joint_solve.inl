@@ -60,7 +60,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
 
-  Vec3 torque_a = pc_add(couple, pc_cross(pc_ld3_joint(PC_PASS m, JOINT_NEAR_A), change)); Vec3 torque_b = pc_add(couple, pc_cross(pc_ld3_joint(PC_PASS m, JOINT_NEAR_B), change));
+  Vec3 torque_a = pc_moment(couple, pc_ld3_joint(PC_PASS m, JOINT_NEAR_A), change); Vec3 torque_b = pc_moment(couple, pc_ld3_joint(PC_PASS m, JOINT_NEAR_B), change);
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
   pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, change, torque_a, torque_b);
   pc_push_tree(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(change), pc_negate(torque_a)));

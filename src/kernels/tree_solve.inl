@@ -73,29 +73,6 @@ PC_FN Real pc_at_limit(PC_IO Slot n) {
   }
   return most;
 }
-// 1 where a limit of the joint stops what comes to it, faster than what may throw back.
-PC_FN Real pc_is_stopped(PC_IO Slot n) {
-  Real most = PC_REAL(0.0);
-  if (!PC_ANY(pc_has_rows(PC_PASS n))) return most;  // lint: allow (zero otherwise)
-  precise Real fast = -PC_INFO(restitution_threshold);
-  for (uint i = 0u; i < 3u; i++) {
-    precise Real off = PC_LD(tree_rows, n, TREE_KIND + i) - PC_REAL(1.0);
-    Mask met = pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_RATE + i) < fast);
-    most = pc_max(most, pc_select(pc_and(pc_abs(off) < PC_REAL(0.5), met), PC_REAL(1.0), PC_REAL(0.0)));
-  }
-  return most;
-}
-// A stop is a blow to the whole tree, and no acceleration: velocities are read as where a contact touches (half_changes.inl).
-PC_FN void pc_tree_stops(PC_IO Slot m, Tree t) {
-  Real stopped = PC_REAL(0.0);
-  PC_NODES(k, 1u, t) stopped = pc_max(stopped, pc_is_stopped(PC_PASS PC_NODE(m, t.first + k)));
-  PC_MOST(stopped);
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    Real touch = PC_LD(tree_rows, n, TREE_TOUCH);
-    PC_ST(tree_rows, n, TREE_TOUCH, pc_select(stopped > PC_REAL(0.5), pc_max(touch, PC_TINY), touch));
-  }
-}
 // An impulse against the turning of bodies with stiff pins. `held`: something acts on the tree from outside, or a limit does. Run after pc_tree_residual.
 PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
   PC_NODES(k, 0u, t) {
@@ -154,7 +131,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     }
   }
   PC_NODES(k, 1u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one)); }
-  pc_tree_stops(PC_PASS m, t);
   pc_tree_apply(PC_PASS m, t, push, turn);
-  PC_NODES(k, 0u, t) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_TOUCH, PC_REAL(0.0));  // no contact has yet
 }

@@ -46,7 +46,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.push_speed = Scalar(from.push_speed);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   const double epsilon = std::numeric_limits<Scalar>::epsilon();
-  biased.loop_give = Scalar(constants::loop_roundings * epsilon);
+  biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
+                                     constants::loop_roundings * epsilon));
   biased.net_rounds = constants::net_rounds;
   biased.net_searches = constants::net_searches;
   biased.net_slack = Scalar(constants::net_roundings * epsilon);

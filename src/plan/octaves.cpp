@@ -18,6 +18,12 @@ std::uint8_t highest_octave(const StepSettings& settings) {
   return octave;
 }
 
+std::uint8_t highest_loop_octave(const StepSettings& settings) {
+  std::uint8_t octave = highest_octave(settings);
+  while (octave > 0 && octave + 1u < octave_count && settings.substeps << (octave + 1) <= constants::most_loop_substeps) octave++;
+  return octave;
+}
+
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
   uneven ? loads_.find(state, trees) : loads_.forget_contacts();
   columns_.forget();
@@ -38,8 +44,8 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
     w.more = w.octave > highest;
     w.octave = std::min(w.octave, highest);
   }
-  loops_.want(state, h, highest, wanted_);
-  wanted_.insert(wanted_.end(), torn_.begin(), torn_.end());
+  loops_.want(state, h, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
+  wanted_.insert(wanted_.end(), again_.begin(), again_.end());
   h_ = h, highest_ = highest;
   before_.swap(of_bodies_);
   of_bodies_.clear();
@@ -87,16 +93,23 @@ void Octaves::count_limited() {
   for (const std::uint32_t root : limits_) limited_ += islands_.size(root);
 }
 
-bool Octaves::find_tighter(const WorldState& state, const Tears& tears) {
+bool Octaves::find_tighter(const WorldState& state, const Forest& forest, const Tears& tears) {
   bool tighter = loops_.find_tighter(state);
+  // those that want so many octaves more than the step was made in get all there are
+  const auto again = [&](unsigned more) {
+    for (const Wanted& w : wanted_) {
+      const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
+      if (w.octave < made + more) continue;
+      again_.push_back({w.body, highest_});
+      tighter = true;
+    }
+    wanted_.clear();
+  };
   wanted_.clear();
+  want_for_sudden_spins(state, forest, h_, highest_, wanted_);
+  again(sudden_octaves);
   tears.want(state, h_, highest_, wanted_);
-  for (const Wanted& w : wanted_) {
-    const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
-    if (w.octave <= made) continue;
-    torn_.push_back(w);
-    tighter = true;
-  }
+  again(1);
   return tighter;
 }
 

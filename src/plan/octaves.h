@@ -24,6 +24,8 @@ inline constexpr std::uint32_t most_substeps = 1000;
 
 /// The highest octave within StepSettings::refinement and the most sub-steps of a step.
 std::uint8_t highest_octave(const StepSettings& settings);
+/// Of loops: further, up to constants::most_loop_substeps, unless `refinement` switches octaves off.
+std::uint8_t highest_loop_octave(const StepSettings& settings);
 
 class Octaves {
  public:
@@ -41,10 +43,10 @@ class Octaves {
   /// Before the first try of a step.
   void begin() {
     loops_.begin();
-    torn_.clear();
+    again_.clear();
   }
   /// After a try: whether the step is to be made again, with more sub-steps.
-  bool find_tighter(const WorldState& state, const Tears& tears);
+  bool find_tighter(const WorldState& state, const Forest& forest, const Tears& tears);
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
@@ -67,8 +69,8 @@ class Octaves {
   Pulls pulls_;
   Islands islands_;
   std::vector<Wanted> wanted_;
-  std::vector<Wanted> torn_;  // of bodies that a try of this step tore
-  double h_ = 0;                // of octave 0 in the last `choose`, as is
+  std::vector<Wanted> again_;  // of bodies that a try of this step tore, or spun up
+  double h_ = 0;               // of octave 0 in the last `choose`, as is
   std::uint8_t highest_ = 0;
   std::vector<std::uint8_t> of_bodies_, before_;
   std::vector<std::uint32_t> limits_;  // roots of islands that would have got more

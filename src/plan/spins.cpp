@@ -89,7 +89,34 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
   }
 }
 
+template <class Scalar>
+void want_sudden(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+                 std::vector<Wanted>& wanted) {
+  const SpinBounds<Scalar> bounds(state.tables);
+  const double spin_most = constants::largest_joint_turn / h, sudden = spin_most * (1 << sudden_octaves) / 2;
+  for (std::size_t i = 0; i < forest.trees(); i++) {
+    const std::span<const TreeNode> tree = forest.tree(i);
+    if (tree.front().flipped) continue;
+    std::uint8_t octave = 0;
+    for (const TreeNode& node : tree) {
+      if (!(bounds.spin(node.body) > sudden * sudden) || !state.responds(node.body)) continue;
+      const Vec3 spin = state.angular_velocity(node.body);
+      octave = std::max(octave, octave_for(dot(spin, spin), spin_most * spin_most, highest_octave));
+    }
+    const bool held = !state.responds(tree.front().body);
+    if (octave >= sudden_octaves && (held || !(was_touched<Scalar>(state.tables, tree) || meets_others(state, tree))))
+      wanted.push_back({tree.back().body, octave});
+  }
+}
+
 }  // namespace
+
+void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+                           std::vector<Wanted>& wanted) {
+  if (forest.trees() == 0) return;
+  state.tables.precision() == Precision::f32 ? want_sudden<float>(state, forest, h, highest_octave, wanted)
+                                             : want_sudden<double>(state, forest, h, highest_octave, wanted);
+}
 
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted) {

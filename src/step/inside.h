@@ -326,7 +326,7 @@ struct Stepper::Inside {
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
                            "(StepSettings::islands). The world is as it was."});
-    tighter = once_more(octaves.find_tighter(s, tears));
+    tighter = once_more(octaves.find_tighter(s, schedule.trees.forest(), tears));
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
     if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
