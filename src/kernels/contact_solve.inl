@@ -19,9 +19,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  // (between bodies that move what a row lets go of is what lets piles rest)
+  // (between bodies that move there is none: balls that touch without an overlap meet anew in each sub-step)
+  precise Real both = a.inverse_mass * b.inverse_mass;
+  Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
   Twist now = pc_carried(PC_PASS pc_twist(a, b, arms, n, t1, t2), a, b, arms, t1, t2);
-  Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2 PC_ACTS);
+  Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload PC_ACTS);
 #ifdef PC_PLACED
   a.inverse_mass = pc_select(acts, a.inverse_mass, PC_REAL(0.0)); b.inverse_mass = pc_select(acts, b.inverse_mass, PC_REAL(0.0));  // not stored
 #endif

@@ -6,8 +6,8 @@
 
 // What one normal row asks for, as a change of its impulse. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of their impulse.
-// That is a share of what the manifold's load goes beyond a few weights of what answers it (`loose`), so that what lies
-// alone does not sink, also where one side of it carries more.
+// Where one body stands, or one hangs on joints, that is a share of what the manifold's load goes beyond a few weights of
+// what answers it (`loose`), so that what lies alone does not sink, also where one side of it carries more.
 #ifdef PC_TREES
 // What a row that bounces asks for: to leave with `back`, above 0.
 PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real bounce = mass * (back - vn); return pc_select(back > PC_REAL(0.0), bounce, change); }
@@ -78,7 +78,7 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
 // Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
 // holds the two. (What has just come is a blow. After it a body may be slow, but it moves.)
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
-PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2 PC_BACK PC_ACTING) {
+PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2, Real preload PC_BACK PC_ACTING) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
@@ -104,9 +104,10 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real thrown = PC_REAL(0.0);
 #endif
   precise Real coming = load - (v.vn + gap_rate - thrown) * stops;
-  precise Real kept = mass * PC_INFO(contact_preload);
+  precise Real kept = mass * preload;
   precise Real beyond = PC_REAL(1.0) - kept * pc_inverse_or_zero(coming);
-  Real loose = pc_select(coming > kept, beyond, PC_REAL(0.0));
+  Mask rests = pc_and(coming > PC_REAL(0.0), kept > coming);
+  Real loose = pc_select(rests, PC_REAL(0.0), beyond);
   Mask waits = pc_and(load < PC_TINY, pc_max(gap_rate, PC_INFO(load_ahead)) > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
 #ifdef PC_TREES

@@ -13,7 +13,7 @@ PC_INFO_FIELD(impulse_ratio, "h / h_before: remembered impulses scale with the s
 PC_INFO_FIELD(soft_rate, "share of an overlap, or of a joint's error, removed per second [1/s]; 0 in the relax phase")
 PC_INFO_FIELD(soft_mass_scale, "of the rigid impulse that a soft row has; 1 in the relax phase")
 PC_INFO_FIELD(soft_impulse_scale, "share of its impulse that a soft row lets go of; 0 in the relax phase")
-PC_INFO_FIELD(contact_preload, "of what the load goes beyond this change of velocity [m/s]")
+PC_INFO_FIELD(contact_preload, "where one body stands, or hangs on joints, of what the load goes beyond this change of velocity [m/s]")
 PC_INFO_FIELD(settled_load, "rounds where a load grows by this factor")
 PC_INFO_FIELD(settled_friction, "or friction changes by this share of its limit")
 PC_INFO_FIELD(least_load, "rounds are for loads that make more than this change of the velocity [m/s]")
