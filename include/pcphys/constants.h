@@ -62,7 +62,7 @@ inline constexpr double margin_share = 0.02;
 /// sub-steps as bring it down to that: by as many of its own kind as its island is high (plan/columns.h), or, by the
 /// second share, by one body so many times as heavy, which sinks where the other rows of its manifold do not
 /// (plan/loads.h).
-inline constexpr double pressed = 0.01, load_pressed = 0.001, uneven_masses = 16;
+inline constexpr double pressed = 0.01, load_pressed = 0.001, uneven_masses = 200;
 /// And what is slender: where what a column as high as the island would shrink by, as a share of the island's width, times
 /// its height over its width, is more than this. Towers lean by themselves from there on.
 inline constexpr double column_lean = 0.01;
@@ -132,7 +132,7 @@ inline constexpr double net_made = 1e-5;
 inline constexpr double net_roundings = 10;
 /// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet
 /// of what holds it (docs/impulses.md).
-inline constexpr unsigned settling_visits = 8, settling_steps = 2;
+inline constexpr unsigned settling_visits = 8, settling_steps = 8;
 
 /// A body is slow below this speed of its centre of mass [m/s] and this spin [rad/s], and falls asleep with its island
 /// when all of it has been for so long [s] (docs/sleeping.md). Piles at rest keep a hundredth of that and less.

@@ -33,7 +33,9 @@ PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0
 PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real pushed = s * PC_INFO(soft_rate);
-  Mask open = gap_rate > PC_REAL(0.0);
+  // (open by more than rounding: beyond a millionth of what gravity closes in a sub-step)
+  precise Real told = PC_INFO(least_load) * PC_REAL(1e-4);
+  Mask open = gap_rate > told;
   Real bias = pc_select(open, gap_rate, pushed);
   Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(soft_impulse_scale));
   precise Real rigid = impulse - mass * (vn + bias);

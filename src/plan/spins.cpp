@@ -54,15 +54,15 @@ double largest_change(const WorldState& state, const SpinBounds<Scalar>& bounds,
   return change;
 }
 
-/// What a tree that nothing touches needs for its whips.
+/// What a tree that nothing touches needs for its whips, where they ask for `least` octaves.
 template <class Scalar>
 std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree, double h,
-                             std::uint8_t highest) {
+                             unsigned least, std::uint8_t highest) {
   if (was_touched<Scalar>(state.tables, tree)) return 0;
   const double most = constants::largest_spin_change / h;
-  const double change = largest_change(state, bounds, tree, most);
+  const double change = largest_change(state, bounds, tree, most * (1 << 2 * (least - 1)));
   const std::uint8_t octave = octave_for(change, most, highest);
-  return octave > 0 && !meets_others(state, tree) && !at_limit(state, tree) ? octave : 0;
+  return octave >= least && !meets_others(state, tree) && !at_limit(state, tree) ? octave : 0;
 }
 
 template <class Scalar>
@@ -84,7 +84,7 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
       if (const std::uint8_t octave = octave_for(dot(spin, spin), aim * aim, highest_octave); octave > 0)
         wanted.push_back({row, octave});
     }
-    if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, highest_octave); octave > 0)
+    if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, 1, highest_octave); octave > 0)
       wanted.push_back({tree.back().body, octave});
   }
 }
@@ -104,8 +104,9 @@ void want_sudden(const WorldState& state, const Forest& forest, double h, std::u
       octave = std::max(octave, octave_for(dot(spin, spin), spin_most * spin_most, highest_octave));
     }
     const bool held = !state.responds(tree.front().body);
-    if (octave >= sudden_octaves && (held || !(was_touched<Scalar>(state.tables, tree) || meets_others(state, tree))))
-      wanted.push_back({tree.back().body, octave});
+    if (!held && (was_touched<Scalar>(state.tables, tree) || meets_others(state, tree))) octave = 0;
+    octave = std::max(octave, octave_for_whip(state, bounds, tree, h, sudden_octaves, highest_octave));
+    if (octave >= sudden_octaves) wanted.push_back({tree.back().body, octave});
   }
 }
 
