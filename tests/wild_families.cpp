@@ -1,7 +1,6 @@
 // Pins: no family of random scenes breaks more often than it did. Seeds 1 to N of each, the same in every run, a minute
-// in all. What is recorded in tests/data/wild.csv is not what is wanted: it falls with what is mended, and never rises.
-// (Twice it did: of 900 of springs those with energy from 494 to 495, and later single scenes of pile and tower, 3 to 4 and 13 to 14,
-// when springs fell from 510 to 175, encounter from 214 to 121 and host from 225 to 197.)
+// and a half in all on one core. What is recorded in tests/data/wild.csv is not what is wanted: it falls with what is
+// mended, and never rises. (Twice it did, by single scenes of springs, pile and tower, when others fell by hundreds.)
 #include <doctest/doctest.h>
 
 #include <algorithm>
