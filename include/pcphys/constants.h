@@ -38,7 +38,7 @@ inline constexpr double moment_tolerance = 1e-6;
 /// sub-step, so overlap falls with its square. Three tenths of an error are undone in a sub-step, 12 % of the impulse let
 /// go of; the relax pass takes out the velocity. Stiffer than that at rest, and piles bounce on their own
 /// (docs/impulses.md).
-inline constexpr double soft_frequency_times_h = 1.48, soft_damping_ratio = 1.73;
+inline constexpr double soft_frequency_times_h = 1.5, soft_damping_ratio = 1.8;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a
 /// sub-step: what lies alone on what stands does not sink.
 inline constexpr double contact_preload = 1.75;
@@ -127,7 +127,7 @@ inline constexpr unsigned impact_sweeps = 8;
 /// Nets of springs (kernels/net_solve.inl): looks at a sub-step's lengths, and most search directions after each. What was
 /// solved is dropped where the sub-step would make more energy than this share of what the net has.
 inline constexpr unsigned net_rounds = 8, net_searches = 12;
-inline constexpr double net_made = 1e-5;
+inline constexpr double net_made = 1e-3;
 /// A Newton step's equations are solved to this many roundings.
 inline constexpr double net_roundings = 10;
 /// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet

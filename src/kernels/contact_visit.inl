@@ -30,12 +30,15 @@ PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0
 #define PC_ACTS
 #define PC_ACTING
 #endif
+// Of what would close a gap within the sub-step, what is more than rounding: than a millionth of what gravity closes in one.
+PC_FN Real pc_beyond_rounding(PC_IO Real gap_rate) {
+  precise Real beyond = gap_rate - PC_INFO(least_load) * PC_REAL(1e-4);
+  return beyond;
+}
 PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real pushed = s * PC_INFO(soft_rate);
-  // (open by more than rounding: beyond a millionth of what gravity closes in a sub-step)
-  precise Real told = PC_INFO(least_load) * PC_REAL(1e-4);
-  Mask open = gap_rate > told;
+  Mask open = pc_beyond_rounding(PC_PASS gap_rate) > PC_REAL(0.0);
   Real bias = pc_select(open, gap_rate, pushed);
   Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(soft_impulse_scale));
   precise Real rigid = impulse - mass * (vn + bias);
@@ -110,7 +113,8 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real beyond = PC_REAL(1.0) - kept * pc_inverse_or_zero(coming);
   Mask rests = pc_and(coming > PC_REAL(0.0), kept > coming);
   Real loose = pc_select(rests, PC_REAL(0.0), beyond);
-  Mask waits = pc_and(load < PC_TINY, pc_max(gap_rate, PC_INFO(load_ahead)) > PC_REAL(0.0));
+  Real not_yet = pc_max(pc_beyond_rounding(PC_PASS gap_rate), PC_INFO(load_ahead));
+  Mask waits = pc_and(load < PC_TINY, not_yet > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
 #ifdef PC_TREES
   precise Real gripped = ahead * pc_select(both_move, pc_grip(PC_PASS m, apart), PC_REAL(1.0)); ahead = gripped;

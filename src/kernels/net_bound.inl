@@ -50,7 +50,7 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
 }
 
 // The motion of the whole net as one rigid body with its momenta; or, where something holds it, that of what does.
-struct Rigid { Vec3 v; Vec3 w; Vec3 centre; Mask held; };
+struct Rigid { Vec3 v; Vec3 w; Vec3 centre; Real light; Mask held; };  // light: 1 / mass
 PC_FN Vec3 pc_net_place(PC_IO Slot m, Net n, uint k) {
   Index first = pc_net_row(PC_PASS m, n, 0u);
   Index row = pc_net_row(PC_PASS m, n, k);
@@ -89,9 +89,9 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
     precise Real sum = mass_all + heavy;
     mass_all = sum;
   }
-  Real light = pc_inverse_or_zero(mass_all);
-  r.centre = pc_scale(r.centre, light);
-  r.v = pc_scale(p, light);
+  r.light = pc_inverse_or_zero(mass_all);
+  r.centre = pc_scale(r.centre, r.light);
+  r.v = pc_scale(p, r.light);
   Vec3 l = pc_zero3();
   Sym3 all = pc_world_inertia(pc_quaternion(pc_zero3(), PC_REAL(1.0)), pc_zero3());
   for (uint k = 0u; k < n.bodies; k++) {
@@ -152,13 +152,16 @@ PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask brings) {
     pc_net_keep(PC_PASS b, NET_PUSH + 3u, here, l);
     sum = pc_add(sum, pc_select3(here, push, pc_zero3()));
   }
-  // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work
+  // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work. Where nothing
+  // does all take what rounding has left, by their mass: the net may move so for many sub-steps, with the same rounding in each
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
-    Mask stands = pc_select(PC_LD(net_rows, b, NET_MASS) > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
-    Mask here = pc_and(brings, stands);
-    pc_net_keep(PC_PASS b, NET_PUSH, here, pc_negate(sum));
-    pc_net_keep(PC_PASS b, NET_PUSH + 3u, here, pc_zero3());
+    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
+    Mask stands = pc_select(heavy > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
+    precise Real share = heavy * r.light;
+    Vec3 shared = pc_madd(pc_ld3_net(PC_PASS b, NET_PUSH), sum, -pc_select(r.held, zero, share));
+    pc_net_keep(PC_PASS b, NET_PUSH, brings, pc_select3(stands, pc_negate(sum), shared));
+    pc_net_keep(PC_PASS b, NET_PUSH + 3u, pc_and(brings, stands), pc_zero3());
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
