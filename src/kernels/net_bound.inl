@@ -159,8 +159,8 @@ PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask brings) {
     Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
     Mask stands = pc_select(heavy > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
     precise Real share = heavy * r.light;
-    Vec3 shared = pc_madd(pc_ld3_net(PC_PASS b, NET_PUSH), sum, -pc_select(r.held, zero, share));
-    pc_net_keep(PC_PASS b, NET_PUSH, brings, pc_select3(stands, pc_negate(sum), shared));
+    Vec3 rest = pc_madd(pc_ld3_net(PC_PASS b, NET_PUSH), sum, -pc_select(r.held, zero, share));
+    pc_net_keep(PC_PASS b, NET_PUSH, brings, pc_select3(stands, pc_negate(sum), rest));
     pc_net_keep(PC_PASS b, NET_PUSH + 3u, pc_and(brings, stands), pc_zero3());
   }
   for (uint k = 0u; k < n.springs; k++) {
