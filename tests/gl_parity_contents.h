@@ -157,9 +157,10 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   at[9] = Scalar(at[8] * Scalar(real(0.5, 1)));
   at[10] = Scalar(rarely() ? 0 : real(0, 1));
   at[11] = Scalar(rarely() ? real(0, 1.0 / 240) : -double(below(2)));  // meets within the sub-step, rests, hangs on joints
-  for (int i = 16; i < 19; i++) at[i] = Scalar(either(1));  // from one body to the other
-  at[19] = Scalar(rarely() ? 2 : below(2));                 // its rows act no longer, stand, were found anew
-  for (int i = 20; i < 24; i++) at[i] = Scalar(below(5));   // which point each was
+  Scalar* const contact = state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals;
+  for (int i = 0; i < 3; i++) contact[place::apart + i] = Scalar(either(1));  // from one body to the other
+  contact[place::found_anew] = Scalar(rarely() ? 2 : below(2));  // its rows act no longer, stand, were found anew
+  for (int i = 0; i < 4; i++) contact[place::from_point + i] = Scalar(below(5));  // which point each was
 }
 
 template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
@@ -319,22 +320,16 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.h_change = Scalar(0.2);
     info.h_before = Scalar(h / 0.8);
     info.impulse_ratio = Scalar(0.8);
-    info.contact_rate = Scalar(relax ? 0 : 48);
-    info.contact_impulse_scale = Scalar(relax ? 0 : 0.1);
+    info.soft_rate = Scalar(relax ? 0 : 48);
+    info.soft_impulse_scale = Scalar(relax ? 0 : 0.1);
     info.contact_preload = Scalar(0.1);
-    info.mean_share = Scalar(0.025);
     info.load_ahead = Scalar(relax ? 1 : 0);
     info.push_speed = Scalar(4);
-    info.joint_rate = Scalar(relax ? 0 : 60);
-    info.joint_mass_scale = Scalar(relax ? 1 : 0.95);
-    info.joint_impulse_scale = Scalar(relax ? 0 : 0.05);
+    info.soft_mass_scale = Scalar(relax ? 1 : 0.95);
     info.joint_push_speed = Scalar(8);
     info.loop_give = Scalar(1e-5);
-    info.cross_share = Scalar(0.9);
-    info.row_mass_most = Scalar(1000);
     info.seen_turn = Scalar(1);
     info.strayed_turn = Scalar(0.1);
-    info.idle_speed = Scalar(0.5);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.spin_floor = Scalar(6e-5);

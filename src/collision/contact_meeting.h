@@ -74,7 +74,7 @@ void Detector::look_in(WorldState& s, std::span<const std::uint32_t> contacts, u
   if (anew_.size() <= level) anew_.resize(level + 1);
   const auto in = [&]<class Scalar>(Scalar) {
     Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
-    for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + 39] = 0;
+    for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + place::found_anew] = 0;
     const Bodies<Scalar> bodies(s.tables);
     does(Substep<Scalar>{s, bodies, contacts, options, h});
   };
@@ -130,9 +130,9 @@ template <class Scalar> struct Detector::Meeting {
   void stand_aside() {
     if (!c.acts) return;
     c.acts = c.struck = false;
-    out[31] = c.jointed ? -1 : 0;
-    out[39] = 2;
-    std::fill(out + 40, out + 44, Scalar(0));
+    out[place::impact_time] = c.jointed ? -1 : 0;
+    out[place::found_anew] = 2;
+    std::fill_n(out + place::from_point, 4, Scalar(0));
     s.contacts.features[row].fill(0xffffffffu);
   }
 
@@ -250,15 +250,12 @@ template <class Scalar> struct Detector::Meeting {
       for (std::uint32_t k = 0; k < 3; k++) out[4 + 4 * i + k] = real ? m.points[i].p[k] : Scalar(0);
       out[7 + 4 * i] = real ? m.points[i].separation : Scalar(0);
       s.contacts.features[row][i] = real ? m.points[i].feature : 0xffffffffu;
-      out[40 + i] = Scalar(from[i]);
+      out[place::from_point + i] = Scalar(from[i]);
     }
-    if (impact > 0) {
-      std::fill(out + 20, out + 28, Scalar(0));
-      std::fill(out + 32, out + 36, Scalar(0));
-    }
-    for (int k = 0; k < 3; k++) out[36 + k] = apart[k];
-    out[31] = Scalar(impact);
-    out[39] = 1;
+    if (impact > 0) std::fill_n(out + place::normal_impulse, impulse_count, Scalar(0));
+    for (int k = 0; k < 3; k++) out[place::apart + k] = apart[k];
+    out[place::impact_time] = Scalar(impact);
+    out[place::found_anew] = 1;
     const auto on_the_way = [&](int k) { return t * (double(ta.v[k]) + share * (double(tb.v[k]) - double(ta.v[k]))); };
     d.origins_[row] = bodies.poses().position(row_a) + Vec3{on_the_way(0), on_the_way(1), on_the_way(2)};
   }

@@ -16,15 +16,6 @@ template <class Scalar> struct Sight {
   Scalar margin;                     // no gap beyond it matters in this step
 };
 
-template <class Scalar> struct Flight {
-  std::uint32_t pair;
-  bool counts;    // they meet, or may
-  bool stray;     // against what stands: only if something sends the other elsewhere before
-  bool turned;    // against what stands: from another side than it is seen from the start
-  double impact;  // impact_time of the contact [s]
-  Manifold<Scalar> manifold;
-};
-
 /// Of the way that two bodies come together, the part that the second does not go: by their inverse masses.
 template <class Scalar> double share_of(const Tables& t, std::uint32_t a, std::uint32_t b) {
   const Scalar* inverse_masses = t.data<Scalar>(Buffer::motion) + 3;

@@ -52,7 +52,8 @@ bool reaches_beyond(const ShapeView<Scalar>& shape, const Scalar* point, const S
 template <class Scalar> void Detector::point_of(const Meeting<Scalar>& x, std::uint32_t point, Scalar* at) const {
   const Vec3 moved = origins_[x.row] - x.bodies.poses().position(x.row_a);
   const Scalar* const p = x.out + 4 + 4 * point;
-  const Scalar open = x.out[31] > 0 ? Scalar(0) : p[3], since[3] = {Scalar(moved.x), Scalar(moved.y), Scalar(moved.z)};
+  const Scalar open = x.out[place::impact_time] > 0 ? Scalar(0) : p[3],
+               since[3] = {Scalar(moved.x), Scalar(moved.y), Scalar(moved.z)};
   for (int k = 0; k < 3; k++) at[k] = p[k] + since[k] + x.out[k] * open;
 }
 

@@ -252,8 +252,8 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
       distant_.push_back(distant(std::uint32_t(row), standing, to_vec3(manifold.normal)));
     origins_.push_back(bodies.position(row_a));
     write_contact(manifold, of_a, of_b, out, features.data());
-    out[31] = Scalar(touch.impact);
-    bodies.shift(row_a, row_b, out + 36);
+    out[place::impact_time] = Scalar(touch.impact);
+    bodies.shift(row_a, row_b, out + place::apart);
     if (standing.touches && was_there)
       remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out, features.data());
     found.points += manifold.count;

@@ -81,7 +81,7 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
   for (const Look& l : looks_) {
     const std::uint32_t row = look.contacts[l.at];
     const Standing& c = standings_[row];
-    if (rows[row * contact_reals + 39] != 0) renewed_.push_back(l.at);
+    if (rows[row * contact_reals + place::found_anew] != 0) renewed_.push_back(l.at);
     if (c.struck) struck_.push_back(l.at);
     if (l.acted && !c.acts) gone_.push_back(row);
     stands_on(l.at, true);

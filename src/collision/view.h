@@ -12,6 +12,9 @@
 
 namespace pcphys {
 
+/// Reals of a contact's row that remember impulses: from place::normal_impulse on.
+inline constexpr std::size_t impulse_count = place::contact_static_friction - place::normal_impulse;
+
 /// What the narrow phase reads of a body, straight from the tables' rows.
 template <class Scalar> class BodyReader {
  public:
@@ -124,10 +127,10 @@ void write_contact(const Manifold<Scalar>& m, const Scalar* material_a, const Sc
     out[7 + 4 * i] = real ? m.points[i].separation : Scalar(0);
     features[i] = real ? m.points[i].feature : 0xffffffffu;
   }
-  for (int k = 20; k < 28; k++) out[k] = 0;
+  std::fill_n(out + place::normal_impulse, impulse_count, Scalar(0));
   for (int k = 0; k < 2; k++) out[28 + k] = combine(material_a[3], material_b[3], material_a[k], material_b[k]);
   out[30] = combine(material_a[6], material_b[6], material_a[2], material_b[2]);
-  for (int k = 31; k < 44; k++) out[k] = 0;
+  std::fill(out + place::impact_time, out + reals_of(Buffer::contact), Scalar(0));
 }
 
 /// Hands on the impulses of the last step's manifold: point by point to the same feature; what is left over to
@@ -138,14 +141,13 @@ void remember_impulses(const Scalar* before, const std::uint32_t* before_feature
                        const std::uint32_t* features) {
   const int count = int(out[3]), before_count = int(before[3]);
   if (count == before_count && std::equal(features, features + count, before_features)) {  // what the rest would find
-    for (int i = 0; i < count; i++) out[20 + i] = before[20 + i], out[32 + i] = before[32 + i];
-    for (int k = 24; k < 28; k++) out[k] = before[k];
+    for (int i = 0; i < count; i++) out[place::normal_impulse + i] = before[place::normal_impulse + i];
+    std::copy_n(before + place::friction_impulse, 4, out + place::friction_impulse);
     return;
   }
   bool taken[4] = {}, given[4] = {};
   const auto hand_on = [&](int i, int j) {
-    out[20 + i] = before[20 + j];
-    out[32 + i] = before[32 + j];
+    out[place::normal_impulse + i] = before[place::normal_impulse + j];
     given[i] = taken[j] = true;
   };
   for (int i = 0; i < count; i++)
@@ -168,7 +170,7 @@ void remember_impulses(const Scalar* before, const std::uint32_t* before_feature
     if (nearest >= 0) hand_on(i, nearest);
   }
   if (taken[0] || taken[1] || taken[2] || taken[3])
-    for (int k = 24; k < 28; k++) out[k] = before[k];
+    std::copy_n(before + place::friction_impulse, 4, out + place::friction_impulse);
 }
 
 }  // namespace pcphys

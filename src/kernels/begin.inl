@@ -22,7 +22,7 @@ PC_FN void pc_kernel(PC_IO Index i) {
 #else
   VelocityShift shift = pc_velocity_shift(PC_PASS m.linear, m.angular, linear_change, angular_change, f.push, f.turn);
 #endif
-  pc_begin(PC_PASS m, shift);
+  pc_begin(m, shift);
   PC_SCATTER(motion, i, 0u, m.linear);
   PC_SCATTER(motion, i, 1u, m.angular);
   PC_SCATTER(velocity_parts, i, 2u, m.linear_low);

@@ -1,7 +1,6 @@
 // Friction of a manifold at its centre: a 2 x 2 block for sliding, then a twist about the normal.
-// While the impulse that stops all sliding is within mu_static times the load it acts whole; from friction_band times the load beyond that,
-// mu_kinetic times the load acts against the sliding (a circle, not a pyramid). In between static friction gives all it has:
-// what is that slow may stick again, and the load is not known better.
+// While the impulse that stops all sliding is within mu_static times the load it acts whole, beyond that mu_kinetic times
+// the load acts against the sliding (a circle, not a pyramid).
 struct Friction { Real next1; Real next2; Real next_twist; Real change1; Real change2; Real change_twist; Twist after; };
 
 #ifdef PC_FRICTIONLESS
@@ -18,9 +17,7 @@ PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real mass_scale, Rea
   precise Real g1 = f1 - mass_scale * (PC_LD(contact_rows, m, ROW_TT) * v.v1 + t12 * v.v2); precise Real g2 = f2 - mass_scale * (t12 * v.v1 + PC_LD(contact_rows, m, ROW_TT + 2u) * v.v2);
   precise Real gg = g1 * g1 + g2 * g2; precise Real limit_squared = static_limit * static_limit;
   Mask slides = gg > limit_squared;
-  precise Real let_go = static_limit + load * PC_INFO(friction_band); precise Real beyond = let_go * let_go;
-  Real holds = pc_select(gg > beyond, kinetic_limit, static_limit);
-  Real scale = pc_select(slides, pc_div(holds, pc_sqrt(pc_select(slides, gg, PC_REAL(1.0)))), PC_REAL(1.0));
+  Real scale = pc_select(slides, pc_div(kinetic_limit, pc_sqrt(pc_select(slides, gg, PC_REAL(1.0)))), PC_REAL(1.0));
   precise Real kept1 = g1 * scale; precise Real kept2 = g2 * scale; Real h1 = pc_snap(kept1); Real h2 = pc_snap(kept2);
   precise Real c1 = h1 - f1; precise Real c2 = h2 - f2;
   precise Real wt = v.wn + (PC_LD(contact_rows, m, ROW_KW) * c1 + PC_LD(contact_rows, m, ROW_KW + 1u) * c2);

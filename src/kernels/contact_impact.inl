@@ -3,7 +3,7 @@
 // with u the stored velocity, half a sub-step behind, and A the acceleration between impulses. The impulse J turns v*
 // into -e v* there, with friction by Coulomb's law, at the arms of that instant. As seen from the end of the sub-step
 // it changed the velocity by J / m and the position by (h - t) J / m: so J acts on u whole and the position goes
-// back by t J / m. For a single contact that is exact, energy and all; several follow one another, colour by colour.
+// back by t J / m. For a single contact that is exact, energy and all; several follow one another.
 // The rows of one manifold that close are solved together. What is left (slow approaches, several impacts of one body
 // in one sub-step that block each other) is contact_solve's, what is on joints tree_contact_solve's; but shapes that meet in
 // flight, whose arms mean nothing before they do, are left to this kernel for the whole step.

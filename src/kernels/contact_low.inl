@@ -13,7 +13,7 @@ PC_FN Mask pc_uneven(BodyState a, BodyState b) {
 }
 PC_FN void pc_apply_low(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple, Mask uneven) {
   if (PC_ANY(uneven)) {  // lint: allow (others get what pc_apply gives)
-    Vec3 torque_a = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arms.b, impulse));
+    Vec3 torque_a = pc_moment(couple, arms.a, impulse); Vec3 torque_b = pc_moment(couple, arms.b, impulse);
     pc_kick(PC_PASS ia, a, impulse, torque_a, PC_REAL(-1.0), uneven); pc_kick(PC_PASS ib, b, impulse, torque_b, PC_REAL(1.0), uneven);
     pc_store_states(PC_PASS ia, ib, a, b);
   } else {

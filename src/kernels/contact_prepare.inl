@@ -40,12 +40,12 @@ PC_FN void pc_keep_approach(PC_IO Slot m, uint i, Mask these, Mask of_step, Real
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
-  Quad seen = PC_GATHER(contact, record, 9u); Mask of_step = PC_INFO(begins) > PC_REAL(0.5); Mask these = pc_or(of_step, seen.s > PC_REAL(0.5));
+  Quad seen = PC_GATHER(contact, record, 8u); Mask of_step = PC_INFO(begins) > PC_REAL(0.5); Mask these = pc_or(of_step, seen.s > PC_REAL(0.5));
   if (!PC_ANY(these)) return;  // lint: allow (rows stand)
   Quad head = PC_GATHER(contact, record, 0u);
   Quad p0 = PC_GATHER(contact, record, 1u); Quad p1 = PC_GATHER(contact, record, 2u); Quad p2 = PC_GATHER(contact, record, 3u); Quad p3 = PC_GATHER(contact, record, 4u);
-  Quad pushes = PC_GATHER(contact, record, 5u); Quad mean = PC_GATHER(contact, record, 8u); Quad material = PC_GATHER(contact, record, 7u);
-  Quad from = PC_GATHER(contact, record, 10u); Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
+  Quad pushes = PC_GATHER(contact, record, 5u); Quad material = PC_GATHER(contact, record, 7u);
+  Quad from = PC_GATHER(contact, record, 9u); Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0);
 
@@ -121,9 +121,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_keep_approach(PC_PASS m, 0u, these, of_step, approach0); pc_keep_approach(PC_PASS m, 1u, these, of_step, approach1); pc_keep_approach(PC_PASS m, 2u, these, of_step, approach2); pc_keep_approach(PC_PASS m, 3u, these, of_step, approach3);
 
   // impulses: of the step before, which scale with the sub-step; or those that the rows hold
-  Real ratio = PC_INFO(impulse_ratio); precise Vec3 told_v = pushes.v * ratio; precise Real told_s = pushes.s * ratio; precise Vec3 mean_v = mean.v * ratio; precise Real mean_s = mean.s * ratio;
+  Real ratio = PC_INFO(impulse_ratio); precise Vec3 told_v = pushes.v * ratio; precise Real told_s = pushes.s * ratio;
   Real h0 = pc_held_by(PC_PASS m, 0u, from.v.x); Real h1 = pc_held_by(PC_PASS m, 0u, from.v.y); Real h2 = pc_held_by(PC_PASS m, 0u, from.v.z); Real h3 = pc_held_by(PC_PASS m, 0u, from.s);
-  Real m0 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.x); Real m1 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.y); Real m2 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.v.z); Real m3 = pc_held_by(PC_PASS m, IMPULSE_MEAN, from.s);
   Real k0 = pc_select(over, zero, w0); Real k1 = pc_select(over, zero, w1); Real k2 = pc_select(over, zero, w2); Real k3 = pc_select(over, zero, w3);
   precise Real l0 = pc_select(of_step, told_v.x, h0) * k0; precise Real l1 = pc_select(of_step, told_v.y, h1) * k1; precise Real l2 = pc_select(of_step, told_v.z, h2) * k2; precise Real l3 = pc_select(of_step, told_s, h3) * k3;
   pc_st_pushes(PC_PASS m, all, 0u, l0); pc_st_pushes(PC_PASS m, all, 1u, l1); pc_st_pushes(PC_PASS m, all, 2u, l2); pc_st_pushes(PC_PASS m, all, 3u, l3);
@@ -136,7 +135,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #endif
   for (uint i = 0u; i < 4u; i++) pc_st_pushes(PC_PASS m, of_step, IMPULSE_LARGEST + i, zero);
   precise Real load = l0 + l1 + l2 + l3; pc_st_pushes(PC_PASS m, all, IMPULSE_BEFORE, load);
-  precise Real n0 = pc_select(of_step, mean_v.x, m0) * k0; precise Real n1 = pc_select(of_step, mean_v.y, m1) * k1; precise Real n2 = pc_select(of_step, mean_v.z, m2) * k2; precise Real n3 = pc_select(of_step, mean_s, m3) * k3;
-  pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN, n0); pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN + 1u, n1); pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN + 2u, n2); pc_st_pushes(PC_PASS m, all, IMPULSE_MEAN + 3u, n3);
 }
 #undef PC_SOME_ROWS

@@ -48,19 +48,3 @@ PC_FN Mat3 pc_mixed_answers(PC_IO Way w, Slot m) {
   for (uint i = 0u; i < count; i++) sum = pc_mat_add(sum, pc_slot_products(PC_PASS PC_NODE(m, first + i), PC_NODE(m, first + count + i)));
   return sum;
 }
-// What passes between the sides of a contact within one tree: products of a's rows with b's over the levels that they share. Not all of it
-// counts (cross_share), so that two bodies that can hardly move against each other have a mass that is finite.
-PC_FN Mat3 pc_cross_answers(PC_IO Way w, Slot m, uint turns_a, uint turns_b) {
-  Vec3 zero = pc_zero3(); Mat3 sum = pc_mat3(zero, zero, zero); uint levels = pc_levels_shared(w); uint first_a = pc_reach_first(w, 0u, turns_a); uint first_b = pc_reach_first(w, 1u, turns_b);
-  for (uint i = 0u; i <= w.shared_levels; i++) {
-    Mask shared_here = pc_some(PC_WAY_EACH(m, pc_entry(w, levels + i))); Mat3 x = pc_slot_products(PC_PASS PC_NODE(m, first_a + i), PC_NODE(m, first_b + i));
-    sum = pc_mat_add(sum, pc_mat3(pc_select3(shared_here, x.a, zero), pc_select3(shared_here, x.b, zero), pc_select3(shared_here, x.c, zero)));
-  }
-  Real share = PC_INFO(cross_share); return pc_mat3(pc_scale(sum.a, share), pc_scale(sum.b, share), pc_scale(sum.c, share));
-}
-// m + x + x^T
-PC_FN Sym3 pc_with_both(Sym3 m, Mat3 x) {
-  precise Real xx = m.xx + (x.a.x + x.a.x); precise Real xy = m.xy + (x.a.y + x.b.x); precise Real xz = m.xz + (x.a.z + x.c.x);
-  precise Real yy = m.yy + (x.b.y + x.b.y); precise Real yz = m.yz + (x.b.z + x.c.y); precise Real zz = m.zz + (x.c.z + x.c.z);
-  return pc_sym3(xx, xy, xz, yy, yz, zz);
-}

@@ -5,7 +5,7 @@
 #include "contact_twist.inl"
 
 PC_FN void pc_apply(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple) {
-  Vec3 torque_a = pc_add(couple, pc_cross(arms.a, impulse)); Vec3 torque_b = pc_add(couple, pc_cross(arms.b, impulse));
+  Vec3 torque_a = pc_moment(couple, arms.a, impulse); Vec3 torque_b = pc_moment(couple, arms.b, impulse);
   precise Real minus_mass = -a.inverse_mass; precise Real minus_response = -a.response;
   a.v = pc_pushed(a.v, impulse, minus_mass); b.v = pc_pushed(b.v, impulse, b.inverse_mass);
   a.l = pc_madd(a.l, torque_a, minus_response); b.l = pc_madd(b.l, torque_b, b.response);
@@ -23,9 +23,9 @@ PC_FN Push pc_push(PC_IO Slot m, Real l0, Real l1, Real l2, Real l3) {
 struct Wrench { Vec3 impulse; Vec3 couple; };
 PC_FN Wrench pc_wrench(Vec3 n, Vec3 t1, Vec3 t2, Push push, Real along1, Real along2, Real twist) {
 #ifdef PC_FRICTIONLESS
-  precise Vec3 couple = t1 * push.m1 + t2 * push.m2; Wrench w; w.impulse = pc_scale(n, push.n); w.couple = couple; return w;
+  precise Vec3 couple = t1 * push.m1 + t2 * push.m2; Wrench w; w.impulse = pc_snap3(pc_scale(n, push.n)); w.couple = pc_snap3(couple); return w;
 #else
-  Wrench w; w.impulse = pc_combine(t1, along1, t2, along2, n, push.n); w.couple = pc_combine(t1, push.m1, t2, push.m2, n, twist); return w;
+  Wrench w; w.impulse = pc_snap3(pc_combine(t1, along1, t2, along2, n, push.n)); w.couple = pc_snap3(pc_combine(t1, push.m1, t2, push.m2, n, twist)); return w;
 #endif
 }
 // The twist after normal impulses: by symmetry the responses of sliding and twist to the normal rows are those of the rows to them.

@@ -30,8 +30,7 @@ const uint ROW_TWIST = 53u;    // effective mass of the twist
 const uint ROW_C = 54u;        // response of V_n, W_1, W_2 to friction 1, 2 and twist
 const uint ROW_RADIUS = 63u;   // lever of the twist friction: root mean square distance of the points
 #endif
-// impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of
-// the step 8..11; 12..15: slow means where a body stands in a joint tree, else the normal impulses that the sub-step before began with
+// impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of the step 8..11
 #ifdef PC_FRICTIONLESS
 const uint IMPULSES = 4u;
 #else
@@ -40,6 +39,5 @@ const uint IMPULSES = 7u;
 const uint IMPULSE_T = 4u;
 const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;
-const uint IMPULSE_MEAN = 12u;
 
 PC_FN Vec3 pc_ld3_rows(PC_IO Slot m, uint f) { return Vec3(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u)); }

@@ -1,10 +1,9 @@
 // Visits a manifold between free bodies. The biased solve and the relax pass are this same text with other
-// coefficients: relax has contact_rate 0, mass scale 1, impulse scale 0, so it removes the velocity that undoing an
+// coefficients: relax has soft_rate 0, mass scale 1, impulse scale 0, so it removes the velocity that undoing an
 // overlap put in (soft step: E. Catto, Solver2D, 2024).
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_visit.inl"
-#include "contact_low.inl"
 #include "contact_carried.inl"
 #include "contact_blow.inl"
 #include "contact_calming.inl"
@@ -20,8 +19,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  // (between bodies that move what a row lets go of is what lets piles rest)
-  precise Real both = a.inverse_mass * b.inverse_mass; Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
+  // (between bodies that move there is none: balls that touch without an overlap meet anew in each sub-step)
+  precise Real both = a.inverse_mass * b.inverse_mass;
+  Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
   Twist now = pc_carried(PC_PASS pc_twist(a, b, arms, n, t1, t2), a, b, arms, t1, t2);
   Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload PC_ACTS);
 #ifdef PC_PLACED
@@ -31,8 +31,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   r.touch = pc_select(blow, PC_REAL(0.0), r.touch);
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, r.touch), b.phase);
-  // (in short sub-steps of single precision a visit changes a heavy body by a few roundings)
-  Mask keeps_low = pc_and(PC_INFO(fine) > PC_REAL(0.0), pc_uneven(a, b));
   BodyState before_a = a; BodyState before_b = b;
   if (PC_ANY(blow)) {  // lint: allow (a share of one changes nothing)
     // (its arms may be those of another pose by now: it acts by no more than takes most energy out)
@@ -40,16 +38,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Real part = pc_select(blow, calming, PC_REAL(1.0));
     r.impulse = pc_scale(r.impulse, part); r.couple = pc_scale(r.couple, part);
   }
-  pc_apply_low(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple, keeps_low);
+  pc_apply(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple);
   if (PC_ANY(blow)) {  // lint: allow (the same in lanes that are not)
     pc_count_blow(PC_PASS ia, pc_and(blow, a.inverse_mass > PC_REAL(0.0)), pc_sub(a.v, before_a.v), pc_sub(a.l, before_a.l));
     pc_count_blow(PC_PASS ib, pc_and(blow, b.inverse_mass > PC_REAL(0.0)), pc_sub(b.v, before_b.v), pc_sub(b.l, before_b.l));
   }
 }
-#undef pc_kept
 #undef pc_thrown
 #undef pc_lasts
-#undef PC_PRELOAD
+#undef PC_BACK
 #undef PC_SOME_ACT
 #undef PC_ACTS
 #undef PC_ACTING

@@ -19,8 +19,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real ratio = PC_INFO(impulse_ratio); precise Real share = l.share * ratio;
   precise Real l0 = l.l0 * ratio; precise Real l1 = l.l1 * ratio; precise Real l2 = l.l2 * ratio; precise Real l3 = l.l3 * ratio;
   PC_SCATTER(contact, record, 5u, pc_quad(Vec3(l0, l1, l2), l3));
-  precise Real m0 = PC_LD(contact_impulses, m, IMPULSE_MEAN) * ratio; precise Real m1 = PC_LD(contact_impulses, m, IMPULSE_MEAN + 1u) * ratio;
-  precise Real m2 = PC_LD(contact_impulses, m, IMPULSE_MEAN + 2u) * ratio; precise Real m3 = PC_LD(contact_impulses, m, IMPULSE_MEAN + 3u) * ratio;
-  PC_SCATTER(contact, record, 8u, pc_quad(Vec3(pc_snap(m0), pc_snap(m1), pc_snap(m2)), pc_snap(m3)));
   PC_SCATTER(contact, record, 6u, pc_lasting_friction(PC_PASS m, share));
 }

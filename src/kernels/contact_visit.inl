@@ -6,26 +6,19 @@
 
 // What one normal row asks for, as a change of its impulse. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of their impulse.
-// Where one body stands that is a share of what the manifold's load goes beyond a few weights of the body (`loose`), so that what
-// lies alone does not sink, also where one side of it carries more. With bodies of trees (PC_MEAN) it is a share of what deviates
-// from a slow mean, `held` (docs/joint-trees.md).
-#ifdef PC_MEAN
-// (of a contact that is left alone, with a scale of 0, none: it would take up a share of what it held before)
-PC_FN Real pc_mean_held(PC_IO Slot m, uint i, Real mass_scale) { precise Real r = PC_LD(contact_impulses, m, IMPULSE_MEAN + i) * mass_scale; return r; }
-PC_FN Real pc_let_go(Real impulse, Real held) { precise Real r = impulse - held; return r; }
-#define pc_kept(i) pc_mean_held(PC_PASS m, i, mass_scale)
+// Where one body stands, or one hangs on joints, that is a share of what the manifold's load goes beyond a few weights of
+// what answers it (`loose`), so that what lies alone does not sink, also where one side of it carries more.
+#ifdef PC_TREES
 // What a row that bounces asks for: to leave with `back`, above 0.
 PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real bounce = mass * (back - vn); return pc_select(back > PC_REAL(0.0), bounce, change); }
 // It was of an instant: nothing of it is remembered.
 PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0.0), PC_REAL(0.0), impulse); }
-#define PC_PRELOAD , Mask both_move, FourRows back
+#define PC_BACK , Mask both_move, FourRows back
 #define PC_SOME_ACT
 #else
-PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loose; return r; }
-#define pc_kept(i) loose
 #define pc_thrown(change, vn, mass, back) change
 #define pc_lasts(impulse, back) impulse
-#define PC_PRELOAD , Real preload
+#define PC_BACK
 #endif
 #ifdef PC_PLACED
 #define PC_SOME_ACT
@@ -37,32 +30,34 @@ PC_FN Real pc_let_go(Real impulse, Real loose) { precise Real r = impulse * loos
 #define PC_ACTS
 #define PC_ACTING
 #endif
-PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
-  // (open by more than rounding: beyond a millionth of what gravity closes in a sub-step)
-  precise Real gap_rate = s * PC_INFO(inverse_h); precise Real told = PC_INFO(least_load) * PC_REAL(1e-4); Mask open = gap_rate > told;
-#ifdef PC_MEAN
-  precise Real soft_rate = s * PC_INFO(tree_contact_rate);
-  Real bias = pc_select(open, gap_rate, pc_max(soft_rate, -PC_INFO(push_speed))); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(tree_contact_impulse_scale));
-  precise Real rigid = impulse - mass * (vn + bias); precise Real change = (rigid - pc_let_go(rigid, kept) * leak) - impulse;
-#else
-  precise Real soft_rate = s * PC_INFO(contact_rate);
-  Real bias = pc_select(open, gap_rate, soft_rate); Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(contact_impulse_scale));
-  precise Real rigid = impulse - mass * (vn + bias); Real beyond = pc_let_go(rigid, kept);
+// Of what would close a gap within the sub-step, what is more than rounding: than a millionth of what gravity closes in one.
+PC_FN Real pc_beyond_rounding(PC_IO Real gap_rate) {
+  precise Real beyond = gap_rate - PC_INFO(least_load) * PC_REAL(1e-4);
+  return beyond;
+}
+PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
+  precise Real gap_rate = s * PC_INFO(inverse_h);
+  precise Real pushed = s * PC_INFO(soft_rate);
+  Mask open = pc_beyond_rounding(PC_PASS gap_rate) > PC_REAL(0.0);
+  Real bias = pc_select(open, gap_rate, pushed);
+  Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(soft_impulse_scale));
+  precise Real rigid = impulse - mass * (vn + bias);
+  precise Real beyond = rigid * loose;
   // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
-  precise Real give = mass * bias + pc_max(beyond, PC_REAL(0.0)) * leak; precise Real most = mass * PC_INFO(push_speed);
+  precise Real give = mass * bias + pc_max(beyond, PC_REAL(0.0)) * leak;
+  precise Real most = mass * PC_INFO(push_speed);
   precise Real change = -(mass * vn) - pc_max(give, -most);
-#endif
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
   Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, -impulse, change);
 }
 // New accumulated impulse of a row that takes this share of what it asks for.
 PC_FN Real pc_row_after(Real impulse, Real change, Real share) { precise Real next = impulse + change * share; return pc_snap(pc_max(next, PC_REAL(0.0))); }
-PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real kept) {
-  return pc_row_after(impulse, pc_row_change(PC_PASS vn, s, mass, impulse, kept), PC_REAL(1.0));
+PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
+  return pc_row_after(impulse, pc_row_change(PC_PASS vn, s, mass, impulse, loose), PC_REAL(1.0));
 }
 
-#ifdef PC_MEAN
+#ifdef PC_TREES
 // Share of its friction that a contact between bodies that move has, unless one tree joins them, by its overlap: all up to a quarter of the shorter arm, none from half of it on.
 // What a blow has driven in between two bodies that push it against each other would be held there by friction for good (docs/joint-trees.md).
 PC_FN Real pc_grip(PC_IO Slot m, Real apart) {
@@ -81,14 +76,14 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
   // what meets in flight is stopped, where its impact left an approach, and not pushed
   return pc_select(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0), pc_max(s, PC_REAL(0.0)), s);
 }
-#ifndef PC_MEAN
+#ifndef PC_TREES
 #include "contact_settle.inl"
 #endif
 
 // Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
 // holds the two. (What has just come is a blow. After it a body may be slow, but it moves.)
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
-PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2 PC_PRELOAD PC_ACTING) {
+PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2, Real preload PC_BACK PC_ACTING) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
@@ -104,23 +99,24 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
     Real nearest = pc_min(pc_min(gap.s0, gap.s1), pc_min(gap.s2, gap.s3)); apart = pc_select(several, pc_select(load > PC_TINY, carried, nearest), apart);
   }
 
-  // friction goes by the load that the normal rows, visited after it, are about to leave, were they rigid: what the soft rows let
-  // go of in the biased visit they take up again in the relax visit, and what has just come together has no load yet. (What comes
-  // together later than in the first part of the sub-step, 1 / gap_weight of it, does so elsewhere: its friction is the relax visit's.
-  // Where a load is carried already, a gap of a rounding counts as no more than what it is.)
+  // friction goes by the load that the normal rows, visited after it, are about to leave, were they rigid: what the soft
+  // rows let go of in the biased visit they take up again in the relax visit. (What comes together later in the sub-step
+  // does so elsewhere: its friction is the relax visit's.)
   precise Real gap_rate = pc_max(apart, PC_REAL(0.0)) * PC_INFO(inverse_h); Real mass = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)); precise Real stops = mass * mass_scale;
-#ifdef PC_MEAN
+#ifdef PC_TREES
   Real thrown = pc_max(pc_max(back.r0, back.r1), pc_max(back.r2, back.r3));
 #else
   Real thrown = PC_REAL(0.0);
 #endif
-  precise Real late = gap_rate * pc_select(load > PC_TINY, PC_REAL(1.0), PC_INFO(gap_weight)); precise Real coming = load - (v.vn + late - thrown) * stops;
-#ifndef PC_MEAN
-  precise Real share = mass * preload * pc_inverse_or_zero(coming); precise Real loose = PC_REAL(1.0) - pc_min(share, PC_REAL(1.0));
-#endif
-  Mask waits = pc_and(load < PC_TINY, PC_INFO(load_ahead) > PC_REAL(0.0));
+  precise Real coming = load - (v.vn + gap_rate - thrown) * stops;
+  precise Real kept = mass * preload;
+  precise Real beyond = PC_REAL(1.0) - kept * pc_inverse_or_zero(coming);
+  Mask rests = pc_and(coming > PC_REAL(0.0), kept > coming);
+  Real loose = pc_select(rests, PC_REAL(0.0), beyond);
+  Real not_yet = pc_max(pc_beyond_rounding(PC_PASS gap_rate), PC_INFO(load_ahead));
+  Mask waits = pc_and(load < PC_TINY, not_yet > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
-#ifdef PC_MEAN
+#ifdef PC_TREES
   precise Real gripped = ahead * pc_select(both_move, pc_grip(PC_PASS m, apart), PC_REAL(1.0)); ahead = gripped;
 #endif
   Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
@@ -128,32 +124,38 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
 
   // normal rows
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
-  precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_thrown(pc_row_change(PC_PASS v0, gap.s0, m0, l0, pc_kept(0u)), v0, m0, back.r0);
+  precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_thrown(pc_row_change(PC_PASS v0, gap.s0, m0, l0, loose), v0, m0, back.r0);
   Rows now; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Real share_of_all = PC_REAL(1.0);
   if (more) {  // lint: allow (as said)
     Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
     Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
     Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
-    precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_thrown(pc_row_change(PC_PASS v1, gap.s1, m1, l1, pc_kept(1u)), v1, m1, back.r1);
-    precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_thrown(pc_row_change(PC_PASS v2, gap.s2, m2, l2, pc_kept(2u)), v2, m2, back.r2);
-    precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_thrown(pc_row_change(PC_PASS v3, gap.s3, m3, l3, pc_kept(3u)), v3, m3, back.r3);
+    precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_thrown(pc_row_change(PC_PASS v1, gap.s1, m1, l1, loose), v1, m1, back.r1);
+    precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_thrown(pc_row_change(PC_PASS v2, gap.s2, m2, l2, loose), v2, m2, back.r2);
+    precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_thrown(pc_row_change(PC_PASS v3, gap.s3, m3, l3, loose), v3, m3, back.r3);
     Real together = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(e0, e1, e2, e3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
     share_of_all = pc_select(several, together, PC_REAL(1.0));
     now.k1 = pc_row_after(l1, e1, share_of_all); now.k2 = pc_row_after(l2, e2, share_of_all); now.k3 = pc_row_after(l3, e3, share_of_all);
   }
   now.k0 = pc_row_after(l0, e0, share_of_all);
-#ifndef PC_MEAN
-  precise Real arriving = load - (v.vn + gap_rate) * stops; Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, mass, f);
+#ifndef PC_TREES
+  precise Real arriving = load - (v.vn + gap_rate) * stops;
+  Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, mass, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
     pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
   }
 #ifndef PC_FRICTIONLESS
-  // what slides goes by the load that was found in place of the one that was foreseen: where loads change, or are those of roundings, the two differ
-  // in each sub-step, and what slides would take up the sum
+  // what slides goes by the load that was found in place of the one that was foreseen: where loads change, or are those of
+  // roundings, the two differ in each sub-step, and what slides would take up the sum
   if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) {  // lint: allow (the same for all lanes)
-    precise Real found = now.k0 + now.k1 + now.k2 + now.k3; Friction by_load = pc_friction(PC_PASS m, v, found, mass_scale);
-    now.f.next1 = pc_select(unsettled, now.f.next1, by_load.next1); now.f.next2 = pc_select(unsettled, now.f.next2, by_load.next2); now.f.next_twist = pc_select(unsettled, now.f.next_twist, by_load.next_twist);
-    now.f.change1 = pc_select(unsettled, now.f.change1, by_load.change1); now.f.change2 = pc_select(unsettled, now.f.change2, by_load.change2); now.f.change_twist = pc_select(unsettled, now.f.change_twist, by_load.change_twist);
+    precise Real found = now.k0 + now.k1 + now.k2 + now.k3;
+    Friction by_load = pc_friction(PC_PASS m, v, found, mass_scale);
+    now.f.next1 = pc_select(unsettled, now.f.next1, by_load.next1);
+    now.f.next2 = pc_select(unsettled, now.f.next2, by_load.next2);
+    now.f.next_twist = pc_select(unsettled, now.f.next_twist, by_load.next_twist);
+    now.f.change1 = pc_select(unsettled, now.f.change1, by_load.change1);
+    now.f.change2 = pc_select(unsettled, now.f.change2, by_load.change2);
+    now.f.change_twist = pc_select(unsettled, now.f.change_twist, by_load.change_twist);
   }
 #endif
 #endif
@@ -179,7 +181,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Wrench w = pc_wrench(n, t1, t2, push, now.f.change1, now.f.change2, now.f.change_twist); Visit r; r.impulse = w.impulse; r.couple = w.couple;
   precise Real held = pc_min(PC_LD(contact_impulses, m, IMPULSE_BEFORE), pressed); Mask touches = pc_max(load, pressed) > PC_REAL(0.0);
   r.touch = pc_select(touches, pc_max(held, PC_TINY), PC_REAL(0.0));
-#ifdef PC_MEAN
+#ifdef PC_TREES
   r.touch = pc_select(thrown > PC_REAL(0.0), pc_max(r.touch, push.n), r.touch);  // what a bounce leaves is to be read whole (synchronise)
 #endif
   return r;

@@ -20,18 +20,6 @@ PC_FN Real pc_mass_scale(PC_IO Slot m, Arms arms, BodyState a, BodyState b) {
   return pc_select(k > PC_REAL(0.0), scale, PC_REAL(0.0));  // (what grows by a subnormal number would have no inverse on GL)
 }
 
-// A change of load comes through a pile at the pace of the visits: each sub-step undoes a share of what a slow motion of many
-// bodies asks for. So where both bodies move and one stands on the other by three points or more (on fewer it rocks, and loads change by that), what the last sub-step changed in a row's impulse goes on by a share (heavy ball:
-// B. Polyak, Some methods of speeding up the convergence of iteration methods, 1964), by at most that share of the impulse.
-PC_FN void pc_go_on(PC_IO Slot m, Real inverse_masses) {
-  Mask stands = pc_and(inverse_masses > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MASS + 2u) > PC_REAL(0.0)); Real share = pc_select(stands, PC_INFO(impulse_trend), PC_REAL(0.0));
-  for (uint i = 0u; i < 4u; i++) {
-    Real now = PC_LD(contact_impulses, m, i); Real before = PC_LD(contact_impulses, m, IMPULSE_MEAN + i);
-    precise Real change = now - before; precise Real most = pc_min(now, before); precise Real next = now + pc_clamp(change, -most, most) * share;
-    PC_ST(contact_impulses, m, IMPULSE_MEAN + i, now); PC_ST(contact_impulses, m, i, next);
-  }
-}
-
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
@@ -41,7 +29,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real scale = pc_mass_scale(PC_PASS m, arms, a, b);
   Real exact = pc_select(PC_LD(contact_rows, m, ROW_K) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   PC_ST(contact_rows, m, ROW_SCALE, pc_select(far, exact, scale));
-  precise Real both = a.inverse_mass * b.inverse_mass; pc_go_on(PC_PASS m, both);
   Wrench w = pc_warm_start(PC_PASS m);
   if (PC_ANY(far)) {  // lint: allow (a share of one changes nothing)
     Real calming = pc_clamp(pc_calming_share(a, b, arms, w.impulse, w.couple), PC_REAL(0.0), PC_REAL(1.0)); Real share = pc_select(far, calming, PC_REAL(1.0));

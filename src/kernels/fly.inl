@@ -37,7 +37,7 @@ PC_FN void pc_kernel(PC_IO Index i) {
 #endif
   Quad inverse = PC_GATHER(mass, i, 1u);
 
-  pc_begin(PC_PASS m, pc_velocity_shift(PC_PASS m.linear, m.angular, linear_before, angular_before, f.push, f.turn));
+  pc_begin(m, pc_velocity_shift(PC_PASS m.linear, m.angular, linear_before, angular_before, f.push, f.turn));
 #ifdef PC_DRAG
   pc_find_decays(PC_PASS f);
 #endif

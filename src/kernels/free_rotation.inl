@@ -6,15 +6,20 @@
 // both turn by more than PC_FINE_TURN, and below, where no more than rounding is to be had, as half a, c, half a (Strang). L is exact.
 // Two equal moments: the middle one is among them, one term vanishes and the motion is exact; three equal
 // moments: one rotation. (McLachlan and Quispel, Splitting methods, Acta Numerica 11, 2002, section 3.)
-// A body that turns against its middle axis by more than a radian does so in up to 16 such parts, and what they are off in
-// energy is turned back: the splitting alone keeps |L| but finds other axes there, and a box gained half its energy. Beyond
-// 8 radians, where a pose no longer tells how far it turned, it moves along its polhode as if it were 8.
+// A body that turns against its middle axis by more than a radian does so in up to 16 such parts: the splitting alone keeps
+// |L| but finds other axes there, and a box gained half its energy. Beyond 8 radians, where a pose no longer tells how far it
+// turned, it moves along its polhode as if it were 8. What a turn of more than PC_KEPT_TURN is off in energy is turned back. Of
+// smaller ones the energy only oscillates, by less than a few roundings, and to turn those back would be a drift.
 
-// The square of that angle: 1e-5 rad, and 1.4e-3 in single precision.
+// The squares of these angles: 1e-5 and 0.02 rad, and 1.4e-3 and 0.1 in single precision; and what counts as rounding.
 #ifdef PC_DOUBLE
 #define PC_FINE_TURN PC_REAL(1e-10)
+#define PC_KEPT_TURN PC_REAL(4e-4)
+#define PC_ENERGY_ROUNDING PC_REAL(1e-15)
 #else
 #define PC_FINE_TURN PC_REAL(2e-6)
+#define PC_KEPT_TURN PC_REAL(1e-2)
+#define PC_ENERGY_ROUNDING PC_REAL(2e-7)
 #endif
 
 // What a sub-step changes in an orientation q: W q B - q = (W - 1) (q B) + q (B - 1).
@@ -27,9 +32,18 @@ PC_FN Quaternion pc_change(Turn world, Quaternion q, Turn body) {
 }
 
 struct Spin { Turn turn; Vec3 pi; };
+PC_FN Turn pc_turn_select(Mask m, Turn a, Turn b) {
+  Turn r;
+  r.q.v = pc_select3(m, a.q.v, b.q.v);
+  r.q.w = pc_select(m, a.q.w, b.q.w);
+  r.fall = pc_select(m, a.fall, b.fall);
+  return r;
+}
 PC_FN Spin pc_spin_select(Mask m, Spin a, Spin b) {
-  Spin r; r.turn.q.v = pc_select3(m, a.turn.q.v, b.turn.q.v); r.turn.q.w = pc_select(m, a.turn.q.w, b.turn.q.w);
-  r.turn.fall = pc_select(m, a.turn.fall, b.turn.fall); r.pi = pc_select3(m, a.pi, b.pi); return r;
+  Spin r;
+  r.turn = pc_turn_select(m, a.turn, b.turn);
+  r.pi = pc_select3(m, a.pi, b.pi);
+  return r;
 }
 // Turns the body by rate * time * (its momentum along `axis`) about its own axis: appends to the turn, and Pi follows. Of two
 // equal moments one is the middle one, and about the other's axis nothing turns.
@@ -59,29 +73,44 @@ PC_FN Spin pc_fourth_order(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c,
   return pc_body_turn(s, a, rate_a, a1);
 }
 PC_FN Vec3 pc_times(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
+// The direction of the momentum `before` as the body sees it after a turn: by one rotation, since what many add up to in
+// rounding a slender body's energy has a hundredfold.
+PC_FN Vec3 pc_seen(Turn turn, Vec3 before) { return pc_unit_or_zero(pc_rotate(pc_conjugate(turn.q), before)); }
 // Turns the body by what brings its energy back to that of the momentum `before`, the shortest way: along Pi x w, of which
-// the energy falls by its square. Newton's method, by half a radian at most at a time. In units of the momentum and the sub-step.
-PC_FN Spin pc_keep_energy(Spin spin, Vec3 inverse, Vec3 before, Real h) {
-  Real size = pc_length(before); Real share = pc_inverse_or_zero(size); precise Real unit = size * h; Vec3 rates = pc_scale(inverse, unit);
-  Spin s = spin; s.pi = pc_scale(s.pi, share); Vec3 start = pc_scale(before, share); Vec3 w0 = pc_times(start, rates); Real wanted = pc_dot(start, w0);
+// the energy falls by its square. Newton's method, by half a radian at most at a time, where it is off by more than rounding.
+// In units of the momentum and the sub-step.
+PC_FN Turn pc_keep_energy(Turn turn, Vec3 inverse, Vec3 before, Real h, Mask these) {
+  precise Real unit = pc_length(before) * h;
+  Vec3 rates = pc_scale(inverse, unit);
+  Vec3 start = pc_unit_or_zero(before);
+  Real wanted = pc_dot(start, pc_times(start, rates));
+  precise Real rounding = wanted * PC_ENERGY_ROUNDING;
+  Turn kept = turn;
+  // (not left before its end: NVIDIA's compiler then rounds otherwise)
   for (uint i = 0u; i < 5u; i++) {
-    Vec3 w = pc_times(s.pi, rates); precise Real excess = (pc_dot(s.pi, w) - wanted) * PC_REAL(0.5);
-    Vec3 way = pc_cross(s.pi, w); Real square = pc_dot(way, way); Real step = pc_div(excess, pc_max(square, PC_REAL(1e-12)));
-    precise Real length = pc_sqrt(square) * step; Real most = pc_max(pc_abs(length), PC_REAL(0.5)); precise Real part = step * PC_REAL(0.5);
-    Turn r = pc_turn(pc_scale(way, pc_div(part, most)));
-    s.turn = pc_turn_mul(s.turn, r); s.pi = pc_rotate(pc_conjugate(r.q), s.pi);
+    Vec3 pi = pc_seen(kept, start);
+    Vec3 w = pc_times(pi, rates);
+    precise Real excess = (pc_dot(pi, w) - wanted) * PC_REAL(0.5);
+    Mask off = pc_and(these, pc_abs(excess) > rounding);
+    Vec3 way = pc_cross(pi, w);
+    Real square = pc_dot(way, way);
+    Real step = pc_div(excess, pc_max(square, PC_REAL(1e-12)));
+    precise Real length = pc_sqrt(square) * step;
+    Real most = pc_max(pc_abs(length), PC_REAL(0.5));
+    precise Real part = step * PC_REAL(0.5);
+    kept = pc_turn_select(off, pc_turn_mul(kept, pc_turn(pc_scale(way, pc_div(part, most)))), kept);
   }
-  return s;
+  return kept;
 }
 // The turn by `angle`, more than a radian, in its parts.
-PC_FN Spin pc_fast_turn(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real angle, Vec3 inverse, Real h) {
+PC_FN Spin pc_fast_turn(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real angle, Real h) {
   Real parts = pc_parts(angle); precise Real span = h * pc_div(PC_REAL(8.0), pc_max(angle, PC_REAL(8.0)));
   Real time = pc_div(span, parts); precise Real half_time = time * PC_REAL(0.5); Real left = parts; Spin s = start;
   for (uint i = 0u; i < 16u; i++) {
     s = pc_spin_select(left > PC_REAL(0.5), pc_strang(s, a, c, rate_a, rate_c, half_time, time), s);
     precise Real rest = left - PC_REAL(1.0); left = rest;
   }
-  return pc_keep_energy(s, inverse, start.pi, h);
+  return s;
 }
 
 PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
@@ -106,14 +135,18 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   // how far the two turns go, squared (twice the energy bounds each momentum: Pi_c^2 <= 2 E I_c)
   precise Real twice = pc_dot(start.pi, pc_times(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
   Real inverse_a = pc_dot(a, inverse); Real inverse_c = pc_dot(c, inverse);
-  Mask fast = pc_and(pc_or(square_a > inverse_a, square_c > inverse_c), pc_and(pc_abs(rate_a) > PC_REAL(0.0), pc_abs(rate_c) > PC_REAL(0.0)));
+  Mask splits = pc_and(pc_abs(rate_a) > PC_REAL(0.0), pc_abs(rate_c) > PC_REAL(0.0));  // where not, the motion is exact
+  Mask fast = pc_and(pc_or(square_a > inverse_a, square_c > inverse_c), splits);
   precise Real least_a = inverse_a * PC_FINE_TURN; precise Real least_c = inverse_c * PC_FINE_TURN;
   Mask fine = pc_and(square_a > least_a, square_c > least_c); Mask plain = pc_select(fine, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); Spin s = start;
   if (PC_ANY(fine)) s = pc_fourth_order(start, a, c, rate_a, rate_c, half_h, h);  // lint: allow (selected below)
   if (PC_ANY(plain)) s = pc_spin_select(fine, s, pc_strang(start, a, c, rate_a, rate_c, half_h, h));  // lint: allow (other lanes keep what they have)
   if (PC_ANY(fast)) {  // lint: allow (other lanes keep what they have)
     precise Real a2 = square_a * pc_inverse_or_zero(inverse_a); precise Real c2 = square_c * pc_inverse_or_zero(inverse_c); Real angle = pc_sqrt(pc_max(a2, c2));
-    s = pc_spin_select(fast, pc_fast_turn(start, a, c, rate_a, rate_c, angle, inverse, h), s);
+    s = pc_spin_select(fast, pc_fast_turn(start, a, c, rate_a, rate_c, angle, h), s);
   }
-  return pc_change(world, q, s.turn);
+  precise Real kept_a = inverse_a * PC_KEPT_TURN; precise Real kept_c = inverse_c * PC_KEPT_TURN;
+  Mask kept = pc_and(splits, pc_or(square_a > kept_a, square_c > kept_c)); Turn turn = s.turn;
+  if (PC_ANY(kept)) turn = pc_keep_energy(turn, inverse, start.pi, h, kept);  // lint: allow (other lanes keep what they have)
+  return pc_change(world, q, turn);
 }

@@ -6,8 +6,8 @@ PC_FN Real pc_limit_row(PC_IO Real u, Real slack, Real mass, Real locked, Real i
   Mask holds = locked > PC_REAL(0.5);
   Mask open = pc_and(slack > PC_REAL(0.0), locked < PC_REAL(0.5));
   Real bias = pc_angle_bias(PC_PASS slack, open);
-  Real mass_scale = pc_select(open, PC_REAL(1.0), PC_INFO(joint_mass_scale));
-  Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(joint_impulse_scale));
+  Real mass_scale = pc_select(open, PC_REAL(1.0), PC_INFO(soft_mass_scale));
+  Real impulse_scale = pc_select(open, PC_REAL(0.0), PC_INFO(soft_impulse_scale));
   precise Real next = impulse - mass * mass_scale * (u + bias) - impulse_scale * impulse;
   return pc_snap(pc_select(holds, next, pc_max(next, PC_REAL(0.0))));
 }

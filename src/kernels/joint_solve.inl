@@ -1,5 +1,5 @@
 // Visits a joint: the angle rows one after the other, then the pin block (the original's order), as soft
-// constraints with accumulated impulses. The relax pass is this same text with joint_rate 0, mass scale 1,
+// constraints with accumulated impulses. The relax pass is this same text with soft_rate 0, mass scale 1,
 // impulse scale 0.
 #include "body_state.inl"
 #include "joint_rows.inl"
@@ -35,10 +35,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
   PinArms arms = pc_common_arms(frozen_a, frozen_b, apart); Vec3 arm_a = arms.a; Vec3 arm_b = arms.b;
   Vec3 va = pc_add(a.v, pc_cross(pc_sym_mul(ja, la), arm_a)); Vec3 vb = pc_add(b.v, pc_cross(pc_sym_mul(jb, lb), arm_b));
-  precise Vec3 wanted = (vb - va) + gap * PC_INFO(joint_rate);
+  precise Vec3 wanted = (vb - va) + gap * PC_INFO(soft_rate);
   Vec3 answer = pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted);
-  precise Real minus_scale = -PC_INFO(joint_mass_scale);
-  precise Vec3 change = answer * minus_scale - pin.v * PC_INFO(joint_impulse_scale);
+  precise Real minus_scale = -PC_INFO(soft_mass_scale);
+  precise Vec3 change = answer * minus_scale - pin.v * PC_INFO(soft_impulse_scale);
 #ifdef PC_DRIVES
   change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, pc_sub(vb, va), pin.v), change);
 #endif

@@ -67,6 +67,8 @@ PC_FN Vec3 pc_unit_or_zero(Vec3 a) { return pc_scale(a, pc_inverse_or_zero(pc_le
 PC_FN Mask pc_nonzero(Real x) { return pc_select(pc_abs(x) < PC_LEAST, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); }
 PC_FN Real pc_snap(Real x) { return pc_select(pc_abs(x) < PC_TINY, PC_REAL(0.0), x); }
 PC_FN Vec3 pc_snap3(Vec3 a) { return Vec3(pc_snap(a.x), pc_snap(a.y), pc_snap(a.z)); }
+// Of an impulse at an arm, and a couple beside it.
+PC_FN Vec3 pc_moment(Vec3 couple, Vec3 arm, Vec3 impulse) { return pc_snap3(pc_add(couple, pc_cross(arm, impulse))); }
 
 PC_FN Vec3 pc_sym_mul(Sym3 m, Vec3 v) {
   precise Real x = m.xx * v.x + m.xy * v.y + m.xz * v.z;

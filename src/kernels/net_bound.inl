@@ -50,7 +50,7 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
 }
 
 // The motion of the whole net as one rigid body with its momenta; or, where something holds it, that of what does.
-struct Rigid { Vec3 v; Vec3 w; Vec3 centre; Mask held; };
+struct Rigid { Vec3 v; Vec3 w; Vec3 centre; Real light; Mask held; };  // light: 1 / mass
 PC_FN Vec3 pc_net_place(PC_IO Slot m, Net n, uint k) {
   Index first = pc_net_row(PC_PASS m, n, 0u);
   Index row = pc_net_row(PC_PASS m, n, k);
@@ -89,9 +89,9 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
     precise Real sum = mass_all + heavy;
     mass_all = sum;
   }
-  Real light = pc_inverse_or_zero(mass_all);
-  r.centre = pc_scale(r.centre, light);
-  r.v = pc_scale(p, light);
+  r.light = pc_inverse_or_zero(mass_all);
+  r.centre = pc_scale(r.centre, r.light);
+  r.v = pc_scale(p, r.light);
   Vec3 l = pc_zero3();
   Sym3 all = pc_world_inertia(pc_quaternion(pc_zero3(), PC_REAL(1.0)), pc_zero3());
   for (uint k = 0u; k < n.bodies; k++) {
@@ -135,8 +135,8 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
   r.centre = pc_select3(r.held, held_at, r.centre);
   return r;
 }
-// Brings what was solved nearer to the rigid motion, where `brings`: of how each body differs from it `kept` is left.
-PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Real kept, Mask brings) {
+// The rigid motion in place of what was solved, where `brings`.
+PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask brings) {
   Vec3 sum = pc_zero3();
   Real zero = PC_REAL(0.0);
   for (uint k = 0u; k < n.bodies; k++) {
@@ -146,55 +146,43 @@ PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Real kept, Mask brings) 
     Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), r.centre);
     Vec3 v = pc_sub(pc_add(r.v, pc_cross(r.w, arm)), pc_ld3_net(PC_PASS b, NET_VELOCITY));
     Vec3 l = pc_sub(pc_sym_mul(pc_net_moments(PC_PASS row), r.w), pc_ld3_net(PC_PASS b, NET_MOMENTUM));
-    Vec3 rigid = pc_scale(v, heavy);
-    Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
-    Vec3 turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
-    Vec3 next = pc_madd(rigid, pc_sub(push, rigid), kept);
-    Vec3 next_turn = pc_madd(l, pc_sub(turn, l), kept);
+    Vec3 push = pc_scale(v, heavy);
     Mask here = pc_and(brings, heavy > zero);
-    pc_st3_net(PC_PASS b, NET_PUSH, pc_select3(here, next, push));
-    pc_st3_net(PC_PASS b, NET_PUSH + 3u, pc_select3(here, next_turn, turn));
-    sum = pc_add(sum, pc_select3(here, next, pc_zero3()));
+    pc_net_keep(PC_PASS b, NET_PUSH, here, push);
+    pc_net_keep(PC_PASS b, NET_PUSH + 3u, here, l);
+    sum = pc_add(sum, pc_select3(here, push, pc_zero3()));
   }
-  // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work
+  // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work. Where nothing
+  // does all take what rounding has left, by their mass: the net may move so for many sub-steps, with the same rounding in each
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
-    Mask stands = pc_select(PC_LD(net_rows, b, NET_MASS) > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
-    Mask here = pc_and(brings, stands);
-    pc_st3_net(PC_PASS b, NET_PUSH, pc_select3(here, pc_negate(sum), pc_ld3_net(PC_PASS b, NET_PUSH)));
-    pc_st3_net(PC_PASS b, NET_PUSH + 3u, pc_select3(here, pc_zero3(), pc_ld3_net(PC_PASS b, NET_PUSH + 3u)));
+    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
+    Mask stands = pc_select(heavy > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
+    precise Real share = heavy * r.light;
+    Vec3 rest = pc_madd(pc_ld3_net(PC_PASS b, NET_PUSH), sum, -pc_select(r.held, zero, share));
+    pc_net_keep(PC_PASS b, NET_PUSH, brings, pc_select3(stands, pc_negate(sum), rest));
+    pc_net_keep(PC_PASS b, NET_PUSH + 3u, pc_and(brings, stands), pc_zero3());
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    // what is left of the impulse has no second half but for the couple that it exerts
-    Vec3 impulse = pc_ld3_net(PC_PASS s, NET_IMPULSE);
-    pc_st3_net(PC_PASS s, NET_IMPULSE, pc_select3(brings, pc_scale(impulse, kept), impulse));
+    pc_net_keep(PC_PASS s, NET_IMPULSE, brings, pc_zero3());
     PC_ST(net_rows, s, NET_LATE, pc_select(brings, PC_REAL(1.0), PC_LD(net_rows, s, NET_LATE)));
   }
 }
-// Where Newton's method did not come far enough, and the sub-step would make energy: less of what was solved, down to
-// none of it.
+// Where Newton's method did not come far enough, and the sub-step would make energy, the net moves as one rigid body.
 PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
-  Real kept = PC_REAL(0.5);
-  for (uint i = 0u; i < PC_COUNT(net_bounds); i++) {
-    Energy e = pc_net_energy(PC_PASS m, n);
-    Real motion = PC_REAL(0.0);
-    for (uint k = 0u; k < n.bodies; k++) {
-      Slot b = pc_net_body(PC_PASS m, n, k);
-      Vec3 v = pc_ld3_net(PC_PASS b, NET_VELOCITY);
-      precise Real sum = motion + pc_dot(v, v) * pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS)) * PC_REAL(0.5);
-      motion = sum;
-    }
-    precise Real most = (e.scale + motion) * PC_INFO(net_made);
-    Mask makes = pc_and(asked, e.made > most);
-    if (!PC_ANY(makes)) break;  // lint: allow (others keep what they have)
-    Slot keeper = pc_net_body(PC_PASS m, n, 0u);
-    PC_ST(net_rows, keeper, NET_BOUND, pc_select(makes, PC_REAL(1.0), PC_LD(net_rows, keeper, NET_BOUND)));
-    Rigid r = pc_net_rigid(PC_PASS m, n);
-    uint bounds = PC_COUNT(net_bounds);
-    uint left = bounds - 1u - i;
-    Real less = pc_select(PC_IS(left), kept, PC_REAL(0.0));
-    pc_net_stiffen(PC_PASS m, n, r, less, makes);
-    kept = PC_REAL(0.25);
+  Energy e = pc_net_energy(PC_PASS m, n);
+  Real motion = PC_REAL(0.0);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Vec3 v = pc_ld3_net(PC_PASS b, NET_VELOCITY);
+    precise Real sum = motion + pc_dot(v, v) * pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS)) * PC_REAL(0.5);
+    motion = sum;
   }
+  precise Real most = (e.scale + motion) * PC_INFO(net_made);
+  Mask makes = pc_and(asked, e.made > most);
+  if (!PC_ANY(makes)) return;  // lint: allow (others keep what they have)
+  Slot keeper = pc_net_body(PC_PASS m, n, 0u);
+  PC_ST(net_rows, keeper, NET_BOUND, pc_select(makes, PC_REAL(1.0), PC_LD(net_rows, keeper, NET_BOUND)));
+  pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
 }

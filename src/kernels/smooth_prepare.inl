@@ -1,4 +1,4 @@
-// Start of a step of a tree of fourth order (smooth_stage.inl): what all of its stages read of bodies and joints.
+// Start of a step of a tree of fourth order (smooth_step.inl): what all of its stages read of bodies and joints.
 #include "smooth_rows.inl"
 #include "tree_store.inl"
 
@@ -8,7 +8,7 @@ PC_FN void pc_smooth_mass(PC_IO Slot n) {
   PC_ST(tree_rows, n, TREE_MASS, moments.s); pc_st3_tree(PC_PASS n, SMOOTH_MOMENTS, moments.v);
   pc_st3_tree(PC_PASS n, TREE_MOMENTS, inverse.v); PC_ST(tree_rows, n, TREE_MOMENTS + 3u, inverse.s);
   pc_st3_tree(PC_PASS n, SMOOTH_FORCE, push.v); pc_st3_tree(PC_PASS n, SMOOTH_TORQUE, turn.v);
-  Quad low = PC_GATHER(velocity_parts, body, 3u); precise Real settling = low.s - PC_INFO(settling_step); low.s = pc_max(settling, PC_REAL(0.0));  // as in begin
+  Quad low = PC_GATHER(velocity_parts, body, 3u); precise Real settling = low.s - PC_REAL(1.0); low.s = pc_max(settling, PC_REAL(0.0));  // as in begin
   PC_SCATTER_IF(moments.s > PC_REAL(0.0), velocity_parts, body, 3u, low);
 }
 PC_FN void pc_smooth_joint(PC_IO Tree t, Slot n, uint k) {

@@ -17,8 +17,8 @@
 #include "contact_reach.inl"
 #include "row_approach.inl"
 
-// Contacts that hold nothing, and whose points would come no nearer than this speed could close, are left alone in this sub-step: in a pile half of all. What
-// is missed the next sub-step sees.
+// Contacts that hold nothing, and whose points would come no nearer than the speeds of their bodies could close, are left
+// alone in this sub-step: in a pile half of all. What is missed the next sub-step sees.
 PC_FN Real pc_room(PC_IO Slot m, uint i, Twist v, Shift shift) {
   Real a = PC_LD(contact_rows, m, ROW_A + i); Real b = PC_LD(contact_rows, m, ROW_B + i);
   precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + b * shift.turn1 - a * shift.turn2);
@@ -30,7 +30,7 @@ PC_FN Mask pc_idles(PC_IO Slot m, Meeting now) {
   for (uint i = 0u; i < 4u; i++) held = pc_max(held, PC_LD(contact_impulses, m, i));
   for (uint i = 0u; i < 3u; i++) held = pc_max(held, pc_abs(PC_LD(contact_impulses, m, IMPULSE_T + i)));
   Real room = pc_min(pc_min(pc_room(PC_PASS m, 0u, now.twist, now.shift), pc_room(PC_PASS m, 1u, now.twist, now.shift)), pc_min(pc_room(PC_PASS m, 2u, now.twist, now.shift), pc_room(PC_PASS m, 3u, now.twist, now.shift)));
-  precise Real fast = pc_length(now.a.v) + pc_length(now.b.v) + PC_INFO(idle_speed);
+  precise Real fast = pc_length(now.a.v) + pc_length(now.b.v);
   return pc_select(held > PC_REAL(0.0), PC_REAL(0.0), room) > fast;
 }
 
@@ -42,14 +42,9 @@ PC_FN void pc_fill_reach(PC_IO Way w, Slot m, bool turns, Arms arms, Vec3 n, Vec
 // Of both sides: what bodies of trees answer, on top of free ones.
 PC_FN Responses pc_tree_responses(PC_IO Way w, Slot m, bool turns, Responses free) {
   Responses r = free; r.l = pc_sym_add(free.l, pc_answers(PC_PASS w, m, 0u)); Mat3 mixed = pc_mat3(pc_zero3(), pc_zero3(), pc_zero3());
-  if (w.shared_levels > 0u) r.l = pc_with_both(r.l, pc_cross_answers(PC_PASS w, m, 0u, 0u));  // lint: allow (zeros where a contact is not within one tree)
   if (turns) {  // lint: allow (others have no use for it)
     Mask turning = pc_turns_matter(PC_PASS m); Vec3 zero = pc_zero3();
     r.a = pc_sym_add(free.a, pc_answers(PC_PASS w, m, 1u)); mixed = pc_mixed_answers(PC_PASS w, m);
-    if (w.shared_levels > 0u) {  // lint: allow (as above)
-      r.a = pc_with_both(r.a, pc_cross_answers(PC_PASS w, m, 1u, 1u));
-      mixed = pc_mat_add(mixed, pc_mat_add(pc_cross_answers(PC_PASS w, m, 0u, 1u), pc_transpose(pc_cross_answers(PC_PASS w, m, 1u, 0u))));
-    }
     r.a = pc_sym_select(turning, r.a, free.a); mixed = pc_mat3(pc_select3(turning, mixed.a, zero), pc_select3(turning, mixed.b, zero), pc_select3(turning, mixed.c, zero));
   }
   r.w1 = pc_add(free.w1, Vec3(mixed.a.x, mixed.b.x, mixed.c.x)); r.w2 = pc_add(free.w2, Vec3(mixed.a.y, mixed.b.y, mixed.c.y)); r.wn = pc_add(free.wn, Vec3(mixed.a.z, mixed.b.z, mixed.c.z)); return r;
@@ -63,24 +58,12 @@ PC_FN Responses pc_outside_responses(PC_IO Way w, Slot m, Meeting now, Vec3 n, V
   if (PC_ANY(pc_max(a.inverse_mass, b.inverse_mass) > PC_REAL(0.0))) return pc_free_responses(a, b, now.arms.a, now.arms.b, n, t1, t2);  // lint: allow (zeros otherwise)
   Responses r; r.l = pc_diagonal(PC_REAL(0.0)); r.a = r.l; r.w1 = pc_zero3(); r.w2 = r.w1; r.wn = r.w1; r.these = PC_REAL(1.0) > PC_REAL(0.0); return r;
 }
-// No row is heavier than what bare bodies would answer allows, many times over.
-PC_FN void pc_bound_masses(PC_IO Slot m, Mask these, BodyState a, BodyState b) {
-  precise Real light = a.inverse_mass + b.inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_INFO(row_mass_most);
-  for (uint i = 0u; i < 4u; i++) { Real mass = PC_LD(contact_rows, m, ROW_MASS + i); PC_ST(contact_rows, m, ROW_MASS + i, pc_select(these, pc_min(mass, most), mass)); }
-  precise Real trace = PC_LD(contact_rows, m, ROW_TT) + PC_LD(contact_rows, m, ROW_TT + 2u); Real less = pc_select(pc_and(these, trace > most), pc_div(most, pc_max(trace, most)), PC_REAL(1.0));
-  for (uint i = 0u; i < 3u; i++) { precise Real block = PC_LD(contact_rows, m, ROW_TT + i) * less; PC_ST(contact_rows, m, ROW_TT + i, block); }
-}
-
 // Whether a contact that was not idle `before` reaches into trees that have handed on nothing since (tree_respond), and meets nothing else that moves.
 PC_FN Mask pc_reaches_same(PC_IO Way w, Slot m, Meeting now, Real before) {
   Quad a = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN)), 7u); Quad b = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN + 1u)), 7u);
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u); Real free = pc_max(pc_free_mass(tree_a, now.a), pc_free_mass(tree_b, now.b));
   return pc_and(pc_and(before > PC_REAL(0.0), pc_or(tree_a, tree_b)), pc_max(free, pc_max(a.s, b.s)) < PC_TINY);  // (padding is in none)
 }
-
-// The most that a slow mean holds: what would give the lighter body that speed. A body that lies wedged between two others, each of which pushes
-// it towards the other, has no place to go; with means that hold whatever was pushed before, the two push ever harder.
-PC_FN Real pc_mean_most(PC_IO Meeting now) { precise Real light = now.a.inverse_mass + now.b.inverse_mass; precise Real most = pc_inverse_or_zero(light) * PC_INFO(mean_most); return most; }
 
 // The approach that is told of a row (contact_touch) is that of the sub-step in which it first pushes: on its way there a limb is turned by blows
 // elsewhere.
@@ -95,11 +78,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1); Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2);
   for (uint i = 0u; i < 4u; i++) pc_see_approach(PC_PASS m, i, now.twist);
-  Real most = pc_mean_most(PC_PASS now);
-  for (uint i = 0u; i < 4u; i++) {  // the slow means
-    Real mean = PC_LD(contact_impulses, m, IMPULSE_MEAN + i); precise Real next = mean + (PC_LD(contact_impulses, m, i) - mean) * PC_INFO(mean_share);
-    PC_ST(contact_impulses, m, IMPULSE_MEAN + i, pc_min(next, most));
-  }
   Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); Real before = PC_LD(contact_rows, m, ROW_SCALE); PC_ST(contact_rows, m, ROW_SCALE, scale);
   if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)
   pc_keep_meeting(PC_PASS w, m, now);
@@ -112,6 +90,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
   Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
   r.these = anew; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
-  pc_bound_masses(PC_PASS m, r.these, now.a, now.b);
 }
 #undef PC_SOME_ROWS

@@ -1,7 +1,7 @@
 // Visits a manifold with a body of a tree, inside the space that the joints leave: what is pending in the trees moves the rows
 // (tree_reach.inl), they are solved as those of free bodies are (contact_visit.inl), and the impulse goes into what is pending. The
 // velocities of trees follow with tree_flush.
-#define PC_MEAN
+#define PC_TREES
 #include "tree_math.inl"
 #include "contact_way.inl"
 #include "contact_rows.inl"
@@ -49,14 +49,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
-  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, pc_both_move(PC_PASS w, m), pc_bounce(PC_PASS w, m), acts);
+  Mask both_move = pc_both_move(PC_PASS w, m);
+  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, PC_INFO(contact_preload), both_move, pc_bounce(PC_PASS w, m), acts);
   r.impulse = pc_select3(acts, r.impulse, pc_zero3());
   r.couple = pc_select3(acts, r.couple, pc_zero3());
 
   Real changes = pc_max(r.touch, pc_max(pc_largest(r.impulse), pc_largest(r.couple)));
   if (!PC_ANY(changes > PC_REAL(0.0))) return;  // lint: allow (nothing changes nothing)
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u); Real zero = PC_REAL(0.0); BodyState a = now.a; BodyState b = now.b;
-  Vec3 torque_a = pc_add(r.couple, pc_cross(now.arms.a, r.impulse)); Vec3 torque_b = pc_add(r.couple, pc_cross(now.arms.b, r.impulse));
+  Vec3 torque_a = pc_moment(r.couple, now.arms.a, r.impulse); Vec3 torque_b = pc_moment(r.couple, now.arms.b, r.impulse);
   Real free_a = pc_free_mass(tree_a, a); Real free_b = pc_free_mass(tree_b, b);
   if (PC_ANY(pc_max(free_a, free_b) > zero)) {  // lint: allow (bodies of trees and those that stand keep their rows)
     a.phase = pc_select(free_a > zero, pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(free_b > zero, pc_max(b.phase, r.touch), b.phase);
@@ -67,11 +68,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Six along = pc_six(Vec3(pc_dot(t1, r.impulse), pc_dot(t2, r.impulse), pc_dot(n, r.impulse)), Vec3(pc_dot(t1, r.couple), pc_dot(t2, r.couple), pc_dot(n, r.couple)));
   pc_push_side(PC_PASS w, m, 0u, turning, along); pc_push_side(PC_PASS w, m, 1u, turning, along);
 }
-#undef PC_MEAN
-#undef pc_kept
+#undef PC_TREES
 #undef pc_thrown
 #undef pc_lasts
-#undef PC_PRELOAD
+#undef PC_BACK
 #undef PC_SOME_ACT
 #undef PC_ACTS
 #undef PC_ACTING

@@ -32,7 +32,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   if (!PC_ANY(size > zero)) return;  // lint: allow (nothing changes nothing)
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  Vec3 torque_a = pc_add(wrench.couple, pc_cross(arms.a, wrench.impulse)); Vec3 torque_b = pc_add(wrench.couple, pc_cross(arms.b, wrench.impulse));
+  Vec3 torque_a = pc_moment(wrench.couple, arms.a, wrench.impulse); Vec3 torque_b = pc_moment(wrench.couple, arms.b, wrench.impulse);
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
   Quad linear_a = PC_GATHER(motion, ia, 0u); Quad linear_b = PC_GATHER(motion, ib, 0u);
   if (PC_ANY(pc_max(pc_select(tree_a, zero, linear_a.s), pc_select(tree_b, zero, linear_b.s)) > zero)) {  // lint: allow (bodies of trees and those that stand keep their rows)

@@ -2,7 +2,7 @@
 // tree_contact_solve does: what is pending comes down to the bodies, the rows are solved, the impulse goes up to the root.
 //
 // The pin is rigid: its gap stays what it was over the whole sub-step (SHAKE), with the arms turned as the bodies will turn, so no
-// energy is lost to the chord; and a share of the gap is closed. The relax pass is this same text with joint_rate 0: it looks back on the
+// energy is lost to the chord; and a share of the gap is closed. The relax pass is this same text with soft_rate 0: it looks back on the
 // same sub-step, from the same arms, and takes out no more than what closed the gap.
 #include "tree_math.inl"
 #include "joint_way.inl"
@@ -29,7 +29,7 @@ PC_FN Vec3 pc_mean_velocity(PC_IO BodyState b, Vec3 v, Vec3 w, Vec3 arm, Vec3 l)
 }
 // Velocity that closes a share of the gap, at most joint_push_speed.
 PC_FN Vec3 pc_pin_bias(PC_IO Vec3 gap) {
-  Vec3 v = pc_scale(gap, PC_INFO(joint_rate)); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
+  Vec3 v = pc_scale(gap, PC_INFO(soft_rate)); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
 }
 
@@ -60,7 +60,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
 
-  Vec3 torque_a = pc_add(couple, pc_cross(pc_ld3_joint(PC_PASS m, JOINT_NEAR_A), change)); Vec3 torque_b = pc_add(couple, pc_cross(pc_ld3_joint(PC_PASS m, JOINT_NEAR_B), change));
+  Vec3 torque_a = pc_moment(couple, pc_ld3_joint(PC_PASS m, JOINT_NEAR_A), change); Vec3 torque_b = pc_moment(couple, pc_ld3_joint(PC_PASS m, JOINT_NEAR_B), change);
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
   pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, change, torque_a, torque_b);
   pc_push_tree(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(change), pc_negate(torque_a)));

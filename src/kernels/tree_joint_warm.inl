@@ -11,7 +11,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad pin = PC_GATHER(joint_impulse, joint, 0u); Quad angle = PC_GATHER(joint_impulse, joint, 1u);
   JointImpulse j = pc_joint_warm(PC_PASS m, pin, angle);
-  Vec3 torque_a = pc_add(j.couple, pc_cross(pc_ld3_joint(PC_PASS m, JOINT_ARM_A), j.pin)); Vec3 torque_b = pc_add(j.couple, pc_cross(pc_ld3_joint(PC_PASS m, JOINT_ARM_B), j.pin));
+  Vec3 torque_a = pc_moment(j.couple, pc_ld3_joint(PC_PASS m, JOINT_ARM_A), j.pin); Vec3 torque_b = pc_moment(j.couple, pc_ld3_joint(PC_PASS m, JOINT_ARM_B), j.pin);
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
   pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, j.pin, torque_a, torque_b);
   pc_note_push(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(j.pin), pc_negate(torque_a)), PC_REAL(0.0));

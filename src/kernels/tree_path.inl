@@ -22,7 +22,6 @@ PC_FN uint pc_entry(Way w, uint k) { return w.at + k * PC_W; }
 // where the levels of a side begin, of the whole way and of what is below the common node; and those that both sides share
 PC_FN uint pc_levels(Way w, uint side) { return PATH_LEVELS + w.depth_a * side; }
 PC_FN uint pc_levels_below(Way w, uint side) { return PATH_LEVELS + w.depth_a + w.depth_b + w.below_a * side; }
-PC_FN uint pc_levels_shared(Way w) { return PATH_LEVELS + w.depth_a + w.depth_b + w.below_a + w.below_b; }
 PC_FN uint pc_depth(Way w, uint side) { return w.depth_a * (1u - side) + w.depth_b * side; }
 PC_FN uint pc_any_in_tree(Way w, uint side) { return w.any_a * (1u - side) + w.any_b * side; }
 PC_FN Mask pc_in_tree(PC_IO Way w, Slot m, uint side) { return pc_some(PC_WAY_EACH(m, pc_entry(w, PATH_OWN + side))); }

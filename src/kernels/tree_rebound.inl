@@ -51,7 +51,7 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   Real energy = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY);
   precise Real taken = energy - kept_energy;
   // (what one limit gives back whole is within rounding of it)
-  precise Real slightly = energy * PC_INFO(rounding) * PC_REAL(64.0);
+  precise Real slightly = energy * PC_INFO(rounding) * PC_REAL(16.0);
   Real back = pc_max(taken, zero);
   // 2 share first + share^2 second = back
   precise Real made = first + first + second;

@@ -46,7 +46,7 @@ void Columns::list(const WorldState& state, const TreeNodes& trees, Islands& isl
 
 void Columns::want(const WorldState& state, const TreeNodes& trees, double h, std::uint8_t highest_octave, Islands& islands,
                    std::vector<Wanted>& wanted) {
-  const double g = length(state.gravity), frequency = constants::contact_frequency_times_h / h;
+  const double g = length(state.gravity), frequency = constants::soft_frequency_times_h / h;
   if (g == 0 || highest_octave == 0) return;
   if (!listed_) list(state, trees, islands);
   constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -76,19 +76,16 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
   }
   // how far the weight of one body presses in one as heavy [m]
   const double give = g / (frequency * frequency);
-  const auto want = [&](std::uint32_t root, double share, double most, double aim) {
-    if (share <= most) return;
-    if (const std::uint8_t octave = octave_for(share, aim, highest_octave); octave > 0) wanted.push_back({root, octave, true});
+  const auto want = [&](std::uint32_t root, double share, double most) {
+    if (const std::uint8_t octave = octave_for(share, most, highest_octave); octave > 0) wanted.push_back({root, octave});
   };
   for (const Column& column : columns_) {
     if (!column.faces) continue;
     const double size = column.sizes / column.bodies, height = column.extent(0),
                  high = std::min(height / size, double(column.bodies));
     const double wide = std::max(column.extent(1), column.extent(2)) + size;
-    want(column.root, give * high / size, constants::column_overlap, constants::column_aim);
-    want(column.root, give * high * high * height / (wide * wide), constants::column_lean, constants::column_lean);
-    if (column.bodies <= constants::small_island)
-      want(column.root, 0.5 * give * high * high / size, constants::column_sag, constants::sag_aim);
+    want(column.root, give * high / size, constants::pressed);
+    want(column.root, give * high * high * height / (wide * wide), constants::column_lean);
   }
 }
 

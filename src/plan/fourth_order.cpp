@@ -130,7 +130,7 @@ void FourthOrder::choose(const WorldState& state, const Forest& forest, const So
   find_trees(state, forest, joints, closing);
   find_touched(state);
   const double h = substep_length(dt, settings.substeps);
-  const double fastest = constants::largest_smooth_turn * double(1u << highest_octave(settings)) / h;
+  const double fastest = double(1u << highest_octave(settings)) / h;  // a radian in the shortest sub-step
   for (std::uint32_t i = 0; i < why_not_.size(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     std::uint32_t why = why_not_[i];

@@ -21,18 +21,9 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 }  // namespace
 
-Settling::Settling(double h, Vec3 gravity) : visits(constants::settling_visits), step(1) {
-  const double fall = length(gravity) * h * h;
-  if (fall == 0 || fall >= constants::settling_fall) return;
-  visits = constants::settling_visits_short;
-  step = constants::settling_step_short;
-}
-
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
   const double h = from.h / double(1u << octave);
-  const Soft contact = soft(constants::contact_frequency_times_h, constants::contact_damping_ratio, h);
-  const Soft of_tree = soft(constants::tree_contact_frequency_times_h, constants::tree_contact_damping_ratio, h);
-  const Soft joint = soft(constants::joint_frequency_times_h, constants::joint_damping_ratio, h);
+  const Soft rows = soft(constants::soft_frequency_times_h, constants::soft_damping_ratio, h);
 
   InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
   biased = {};
@@ -44,25 +35,15 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.h_before = Scalar(h);
   biased.by_forces = octave > 0;
   biased.impulse_ratio = 1;
-  biased.contact_rate = Scalar(contact.rate);
-  biased.contact_impulse_scale = Scalar(contact.impulse_scale);
-  biased.friction_band = Scalar(constants::friction_band);
-  biased.gap_weight = Scalar(constants::gap_weight);
+  biased.soft_rate = Scalar(rows.rate);
+  biased.soft_mass_scale = Scalar(rows.mass_scale);
+  biased.soft_impulse_scale = Scalar(rows.impulse_scale);
+  biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
   biased.settled_load = Scalar(constants::settled_load);
   biased.settled_friction = Scalar(constants::settled_friction);
-  biased.settling_step = Scalar(Settling(from.h, from.gravity).step);
   biased.settling_pace = Scalar(constants::settling_pace);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
-  biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
-  biased.impulse_trend = Scalar(constants::impulse_trend);
-  biased.tree_contact_rate = Scalar(of_tree.rate);
-  biased.tree_contact_impulse_scale = Scalar(of_tree.impulse_scale);
-  biased.mean_share = Scalar(constants::mean_impulse_share);
-  biased.mean_most = Scalar(constants::mean_impulse_speed);
   biased.push_speed = Scalar(from.push_speed);
-  biased.joint_rate = Scalar(joint.rate);
-  biased.joint_mass_scale = Scalar(joint.mass_scale);
-  biased.joint_impulse_scale = Scalar(joint.impulse_scale);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   const double epsilon = std::numeric_limits<Scalar>::epsilon();
   biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
@@ -70,16 +51,12 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.net_rounds = constants::net_rounds;
   biased.net_searches = constants::net_searches;
   biased.net_slack = Scalar(constants::net_roundings * epsilon);
-  biased.net_bounds = constants::net_bounds;
   biased.net_made = Scalar(constants::net_made);
   biased.net_accuracy = Scalar(constants::net_roundings * epsilon * constants::net_roundings * epsilon);
-  biased.cross_share = Scalar(constants::cross_share);
   biased.seen_turn = Scalar(constants::seen_turn);
   biased.strayed_turn = Scalar(constants::strayed_turn);
-  biased.row_mass_most = Scalar(constants::row_mass_most);
   biased.kept_turn = Scalar(constants::kept_turn);
-  biased.idle_speed = Scalar(constants::idle_speed);
-  biased.limit_stiffness = Scalar(joint.mass_scale / joint.impulse_scale);
+  biased.limit_stiffness = Scalar(rows.mass_scale / rows.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
@@ -87,7 +64,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.rounding = Scalar(constants::rest_roundings * epsilon);
   biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
 
-  biased.fine = sizeof(Scalar) == 4 && h < constants::short_substep;
   biased.carries = from.carries;
   biased.substeps = Scalar(from.substeps << octave);
   biased.step = Scalar(from.h * from.substeps);
@@ -109,11 +85,10 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;
-  relax.contact_rate = relax.tree_contact_rate = relax.joint_rate = 0;
-  relax.joint_mass_scale = 1;
+  relax.soft_rate = 0;
+  relax.soft_mass_scale = 1;
+  relax.soft_impulse_scale = 0;
   relax.load_ahead = 1;
-  relax.gap_weight = 1;  // as the rows themselves will see it
-  relax.contact_impulse_scale = relax.tree_contact_impulse_scale = relax.joint_impulse_scale = 0;
 }
 
 template void fill_infos<float>(const InfoInputs&, InfoOf<float> (&)[phase_count], unsigned);

@@ -10,14 +10,6 @@ namespace pcphys {
 /// [s]
 inline double substep_length(double dt, std::uint32_t substeps) { return dt / substeps; }
 
-/// How contacts of bodies that were just placed are visited in steps with sub-steps of `h` [s] (docs/impulses.md).
-struct Settling {
-  Settling(double h, Vec3 gravity);
-  unsigned visits;  // in each pass
-  double step;      // what a step takes from a body's count (property `settling`)
-  double left(double count) const { return count > step ? count - step : 0; }
-};
-
 /// All that they follow from.
 struct InfoInputs {
   InfoInputs() = default;

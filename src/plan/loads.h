@@ -25,7 +25,7 @@ class Loads {
 
  private:
   struct Uneven {
-    std::uint32_t contact, body;
+    std::uint32_t contact, lighter;
     double ratio;  // of the masses; below zero where the normal leads from the heavier body to the lighter
   };
   std::vector<Uneven> uneven_;

@@ -47,27 +47,21 @@ std::uint8_t Loops::octave(const Loop& loop, double tension, std::uint8_t highes
   return octave_for(h_ * h_ * loop.ratio * tension / 4, constants::loop_stiffness, highest);
 }
 
-void Loops::want(const WorldState& state, double h, std::uint8_t highest, std::uint8_t highest_of_loops,
-                 std::vector<Wanted>& wanted) {
-  h_ = h, highest_ = highest, highest_of_loops_ = highest_of_loops;
+void Loops::want(const WorldState& state, double h, std::uint8_t highest, std::vector<Wanted>& wanted) {
+  h_ = h, highest_ = highest;
   for (Loop& l : loops_) {
     l.assumed = tension(state, l, state.last_substep);
-    const std::uint8_t whole = l.tight ? highest : octave(l, l.assumed, highest);
-    const std::uint8_t most = l.tight ? highest_of_loops : octave(l, l.assumed, highest_of_loops);
-    if (whole > 0) wanted.push_back({l.body, whole, true});
-    if (most > whole) wanted.push_back({l.body, most, false});
+    const std::uint8_t most = l.tight ? highest : octave(l, l.assumed, highest);
+    if (most > 0) wanted.push_back({l.body, most});
   }
 }
 
-bool Loops::find_tighter(const WorldState& state, Islands& islands) {
+bool Loops::find_tighter(const WorldState& state) {
   bool tighter = false;
   for (Loop& l : loops_) {
     const double now = tension(state, l, h_);
     if (l.tight || now < constants::loop_snap * l.assumed) continue;
-    if (octave(l, now, highest_of_loops_) == octave(l, l.assumed, highest_of_loops_)) continue;
-    islands.build(state);
-    const bool large = islands.size(islands.root(l.body)) > constants::large_island;
-    if (large && octave(l, now, highest_) == octave(l, l.assumed, highest_)) continue;
+    if (octave(l, now, highest_) == octave(l, l.assumed, highest_)) continue;
     tighter = l.tight = true;
   }
   return tighter;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "pcphys/step.h"
-#include "plan/islands.h"
 #include "plan/solved_joints.h"
 #include "plan/wanted.h"
 #include "world/state.h"
@@ -19,12 +18,11 @@ class Loops {
   void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing);
   /// A step begins, whose tensions are not known yet.
   void begin();
-  /// Adds what sub-steps of `h` need for the tension of the last step, up to `highest` octaves, or up to `highest_of_loops` in islands that
-  /// are not large; and all of these where a try of this step brought more. What it brings where sub-steps are too few says nothing of how
-  /// many it needs.
-  void want(const WorldState& state, double h, std::uint8_t highest, std::uint8_t highest_of_loops, std::vector<Wanted>& wanted);
+  /// Adds what sub-steps of `h` need for the tension of the last step, up to `highest` octaves, and all of these where a try of this step
+  /// brought more. What it brings where sub-steps are too few says nothing of how many it needs.
+  void want(const WorldState& state, double h, std::uint8_t highest, std::vector<Wanted>& wanted);
   /// After a try: whether some loop came under a tension that asks for more than it got.
-  bool find_tighter(const WorldState& state, Islands& islands);
+  bool find_tighter(const WorldState& state);
 
  private:
   struct Loop {
@@ -38,7 +36,7 @@ class Loops {
 
   std::vector<Loop> loops_;
   double h_ = 0;  // of the last `want`, as are
-  std::uint8_t highest_ = 0, highest_of_loops_ = 0;
+  std::uint8_t highest_ = 0;
 };
 
 }  // namespace pcphys

@@ -44,8 +44,8 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
     w.more = w.octave > highest;
     w.octave = std::min(w.octave, highest);
   }
-  loops_.want(state, h, highest, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
-  wanted_.insert(wanted_.end(), sudden_.begin(), sudden_.end());
+  loops_.want(state, h, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
+  wanted_.insert(wanted_.end(), again_.begin(), again_.end());
   h_ = h, highest_ = highest;
   before_.swap(of_bodies_);
   of_bodies_.clear();
@@ -74,11 +74,9 @@ void Octaves::assign(const WorldState& state, bool together) {
   limits_.clear();
   for (const Wanted& w : wanted_) {
     const std::uint32_t root = islands_.root(w.body);
-    const bool whole = w.any_size || islands_.size(root) <= constants::large_island;
-    const std::uint8_t octave = whole ? w.octave : std::uint8_t{1};
-    of_bodies_[root] = std::max(of_bodies_[root], octave);
+    of_bodies_[root] = std::max(of_bodies_[root], w.octave);
     highest_of_all = std::max(highest_of_all, of_bodies_[root]);
-    if (w.more || octave < w.octave) limits_.push_back(root);
+    if (w.more) limits_.push_back(root);
   }
   count_limited();
   for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
@@ -96,27 +94,22 @@ void Octaves::count_limited() {
 }
 
 bool Octaves::find_tighter(const WorldState& state, const Forest& forest, const Tears& tears) {
-  bool tighter = loops_.find_tighter(state, islands_);
-  if (highest_ < sudden_octaves) return tighter;
-  // those that want so many octaves more than the step was made in get them, or all there are
-  const auto again = [&](unsigned more, bool all) {
+  bool tighter = loops_.find_tighter(state);
+  // those that want so many octaves more than the step was made in get all there are
+  const auto again = [&](unsigned more) {
     for (const Wanted& w : wanted_) {
       const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
       if (w.octave < made + more) continue;
-      islands_.build(state);
-      if (islands_.size(islands_.root(w.body)) > constants::large_island) continue;
-      sudden_.push_back({w.body, all ? highest_ : w.octave, false});
+      again_.push_back({w.body, highest_});
       tighter = true;
     }
     wanted_.clear();
   };
   wanted_.clear();
   want_for_sudden_spins(state, forest, h_, highest_, wanted_);
-  again(sudden_octaves, true);
-  want_for_cracks(state, forest, h_, highest_, wanted_);
-  again(sudden_octaves, false);
+  again(sudden_octaves);
   tears.want(state, h_, highest_, wanted_);
-  again(1, true);
+  again(1);
   return tighter;
 }
 

@@ -43,7 +43,7 @@ class Octaves {
   /// Before the first try of a step.
   void begin() {
     loops_.begin();
-    sudden_.clear();
+    again_.clear();
   }
   /// After a try: whether the step is to be made again, with more sub-steps.
   bool find_tighter(const WorldState& state, const Forest& forest, const Tears& tears);
@@ -69,8 +69,8 @@ class Octaves {
   Pulls pulls_;
   Islands islands_;
   std::vector<Wanted> wanted_;
-  std::vector<Wanted> sudden_;  // by bodies that a try of this step tore, spun up or cracked
-  double h_ = 0;                // of octave 0 in the last `choose`, as is
+  std::vector<Wanted> again_;  // of bodies that a try of this step tore, or spun up
+  double h_ = 0;               // of octave 0 in the last `choose`, as is
   std::uint8_t highest_ = 0;
   std::vector<std::uint8_t> of_bodies_, before_;
   std::vector<std::uint32_t> limits_;  // roots of islands that would have got more

@@ -79,7 +79,7 @@ bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const A
 void stop(WorldState& s, std::uint32_t row) {
   for (const std::uint32_t offset : {0u, 4u}) s.tables.set3(Buffer::motion, row, offset, {});
   for (const std::uint32_t offset : {0u, 4u, 8u, 12u}) s.tables.set3(Buffer::velocity_parts, row, offset, {});
-  s.tables.set(Buffer::velocity_parts, row, settling_at, 0);
+  s.tables.set(Buffer::velocity_parts, row, place::settling, 0);
 }
 
 }  // namespace

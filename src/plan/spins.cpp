@@ -82,10 +82,10 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
       const Vec3 spin = state.angular_velocity(row);
       if (!(dot(spin, spin) > most * most)) continue;
       if (const std::uint8_t octave = octave_for(dot(spin, spin), aim * aim, highest_octave); octave > 0)
-        wanted.push_back({row, octave, false});
+        wanted.push_back({row, octave});
     }
     if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, 1, highest_octave); octave > 0)
-      wanted.push_back({tree.back().body, octave, false});
+      wanted.push_back({tree.back().body, octave});
   }
 }
 
@@ -104,31 +104,13 @@ void want_sudden(const WorldState& state, const Forest& forest, double h, std::u
       octave = std::max(octave, octave_for(dot(spin, spin), spin_most * spin_most, highest_octave));
     }
     const bool held = !state.responds(tree.front().body);
-    if (octave >= sudden_octaves && (held || !(was_touched<Scalar>(state.tables, tree) || meets_others(state, tree))))
-      wanted.push_back({tree.back().body, octave, false});
-  }
-}
-
-template <class Scalar>
-void want_cracks(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                 std::vector<Wanted>& wanted) {
-  const SpinBounds<Scalar> bounds(state.tables);
-  for (std::size_t i = 0; i < forest.trees(); i++) {
-    const std::span<const TreeNode> tree = forest.tree(i);
-    if (tree.front().flipped) continue;
-    if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, sudden_octaves, highest_octave); octave > 0)
-      wanted.push_back({tree.back().body, octave, false});
+    if (!held && (was_touched<Scalar>(state.tables, tree) || meets_others(state, tree))) octave = 0;
+    octave = std::max(octave, octave_for_whip(state, bounds, tree, h, sudden_octaves, highest_octave));
+    if (octave >= sudden_octaves) wanted.push_back({tree.back().body, octave});
   }
 }
 
 }  // namespace
-
-void want_for_cracks(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                     std::vector<Wanted>& wanted) {
-  if (forest.trees() == 0) return;
-  state.tables.precision() == Precision::f32 ? want_cracks<float>(state, forest, h, highest_octave, wanted)
-                                             : want_cracks<double>(state, forest, h, highest_octave, wanted);
-}
 
 void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                            std::vector<Wanted>& wanted) {

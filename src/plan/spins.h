@@ -12,7 +12,7 @@ namespace pcphys {
 
 class Forest;
 
-/// Where a step ends with spins that ask for so many octaves more than it was made with, it is made again with all there are: by then
+/// Where a step ends with spins, or whips, that ask for so many octaves more than it was made with, it is made again with all there are: by then
 /// the joints had no directions to go by (docs/substeps.md).
 inline constexpr unsigned sudden_octaves = 2;
 
@@ -23,14 +23,9 @@ inline constexpr unsigned sudden_octaves = 2;
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted);
 
-/// After a step: adds what trees that nothing touches, or that hang on what does not answer, need for the spins that it ended with, where
-/// that is `sudden_octaves` or more.
+/// After a step: adds what trees that nothing touches, or that hang on what does not answer, need for the spins that it ended with, and for
+/// how they whipped, where that is `sudden_octaves` or more.
 void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                            std::vector<Wanted>& wanted);
-
-/// After a step: adds what trees that nothing touches need for whips that the step before it did not tell of, where that is
-/// `sudden_octaves` or more.
-void want_for_cracks(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                     std::vector<Wanted>& wanted);
 
 }  // namespace pcphys

@@ -53,7 +53,7 @@ void Tears::want_of(const WorldState& state, double h, std::uint8_t octave, std:
   const double fast = constants::whirling / h;
   for (std::size_t i = 0; i < trees(); i++) {
     const bool whirls = std::ranges::any_of(links(i), [&](const Link& link) { return bounds.spin(link.body) > fast * fast; });
-    if (whirls && torn(state, i)) wanted.push_back({links(i).back().body, octave, false});
+    if (whirls && torn(state, i)) wanted.push_back({links(i).back().body, octave});
   }
 }
 

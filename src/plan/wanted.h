@@ -3,11 +3,10 @@
 
 namespace pcphys {
 
-/// The island of a body is to be of this octave at least; `any_size`: also if it is a large one.
+/// The island of a body is to be of this octave at least.
 struct Wanted {
   std::uint32_t body;  // row
   std::uint8_t octave;
-  bool any_size;
   bool more = false;  // would ask for more than there are
 };
 

@@ -303,7 +303,7 @@ struct Stepper::Inside {
     wanted.second_order = fourth.reasons();
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
-    add_contacts(wanted, schedule, found, Settling(h, s.gravity).visits);
+    add_contacts(wanted, schedule, found);
     if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
     jumps.act(s, own.ordered(), schedule.moving_bodies(), h, dt, runner);
     if (other) s.tables.resize(Table::node, 1);
@@ -340,7 +340,7 @@ struct Stepper::Inside {
     strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
     s.last_substep = h;
-    s.settling = Settling(h, s.gravity).left(s.settling);
+    if (s.settling > 0) s.settling--;
     tell(wanted, found);
     return {};
   }

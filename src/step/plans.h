@@ -41,13 +41,13 @@ inline PlanSignature signature(const StepSettings& settings, const WorldState& w
   return s;
 }
 
-/// And what touches; `visits`: of contacts with what was just placed.
-inline void add_contacts(PlanSignature& s, const Schedule& schedule, const Detector::Found& found, unsigned visits) {
+/// And what touches.
+inline void add_contacts(PlanSignature& s, const Schedule& schedule, const Detector::Found& found) {
   s.free_contacts = schedule.contacts.any_without_trees();
   s.tree_contacts = schedule.contacts.any_with_trees();
   s.friction = found.friction || found.rolling;
   s.restitution = found.restitution;
-  s.visits = found.placed && s.free_contacts ? visits : 1;
+  s.visits = found.placed && s.free_contacts ? constants::settling_visits : 1;
   s.impacts = found.impacts;
   s.rolling = found.rolling;
   s.touches = s.contact_events && s.contacts();

@@ -12,13 +12,12 @@ namespace {
 /// By contact row, what its work will be like. It orders contacts within a colour, and changes no result.
 template <class Scalar> void foresee(const WorldState& state, std::vector<ContactWork>& works) {
   const std::uint32_t reals = schema(Buffer::contact).reals;
-  const double near = constants::idle_speed * state.last_substep;
   const Scalar* contact = state.tables.data<Scalar>(Buffer::contact);
   works.resize(state.tables.rows(Table::contact));
   for (ContactWork& work : works) {
     const auto points = std::uint32_t(contact[3]);
     bool idle = true;
-    for (std::uint32_t i = 0; i < points; i++) idle &= contact[20 + i] == 0 && contact[7 + 4 * i] > Scalar(near);
+    for (std::uint32_t i = 0; i < points; i++) idle &= contact[20 + i] == 0 && contact[7 + 4 * i] > 0;
     work = {points > 1, idle};
     contact += reals;
   }

@@ -21,6 +21,17 @@ enum class Table : std::uint8_t {
   count
 };
 
+/// Where each property stands in a row of its buffer [reals], by its name.
+namespace place {
+#define PC_TABLE(table, doc)
+#define PC_BUFFER(table, buffer, quads, doc)
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc) inline constexpr std::uint32_t name = offset;
+#include "kernels/properties.inl"
+#undef PC_TABLE
+#undef PC_BUFFER
+#undef PC_PROPERTY
+}  // namespace place
+
 /// Everything a kernel can bind. First the tables' buffers (role of a world), then what a step makes.
 enum class Buffer : std::uint16_t {
 #define PC_TABLE(table, doc)

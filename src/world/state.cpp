@@ -90,7 +90,7 @@ void WorldState::bring_in_phase(std::uint32_t row) {
 
 void WorldState::let_settle(std::uint32_t row) {
   if (bodies[row].kind != BodyKind::dynamic) return;
-  tables.set(Buffer::velocity_parts, row, settling_at, constants::settling_steps);
+  tables.set(Buffer::velocity_parts, row, place::settling, constants::settling_steps);
   settling = constants::settling_steps;
 }
 

@@ -75,8 +75,6 @@ inline constexpr double frozen_phase = -2;  // of a frozen body: what snapshots 
 /// Where its properties stand in a row of Buffer::rest.
 enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, rest_can_sleep, rest_fields };
 
-inline constexpr std::uint32_t settling_at = 15;  // of a body, in its row of Buffer::velocity_parts
-
 struct WorldState {
   explicit WorldState(const WorldDef& def);
 
@@ -130,7 +128,7 @@ struct WorldState {
   /// Of a body that was just placed: what holds it is not known yet.
   void let_settle(std::uint32_t row);
   /// Whether it will still once the next step has begun.
-  bool settles(std::uint32_t row) const { return tables.get(Buffer::velocity_parts, row, settling_at) > 1; }
+  bool settles(std::uint32_t row) const { return tables.get(Buffer::velocity_parts, row, place::settling) > 1; }
   /// Whether its properties of rest are those that it was made with.
   bool never_rested(std::uint32_t row) const {
     return tables.get3(Buffer::rest, row, rest_quiet_time) == Vec3{};  // the three that are state
