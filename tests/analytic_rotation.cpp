@@ -1,6 +1,9 @@
 // Pins A3, A4 and A10: free rotation by splitting. Angular momentum is kept to the last digit, symmetric bodies turn
 // exactly, asymmetric ones to second order with errors far below those of a Lie midpoint step. cases/rotation.cpp
 // holds the cases and their bounds.
+#include <algorithm>
+#include <cmath>
+
 #include "support_cases.h"
 
 using namespace physics;
@@ -44,4 +47,31 @@ TEST_CASE("A10: a tumble with drag") {
     check_rows(rows, metric("attitude"));
     check_rows(rows, metric("position"));
   }
+}
+
+TEST_CASE("free boxes that turn by a third of a radian in a sub-step keep their energy to rounding") {
+  // Fourth order alone left the first one's off by 4.5e-7, in double precision too.
+  struct Box {
+    Vec3 half, spin;
+    double dt;
+  };
+  for (const Mode& mode : precisions())
+    for (const Box& box : {Box{{0.062, 0.21, 0.4}, {-16, 19, -23}, 1.0 / 30}, Box{{0.0085, 0.009, 0.049}, {-9.9, 48, 34}, 1.0 / 60}}) {
+      CAPTURE(mode.name());
+      CAPTURE(box.half.x);
+      Run run(mode, {}, 4);
+      BodyDef def;
+      def.shapes = {ShapeDef::box(box.half)};
+      def.pose.orientation = axis_angle({0.6, 0, 0.8}, 1);
+      def.angular_velocity = box.spin;
+      run.add(def);
+      const double start = run.world.kinetic_energy();
+      double off = 0;
+      for (int i = 0; i < 60; i++) {
+        run.step(box.dt);
+        off = std::max(off, std::fabs(run.world.kinetic_energy() / start - 1));
+      }
+      MESSAGE(mode.name(), ", a box of ", box.half.x, ": energy off by ", off);
+      CHECK(off <= (mode.precision == Precision::f64 ? 1e-12 : 1e-5));
+    }
 }

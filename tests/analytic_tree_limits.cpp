@@ -78,7 +78,7 @@ TEST_CASE("trees: of a bridge between two posts the tree's own joints hold, and 
 }
 
 // Sub-steps were those of the tension of the step before: at 1/60 s the whole stop lies within one, and roofs flew apart at any load.
-// Now 5 of 164 do, other ones after every change of a rounding (3 where soft rows of joints were stiffer than those of contacts).
+// Now 3 of 164 do, other ones after every change of a rounding: before Newton's steps were judged it was 3 as well, of other slopes.
 TEST_CASE(
     "trees: a step of a loop that brings more tension than its sub-steps were chosen for is made again, and few roofs fly "
     "apart") {
@@ -106,7 +106,7 @@ TEST_CASE(
         }
   MESSAGE("trees: of " << roofs << " roofs " << apart << " fly apart");
   CHECK(roofs == 164);
-  CHECK(apart <= 5);
+  CHECK(apart <= 3);
 }
 
 // ---- masses: a power of two on all of them should change nothing -------------------------------------------

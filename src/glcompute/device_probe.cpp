@@ -44,7 +44,6 @@ template <class Real> class Trial {
     powers();
     hard_divisors();
     near_ties();
-    few_bits();
     ordinary();
     tame_ = operands_.size();
     wide();
@@ -65,7 +64,6 @@ template <class Real> class Trial {
   void powers();
   void hard_divisors();
   void near_ties();
-  void few_bits();
   void ordinary();
   void wide();
   void subnormals();
@@ -111,17 +109,6 @@ template <class Real> void Trial<Real>::near_ties() {
     add(Real(middle * y), y);
     add(Real(middle * middle), y);
     add(Real(middle * middle) * 2, Real(middle * y));
-  }
-}
-
-/// Differences of numbers that are nearly equal are a few roundings: small integers over anything, and anything over them.
-template <class Real> void Trial<Real>::few_bits() {
-  for (int i = 0; i < 2048; i++) {
-    const Real few = std::ldexp(Real(1 + i % 64), -std::numeric_limits<Real>::digits - random_.exponent(8));
-    const Real y = std::ldexp(Real(random_.mantissa()), random_.exponent(20));
-    add(few, y);
-    add(y, few);
-    add(few * few, y * y);
   }
 }
 

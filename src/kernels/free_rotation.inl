@@ -9,7 +9,7 @@
 // A body that turns against its middle axis by more than a radian does so in up to 16 such parts: the splitting alone keeps
 // |L| but finds other axes there, and a box gained half its energy. Beyond 8 radians, where a pose no longer tells how far it
 // turned, it moves along its polhode as if it were 8. What a turn of more than PC_KEPT_TURN is off in energy is turned back. Of
-// smaller ones the energy only oscillates, by less than a few roundings, and to turn those back would be a drift.
+// smaller ones the energy only oscillates, by parts in 1e9 (single: 1e6), and to turn roundings back would be a drift.
 
 // The squares of these angles: 1e-5 and 0.02 rad, and 1.4e-3 and 0.1 in single precision; and what counts as rounding.
 #ifdef PC_DOUBLE
@@ -73,8 +73,8 @@ PC_FN Spin pc_fourth_order(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c,
   return pc_body_turn(s, a, rate_a, a1);
 }
 PC_FN Vec3 pc_times(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
-// The direction of the momentum `before` as the body sees it after a turn: by one rotation, since what many add up to in
-// rounding a slender body's energy has a hundredfold.
+// The direction of the momentum `before` as the body sees it after a turn: by one rotation, since a slender body's energy
+// has what many add up to in rounding by the ratio of its moments.
 PC_FN Vec3 pc_seen(Turn turn, Vec3 before) { return pc_unit_or_zero(pc_rotate(pc_conjugate(turn.q), before)); }
 // Turns the body by what brings its energy back to that of the momentum `before`, the shortest way: along Pi x w, of which
 // the energy falls by its square. Newton's method, by half a radian at most at a time, where it is off by more than rounding.
