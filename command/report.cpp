@@ -136,8 +136,6 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
       {"repeats", all.repeats},
       {"given_up", all.given_up},
       {"limited", all.limited},
-      {"let_through", all.let_through},
-      {"slowed", all.slowed},
       {"frozen", all.frozen},
       {"fourth_order_last", outcome.last.fourth_order},
       {"sleep", setup.settings.sleep},

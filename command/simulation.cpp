@@ -36,8 +36,6 @@ void Incidents::add(const StepReport& report) {
   repeats += report.repeats;
   given_up += report.given_up;
   limited += report.limited;
-  let_through += report.let_through;
-  slowed += report.slowed;
   frozen += report.frozen.size();
 }
 

@@ -51,7 +51,7 @@ struct Peaks {
 struct Incidents {
   std::uint32_t most_substeps = 0;
   std::uint64_t repeats = 0, given_up = 0;                             // times, steps
-  std::uint64_t limited = 0, let_through = 0, slowed = 0, frozen = 0;  // bodies, once a step
+  std::uint64_t limited = 0, frozen = 0;  // bodies, once a step
 
   void add(const StepReport& report);
 };

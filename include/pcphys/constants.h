@@ -59,33 +59,21 @@ inline constexpr double quick_share = 0.1;
 /// what happens is the same at any size.
 inline constexpr double margin_share = 0.02;
 /// What is pressed in by more than this share of its size (twice the radius of gyration) by what stands on it gets as many
-/// sub-steps as bring it down to that: by as many of its own kind as its island is high (plan/columns.h), or, by the
-/// second share, by one body so many times as heavy, which sinks where the other rows of its manifold do not
-/// (plan/loads.h).
+/// sub-steps as bring it down to that: by as many of its own kind as its island is high, where that is slender as by as many again as
+/// it is higher than wide (plan/columns.h); or, by the second share, by one body so many times as heavy, which sinks where
+/// the other rows of its manifold do not (plan/loads.h).
 inline constexpr double pressed = 0.01, load_pressed = 0.001, uneven_masses = 200;
-/// And what is slender: where what a column as high as the island would shrink by, as a share of the island's width, times
-/// its height over its width, is more than this. Towers lean by themselves from there on.
-inline constexpr double column_lean = 0.01;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
 /// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in
 /// a tree that nothing touches.
 inline constexpr double largest_spin_change = 0.006;
-/// And so does one in a tree with limits that the host pulls by more than this share of its size in a sub-step, or
-/// turns by so much [rad]; sub-steps are to bring that down to the second.
-inline constexpr double largest_pull = 0.1, pull_aim = 0.03;
-/// A joint tree on what does not answer is torn where a joint is open by more than that share of its body's size, and
-/// apart where no turning closes it, by that share. A torn one that turns by more than this in a sub-step [rad] whirls:
-/// its steps are made again with all sub-steps.
-inline constexpr double torn = 0.1, tear_apart = 0.5, whirling = 0.1;
+/// And so does what bends limits or closes loops where (how fast its rows are driven, times the sub-step)^2 is more than
+/// this: by the acceleration that the host's pull gives a body, over its size; by its spin, where it hangs on what does not
+/// answer; by the frequency at which bodies swing under a loop's tension, of half the sub-step.
+inline constexpr double joint_yield = 0.02;
 /// Rounds after which a device that finds islands is stopped; a chain of a million bodies takes 23.
 inline constexpr std::uint32_t most_island_rounds = 1000;
-/// A joint that closes a loop may need more, too: (frequency at which its bodies swing under its tension, times half
-/// the sub-step)^2 is to stay below this.
-inline constexpr double loop_stiffness = 0.02;
-/// Where a step brings this many times the tension that it was made for, and that asks for more, it is made again with
-/// all there are.
-inline constexpr double loop_snap = 2;
 /// Loops may ask for as many as this, beyond StepSettings::refinement: a pin that closes a loop near its dead centre throws
 /// what the sub-step does not resolve.
 inline constexpr std::uint32_t most_loop_substeps = 512;

@@ -72,13 +72,10 @@ struct StepReport {
   std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
   std::uint32_t refined = 0;   // bodies whose islands made more than the setting
   std::uint32_t limited = 0;   // bodies whose islands would have made more yet: beyond StepSettings::refinement
-  /// Times that this step was undone and made anew: for loops under sudden tension and trees that were torn (docs/substeps.md), for bodies that
+  /// Times that this step was undone and made anew: for what turned out to need far more sub-steps (docs/substeps.md), for bodies that
   /// went further than contacts were looked for, for one that had to be frozen.
   std::uint32_t repeats = 0;
   bool given_up = false;  // the step was kept as it was after eight tries, though it asked to be made anew once more
-  /// Bodies of joint trees that are torn, since what they hang on pulls them through what does not give way: those that went through it, and
-  /// those that were slowed since no sub-step follows how they whirl (docs/substeps.md#torn).
-  std::uint32_t let_through = 0, slowed = 0;
   std::uint32_t fourth_order = 0;  // bodies that moved in fourth order (StepSettings::order)
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   std::uint32_t asleep = 0, islands_asleep = 0;  // bodies that sleep after this step, and how many islands they make

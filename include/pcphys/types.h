@@ -152,6 +152,10 @@ struct JointDef {
   Motor motor;
   AngularSpring spring;
   bool collide = false;  // whether a and b may collide; adjacent bones do not
+  /// Of the pin, above 0; what pulls harder draws it open, and it closes again. Infinite: it never gives way, so a kinematic body tears
+  /// what it drags through what stands. Such a pin is solved as a row, beside the trees ([N]; World::grab).
+  double largest_force = std::numeric_limits<double>::infinity();
+  bool yields() const { return largest_force < std::numeric_limits<double>::infinity(); }
 };
 
 /// One bone of a ragdoll; bone 0 is the root, a parent stands before its children.

@@ -58,6 +58,9 @@ class World {
   Result<JointId> create_joint(const JointDef& def);
   /// The two bodies may collide. Stiffness, damping and rest length below zero are ErrorCode::bad_joint.
   Result<SpringId> create_spring(const SpringDef& def);
+  /// Pins what stands at a point of the world [m] of a dynamic body to a kinematic one, a hand, by at most 100 times the weight of all
+  /// that hangs together with the body by joints (of gravity, or where there is none of the earth's). ErrorCode::bad_joint of other kinds.
+  Result<JointId> grab(BodyId hand, BodyId body, Vec3 point);
   /// Bones and joints of a ragdoll whose frame stands at `pose`; all bones move with `velocity`.
   Result<Ragdoll> create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity = {});
   /// Takes the body's shapes, joints, springs and forces with it.

@@ -57,9 +57,6 @@ class Detector {
 
   /// Broad phase. Errors (too many pairs, a pose that is not finite) leave the world as it was.
   Status find_pairs(const WorldState& state, double dt, const Options& options);
-  /// Rows of bodies, ascending, that in the contacts to come touch nothing that stands or is driven. They must stay
-  /// where they are until then.
-  void let_through(std::span<const std::uint32_t> bodies) { through_ = bodies; }
   /// Narrow phase: replaces the world's contacts.
   Status find_contacts(WorldState& state, const Options& options, Found& found);
   /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by
@@ -144,10 +141,6 @@ class Detector {
   /// What the narrow phase looks at: pairs with a body that goes, or that stands and was stirred.
   enum class Part : std::uint8_t { none, looked_at, sleeps };
   void follow_rest(const WorldState& state);
-  bool let_through(Pair shapes) const {
-    const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
-    return a.responds != b.responds && std::ranges::binary_search(through_, a.responds ? a.body : b.body);
-  }
   bool looked_at(Pair shapes) const {
     return parts_[proxies_[shapes.a].body] == Part::looked_at || parts_[proxies_[shapes.b].body] == Part::looked_at;
   }
@@ -238,7 +231,6 @@ class Detector {
   std::uint64_t joint_changes_ = 0;
   std::uint64_t rest_ = 0;
   std::vector<Part> parts_;  // of bodies, by row; empty where none sleeps
-  std::span<const std::uint32_t> through_;
   std::vector<std::uint32_t> touched_;  // of those that sleep
   bool possible_ = false;
   std::vector<Proxy> proxies_;

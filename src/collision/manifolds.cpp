@@ -32,7 +32,6 @@ void Detector::list_near() {
     n += overlap(tight_[pairs[i].a], tight_[pairs[i].b]);
   }
   near_.resize(n);
-  if (!through_.empty()) std::erase_if(near_, [&](std::uint32_t i) { return let_through(pairs[i]); });
   if (!parts_.empty()) std::erase_if(near_, [&](std::uint32_t i) { return !looked_at(pairs[i]); });
 }
 

@@ -59,6 +59,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(joint_rows, m, JOINT_ARM_A, arm_a.x); PC_ST(joint_rows, m, JOINT_ARM_A + 1u, arm_a.y); PC_ST(joint_rows, m, JOINT_ARM_A + 2u, arm_a.z);
   PC_ST(joint_rows, m, JOINT_ARM_B, arm_b.x); PC_ST(joint_rows, m, JOINT_ARM_B + 1u, arm_b.y); PC_ST(joint_rows, m, JOINT_ARM_B + 2u, arm_b.z);
   PC_ST(joint_rows, m, JOINT_GAP, gap.x); PC_ST(joint_rows, m, JOINT_GAP + 1u, gap.y); PC_ST(joint_rows, m, JOINT_GAP + 2u, gap.z);
+  precise Real most = anchor_b.s * PC_INFO(h); PC_ST(joint_rows, m, JOINT_MOST, most);
   PC_ST(joint_rows, m, JOINT_K, k.xx); PC_ST(joint_rows, m, JOINT_K + 1u, k.xy); PC_ST(joint_rows, m, JOINT_K + 2u, k.xz);
   PC_ST(joint_rows, m, JOINT_K + 3u, k.yy); PC_ST(joint_rows, m, JOINT_K + 4u, k.yz); PC_ST(joint_rows, m, JOINT_K + 5u, k.zz);
 

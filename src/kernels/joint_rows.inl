@@ -13,6 +13,7 @@ const uint JOINT_TURN = 37u;    // and what answers a couple on b, its opposite 
 const uint JOINT_MOVE = 43u;    // and velocity of the pin, three rows
 const uint JOINT_NEAR_A = 52u;  // arms from the places of now to a common point
 const uint JOINT_NEAR_B = 55u;
+const uint JOINT_MOST = 58u;    // largest impulse of the pin; 0: any
 // motor and spring (joint_drive_rows.inl), where some joint has any
 const uint JOINT_DRIVE = 60u;         // 0 none, 1 of the joint, 2 a spring between two points
 const uint JOINT_DRIVE_AXIS = 61u;    // of a's joint frame; or the first along the line
@@ -34,6 +35,14 @@ PC_FN Vec3 pc_ld3_joint(PC_IO Slot m, uint f) { return Vec3(PC_LD(joint_rows, m,
 PC_FN Sym3 pc_lds_joint(PC_IO Slot m, uint f) {
   Sym3 k; k.xx = PC_LD(joint_rows, m, f); k.xy = PC_LD(joint_rows, m, f + 1u); k.xz = PC_LD(joint_rows, m, f + 2u);
   k.yy = PC_LD(joint_rows, m, f + 3u); k.yz = PC_LD(joint_rows, m, f + 4u); k.zz = PC_LD(joint_rows, m, f + 5u); return k;
+}
+// What a pin of so much impulse changes it by, where it would change it by so much.
+PC_FN Vec3 pc_within_most(PC_IO Slot m, Vec3 before, Vec3 change) {
+  Real most = PC_LD(joint_rows, m, JOINT_MOST);
+  Vec3 whole = pc_add(before, change);
+  Real size = pc_length(whole);
+  Vec3 held = pc_scale(whole, pc_div(most, pc_max(pc_max(size, most), PC_TINY)));
+  return pc_select3(pc_and(most > PC_REAL(0.0), size > most), pc_sub(held, before), change);
 }
 // Both arms, drawn to one common point where the bodies have moved, or the pin's impulses would exert a couple
 // (not where they fly apart further than about a sixth of the arms: the block is of the frozen ones).

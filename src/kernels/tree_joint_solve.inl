@@ -57,6 +57,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Vec3 tangent = (vb + pc_cross(wb, arm_b)) - (va + pc_cross(wa, arm_a));
   change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, tangent, pin.v), change);
 #endif
+  change = pc_within_most(PC_PASS m, pin.v, change);
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
 

@@ -85,7 +85,7 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
                  high = std::min(height / size, double(column.bodies));
     const double wide = std::max(column.extent(1), column.extent(2)) + size;
     want(column.root, give * high / size, constants::pressed);
-    want(column.root, give * high * high * height / (wide * wide), constants::column_lean);
+    want(column.root, give * high * high * height / (wide * wide), constants::pressed);
   }
 }
 

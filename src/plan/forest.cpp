@@ -11,11 +11,13 @@ void Forest::build(std::span<const JointLink> links, std::span<const double> mas
   std::ranges::sort(links_, {}, &JointLink::id);
   masses_.assign(masses.begin(), masses.end());
   begin_.assign(masses.size() + 1, 0);
-  for (const JointLink& l : links_) begin_[l.a + 1]++, begin_[l.b + 1]++;
+  for (const JointLink& l : links_)
+    if (!l.yields) begin_[l.a + 1]++, begin_[l.b + 1]++;
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
   links_of_.resize(begin_.back());
   std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
-  for (std::uint32_t i = 0; i < links_.size(); i++) links_of_[next[links_[i].a]++] = i, links_of_[next[links_[i].b]++] = i;
+  for (std::uint32_t i = 0; i < links_.size(); i++)
+    if (!links_[i].yields) links_of_[next[links_[i].a]++] = i, links_of_[next[links_[i].b]++] = i;
 
   reached_.assign(masses.size(), 0);
   used_.assign(links_.size(), 0);
@@ -55,7 +57,7 @@ void Forest::grow_hanging() {
     const JointLink& l = links_[i];
     const bool fixed_a = masses_[l.a] == 0, fixed_b = masses_[l.b] == 0;
     const std::uint32_t anchor = fixed_a ? l.a : l.b, child = fixed_a ? l.b : l.a;
-    if (fixed_a == fixed_b || reached_[child]) continue;
+    if (l.yields || fixed_a == fixed_b || reached_[child]) continue;
     used_[i] = reached_[child] = 1;
     trees_.push_back({{anchor, 0, 0, false}, {child, l.row, 0, l.a == child}});
   }

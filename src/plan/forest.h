@@ -14,9 +14,10 @@
 
 namespace pcphys {
 
-/// A joint as the forest sees it: body rows, and its id for the order.
+/// A joint as the forest sees it: body rows, and its id for the order. Those that yield (JointDef::largest_force) stand in no tree.
 struct JointLink {
   std::uint32_t row, a, b, id;
+  bool yields = false;
 };
 
 struct TreeNode {

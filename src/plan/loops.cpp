@@ -35,36 +35,13 @@ void Loops::find(const WorldState& state, const SolvedJoints& joints, std::span<
   }
 }
 
-void Loops::begin() {
-  for (Loop& l : loops_) l.tight = false;
-}
-
-double Loops::tension(const WorldState& state, const Loop& loop, double h) const {
-  return h > 0 ? length(state.tables.get3(Buffer::joint_impulse, loop.joint, 0)) / h : 0;
-}
-
-std::uint8_t Loops::octave(const Loop& loop, double tension, std::uint8_t highest) const {
-  return octave_for(h_ * h_ * loop.ratio * tension / 4, constants::loop_stiffness, highest);
-}
-
-void Loops::want(const WorldState& state, double h, std::uint8_t highest, std::vector<Wanted>& wanted) {
-  h_ = h, highest_ = highest;
-  for (Loop& l : loops_) {
-    l.assumed = tension(state, l, state.last_substep);
-    const std::uint8_t most = l.tight ? highest : octave(l, l.assumed, highest);
-    if (most > 0) wanted.push_back({l.body, most});
+void Loops::want(const WorldState& state, double impulse_h, double h, std::uint8_t highest, std::vector<Wanted>& wanted) const {
+  if (!(impulse_h > 0)) return;
+  for (const Loop& loop : loops_) {
+    const double tension = length(state.tables.get3(Buffer::joint_impulse, loop.joint, 0)) / impulse_h;
+    const std::uint8_t octave = octave_for(h * h * loop.ratio * tension / 4, constants::joint_yield, highest);
+    if (octave > 0) wanted.push_back({loop.body, octave});
   }
-}
-
-bool Loops::find_tighter(const WorldState& state) {
-  bool tighter = false;
-  for (Loop& l : loops_) {
-    const double now = tension(state, l, h_);
-    if (l.tight || now < constants::loop_snap * l.assumed) continue;
-    if (octave(l, now, highest_) == octave(l, l.assumed, highest_)) continue;
-    tighter = l.tight = true;
-  }
-  return tighter;
 }
 
 }  // namespace pcphys

@@ -7,7 +7,6 @@
 #include "plan/infos.h"
 #include "plan/island_class.h"
 #include "plan/spins.h"
-#include "plan/tears.h"
 
 namespace pcphys {
 
@@ -44,9 +43,10 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
     w.more = w.octave > highest;
     w.octave = std::min(w.octave, highest);
   }
-  loops_.want(state, h, highest > 0 ? highest_loop_octave(settings) : highest, wanted_);
-  wanted_.insert(wanted_.end(), again_.begin(), again_.end());
   h_ = h, highest_ = highest;
+  highest_of_loops_ = highest > 0 ? highest_loop_octave(settings) : highest;
+  loops_.want(state, state.last_substep, h, highest_of_loops_, wanted_);
+  wanted_.insert(wanted_.end(), again_.begin(), again_.end());
   before_.swap(of_bodies_);
   of_bodies_.clear();
   used_ = 1;
@@ -93,24 +93,21 @@ void Octaves::count_limited() {
   for (const std::uint32_t root : limits_) limited_ += islands_.size(root);
 }
 
-bool Octaves::find_tighter(const WorldState& state, const Forest& forest, const Tears& tears) {
-  bool tighter = loops_.find_tighter(state);
-  // those that want so many octaves more than the step was made in get all there are
-  const auto again = [&](unsigned more) {
+bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
+  const std::size_t before = again_.size();
+  const auto ask_again = [&](std::uint8_t all) {
     for (const Wanted& w : wanted_) {
       const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
-      if (w.octave < made + more) continue;
-      again_.push_back({w.body, highest_});
-      tighter = true;
+      if (w.octave >= made + sudden_octaves) again_.push_back({w.body, all});
     }
     wanted_.clear();
   };
   wanted_.clear();
-  want_for_sudden_spins(state, forest, h_, highest_, wanted_);
-  again(sudden_octaves);
-  tears.want(state, h_, highest_, wanted_);
-  again(1);
-  return tighter;
+  want_for_spins(state, forest, h_, highest_, wanted_);
+  ask_again(highest_);
+  loops_.want(state, h_, h_, highest_of_loops_, wanted_);
+  ask_again(highest_of_loops_);
+  return again_.size() > before;
 }
 
 }  // namespace pcphys

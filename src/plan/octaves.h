@@ -16,11 +16,12 @@
 namespace pcphys {
 
 class Forest;
-class Tears;
 class TreeNodes;
 
 /// Of a step, whatever asks for them.
 inline constexpr std::uint32_t most_substeps = 1000;
+/// A step that ends with what asks for so many octaves more than it was made with is made again with all there are.
+inline constexpr unsigned sudden_octaves = 2;
 
 /// The highest octave within StepSettings::refinement and the most sub-steps of a step.
 std::uint8_t highest_octave(const StepSettings& settings);
@@ -41,12 +42,9 @@ class Octaves {
               std::span<const std::uint32_t> fourth, bool together, const StepSettings& settings, double dt);
 
   /// Before the first try of a step.
-  void begin() {
-    loops_.begin();
-    again_.clear();
-  }
+  void begin() { again_.clear(); }
   /// After a try: whether the step is to be made again, with more sub-steps.
-  bool find_tighter(const WorldState& state, const Forest& forest, const Tears& tears);
+  bool find_tighter(const WorldState& state, const Forest& forest);
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
@@ -69,9 +67,9 @@ class Octaves {
   Pulls pulls_;
   Islands islands_;
   std::vector<Wanted> wanted_;
-  std::vector<Wanted> again_;  // of bodies that a try of this step tore, or spun up
-  double h_ = 0;               // of octave 0 in the last `choose`, as is
-  std::uint8_t highest_ = 0;
+  std::vector<Wanted> again_;  // of bodies for which a try of this step was made with too few
+  double h_ = 0;               // of octave 0 in the last `choose`, as are
+  std::uint8_t highest_ = 0, highest_of_loops_ = 0;
   std::vector<std::uint8_t> of_bodies_, before_;
   std::vector<std::uint32_t> limits_;  // roots of islands that would have got more
   std::uint32_t used_ = 1, refined_ = 0, limited_ = 0, fourth_order_ = 0;

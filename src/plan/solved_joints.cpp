@@ -77,7 +77,7 @@ Quat from_x(const Eigen::Vector3d& axis) { return Quat(Eigen::Quaterniond::FromT
 std::optional<JointDef> merge(const WorldState& state, std::span<const Link> links) {
   if (links.size() < 2 || links[1].driven) return {};
   for (const Link& l : links)
-    if (state.joints[l.row].def.freedom.kind != AngleFreedom::Kind::free) return {};
+    if (state.joints[l.row].def.freedom.kind != AngleFreedom::Kind::free || state.joints[l.row].def.yields()) return {};
   const Pins pins = pins_of(state, links);
   const Eigen::Matrix3d together = pins.a * pins.b.transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(together, Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -12,7 +12,7 @@ class SolvedJoints {
  public:
   /// Two pins are a hinge about the line through them, three that stand on no line hold the bodies rigidly, pins in one place are
   /// one. Where the pins of the two bodies do not match, the joint is the one that leaves them apart by the least squares. Joints
-  /// with angles of their own stay as they are, and so do two of which both have a motor or a spring.
+  /// with angles of their own stay as they are, those that yield, and two of which both have a motor or a spring.
   void build(const WorldState& state);
 
   /// The joint that is solved for; of rows that `stands_back` it is none.

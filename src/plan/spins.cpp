@@ -54,15 +54,14 @@ double largest_change(const WorldState& state, const SpinBounds<Scalar>& bounds,
   return change;
 }
 
-/// What a tree that nothing touches needs for its whips, where they ask for `least` octaves.
+/// What a tree that nothing touches needs for its whips.
 template <class Scalar>
 std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree, double h,
-                             unsigned least, std::uint8_t highest) {
+                             std::uint8_t highest) {
   if (was_touched<Scalar>(state.tables, tree)) return 0;
   const double most = constants::largest_spin_change / h;
-  const double change = largest_change(state, bounds, tree, most * (1 << 2 * (least - 1)));
-  const std::uint8_t octave = octave_for(change, most, highest);
-  return octave >= least && !meets_others(state, tree) && !at_limit(state, tree) ? octave : 0;
+  const std::uint8_t octave = octave_for(largest_change(state, bounds, tree, most), most, highest);
+  return octave > 0 && !meets_others(state, tree) && !at_limit(state, tree) ? octave : 0;
 }
 
 template <class Scalar>
@@ -74,50 +73,21 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
     if (tree.front().flipped) continue;  // turns on a pivot
     // what swings on something that does not give way bends limits as a pull does (plan/pulls.h)
     const bool whirls = !state.responds(tree.front().body) && !was_touched<Scalar>(state.tables, tree) && has_limits(state, tree);
-    const double most = whirls ? std::sqrt(constants::largest_pull) / h : spin_most;
-    const double aim = whirls ? std::sqrt(constants::pull_aim) / h : spin_most;
+    const double most = whirls ? std::sqrt(constants::joint_yield) / h : spin_most;
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;
       if (!(bounds.spin(row) > most * most) || !state.responds(row)) continue;
       const Vec3 spin = state.angular_velocity(row);
       if (!(dot(spin, spin) > most * most)) continue;
-      if (const std::uint8_t octave = octave_for(dot(spin, spin), aim * aim, highest_octave); octave > 0)
+      if (const std::uint8_t octave = octave_for(dot(spin, spin), most * most, highest_octave); octave > 0)
         wanted.push_back({row, octave});
     }
-    if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, 1, highest_octave); octave > 0)
+    if (const std::uint8_t octave = octave_for_whip(state, bounds, tree, h, highest_octave); octave > 0)
       wanted.push_back({tree.back().body, octave});
   }
 }
 
-template <class Scalar>
-void want_sudden(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                 std::vector<Wanted>& wanted) {
-  const SpinBounds<Scalar> bounds(state.tables);
-  const double spin_most = constants::largest_joint_turn / h, sudden = spin_most * (1 << sudden_octaves) / 2;
-  for (std::size_t i = 0; i < forest.trees(); i++) {
-    const std::span<const TreeNode> tree = forest.tree(i);
-    if (tree.front().flipped) continue;
-    std::uint8_t octave = 0;
-    for (const TreeNode& node : tree) {
-      if (!(bounds.spin(node.body) > sudden * sudden) || !state.responds(node.body)) continue;
-      const Vec3 spin = state.angular_velocity(node.body);
-      octave = std::max(octave, octave_for(dot(spin, spin), spin_most * spin_most, highest_octave));
-    }
-    const bool held = !state.responds(tree.front().body);
-    if (!held && (was_touched<Scalar>(state.tables, tree) || meets_others(state, tree))) octave = 0;
-    octave = std::max(octave, octave_for_whip(state, bounds, tree, h, sudden_octaves, highest_octave));
-    if (octave >= sudden_octaves) wanted.push_back({tree.back().body, octave});
-  }
-}
-
 }  // namespace
-
-void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                           std::vector<Wanted>& wanted) {
-  if (forest.trees() == 0) return;
-  state.tables.precision() == Precision::f32 ? want_sudden<float>(state, forest, h, highest_octave, wanted)
-                                             : want_sudden<double>(state, forest, h, highest_octave, wanted);
-}
 
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted) {

@@ -12,20 +12,11 @@ namespace pcphys {
 
 class Forest;
 
-/// Where a step ends with spins, or whips, that ask for so many octaves more than it was made with, it is made again with all there are: by then
-/// the joints had no directions to go by (docs/substeps.md).
-inline constexpr unsigned sudden_octaves = 2;
-
 /// Adds what bodies in trees need that would turn by more than constants::largest_joint_turn in a sub-step of `h` [s], up to
-/// `highest_octave`; in trees with limits on what does not answer, that nothing touches, by the root of constants::largest_pull. And what
+/// `highest_octave`; in trees with limits on what does not answer, that nothing touches, by the root of constants::joint_yield. And what
 /// trees that nothing touches need of which a body's spin changed by more than constants::largest_spin_change / h in the last sub-step.
 /// Bodies on pivots turn exactly.
 void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
                     std::vector<Wanted>& wanted);
-
-/// After a step: adds what trees that nothing touches, or that hang on what does not answer, need for the spins that it ended with, and for
-/// how they whipped, where that is `sudden_octaves` or more.
-void want_for_sudden_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                           std::vector<Wanted>& wanted);
 
 }  // namespace pcphys

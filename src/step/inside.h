@@ -18,7 +18,6 @@
 #include "plan/plan.h"
 #include "plan/sleepers.h"
 #include "plan/step_infos.h"
-#include "plan/tears.h"
 #include "step/called_forces.h"
 #include "step/check_settings.h"
 #include "step/contact_looks.h"
@@ -45,7 +44,6 @@ struct Stepper::Inside {
   Detector detector;
   Schedule schedule;
   Octaves octaves;
-  Tears tears;
   FourthOrder fourth;
   Runner runner;
   StepReport report;
@@ -211,7 +209,6 @@ struct Stepper::Inside {
       schedule.trees.solved().write(s);
       write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
     }
-    tears.update_structure(s, schedule.trees.forest());
     octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
     fourth.forget();
   }
@@ -255,9 +252,6 @@ struct Stepper::Inside {
       if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
       lap(Timer::broad);
       called.add(s, runner);
-      const auto apart = tears.apart(s);
-      detector.let_through(apart);
-      report.let_through = std::uint32_t(apart.size());
       if (ok = detector.find_contacts(s, detection(), found); !ok) return undo(s, ok);
       lap(Timer::narrow);
       if (detector.touched().empty()) return {};
@@ -267,16 +261,6 @@ struct Stepper::Inside {
     }
   }
 
-  /// `h`: the shortest sub-step [s]. Of how many bodies.
-  std::uint32_t slow_torn(WorldState& s, double h) {
-    const std::uint32_t bodies = tears.find_unresolved(s, h);
-    if (bodies == 0) return 0;
-    runner.keep(s, Buffer::motion);
-    runner.keep(s, Buffer::velocity_parts);
-    tears.slow(s);
-    return bodies;
-  }
-
   /// And order, of each island, in which kernels then go.
   void choose_substeps(WorldState& s, double dt, const Detector::Found& found) {
     choose_order(fourth, s, schedule.trees, dt);
@@ -284,7 +268,6 @@ struct Stepper::Inside {
                        own.kernels().pairs_of_bodies(), settings, dt) ||
         other)
       schedule.group(octaves.of_bodies());
-    report.slowed = octaves.limited() > 0 ? slow_torn(s, substep_length(dt, settings.substeps << highest_octave(settings))) : 0;
   }
 
   /// The whole step from pairs on, with the bodies that can move; which of them end outside of the range of numbers.
@@ -326,7 +309,7 @@ struct Stepper::Inside {
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
                            "(StepSettings::islands). The world is as it was."});
-    tighter = once_more(octaves.find_tighter(s, schedule.trees.forest(), tears));
+    tighter = once_more(octaves.find_tighter(s, schedule.trees.forest()));
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
     if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);

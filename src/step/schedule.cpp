@@ -128,7 +128,7 @@ void TreeSlots::build(const WorldState& state, const Nets& nets) {
   std::vector<JointLink> links, joints;  // joints: without springs between two points, and those that others stand for
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];
-    links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index});
+    links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index, joint.def.yields()});
     if (!joint.spring && !solved_.stands_back(row) && !state.asleep(joint)) joints.push_back(links.back());
   }
   std::vector<double> masses(state.bodies.size());

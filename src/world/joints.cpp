@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "pcphys/constants.h"
@@ -20,6 +21,7 @@ void write_frames(Tables& t, Buffer buffer, std::uint32_t row, const JointDef& d
   t.set(buffer, row, 3, double(d.freedom.kind));
   t.set4(buffer, row, 4, d.frame_a.orientation);
   t.set3(buffer, row, 8, d.frame_b.position);
+  t.set(buffer, row, 11, d.yields() ? d.largest_force : 0);
   t.set4(buffer, row, 12, d.frame_b.orientation);
   const AngleFreedom& f = d.freedom;
   Vec3 lower = f.lower, upper = f.upper;
@@ -72,6 +74,9 @@ Status check(JointDef& def) {
   if (ok) ok = check(def.freedom);
   if (ok) ok = check(def.motor);
   if (ok) ok = check(def.spring);
+  if (ok && !(def.largest_force > 0))
+    ok = Error{ErrorCode::bad_joint, "The largest force of a joint must be above 0 [N], or infinite: then its pin never gives way."};
+  if (ok && def.yields()) ok = check_finite(def.largest_force, "largest force of a joint");
   return ok;
 }
 
@@ -134,6 +139,48 @@ Result<JointId> World::create_joint(const JointDef& given) {
       ok = Error{ErrorCode::bad_joint, "A body that does not rotate (BodyDef::rotates) takes no joint; create one that does, or a spring."};
   if (!ok) return ok.error();
   return state_->joint_ids.id<JointId>(new_row(*state_, def, {}));
+}
+
+namespace {
+/// Of all that hangs together with a body by joints [kg].
+double mass_of_all(const WorldState& s, std::uint32_t row) {
+  std::vector<std::uint32_t> roots(s.bodies.size());
+  std::iota(roots.begin(), roots.end(), 0u);
+  const auto root = [&](std::uint32_t at) {
+    while (roots[at] != at) at = roots[at] = roots[roots[at]];
+    return at;
+  };
+  for (const JointRecord& joint : s.joints) {
+    const std::uint32_t a = s.body_ids.row(joint.body_a), b = s.body_ids.row(joint.body_b);
+    if (!joint.spring && s.responds(a) && s.responds(b)) roots[root(a)] = root(b);
+  }
+  double sum = 0;
+  for (std::uint32_t at = 1; at < roots.size(); at++)
+    if (root(at) == root(row)) sum += s.tables.get(Buffer::mass, at, 3);
+  return sum;
+}
+}  // namespace
+
+Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) {
+  Status ok = check_finite(point, "point of a grab");
+  if (ok && (!valid(hand) || !valid(body))) ok = stale("body");
+  if (!ok) return ok.error();
+  const WorldState& s = *state_;
+  const std::uint32_t a = s.body_ids.row(hand.index), b = s.body_ids.row(body.index);
+  if (s.bodies[a].kind != BodyKind::kinematic || s.bodies[b].kind != BodyKind::dynamic)
+    return Error{ErrorCode::bad_joint, "A hand that grabs is a kinematic body, and what it grabs a dynamic one."};
+  constexpr double earth = 9.81, times = 100;
+  const double g = length(s.gravity) > 0 ? length(s.gravity) : earth;
+  const auto seen_from = [&](std::uint32_t row) {
+    return rotate(conjugate(s.pose(row).orientation), point - s.pose(row).position);
+  };
+  JointDef def;
+  def.a = hand;
+  def.b = body;
+  def.frame_a.position = seen_from(a);
+  def.frame_b.position = seen_from(b);
+  def.largest_force = times * g * mass_of_all(s, b);
+  return create_joint(def);
 }
 
 Result<SpringId> World::create_spring(const SpringDef& def) {
