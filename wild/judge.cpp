@@ -15,6 +15,7 @@ constexpr double widest_gap_allowed = 1e-4;                   // of joints [m]
 constexpr double excess_allowed = std::numbers::pi / 180;     // of limits [rad]
 constexpr double overlap_allowed = 0.02;                      // at rest, of the smaller shape
 constexpr double glide_lost = 1e-3;
+constexpr double hop_allowed = 1e-3;  // of the size
 constexpr double work_allowed = 20;
 constexpr double slow = 0.05;  // what is at rest [m/s]
 
@@ -28,7 +29,8 @@ constexpr MeasureInfo infos[] = {
     {"overlap", "1", "overlap at rest, over the smaller shape's size"},
     {"joint_gap", "m", "widest gap of a joint"},
     {"limit_excess", "rad", "most that a joint is beyond its limits"},
-    {"glide", "1", "change of velocity over level, frictionless tiles, over the speed"},
+    {"glide", "1", "change of velocity along level, frictionless tiles, over the speed"},
+    {"hop", "1", "height to which what glides is sent by them, over its size"},
     {"stand", "m", "how far a body of a tower moved"},
     {"lost", "bodies", "outside of where they belong"},
     {"frozen", "bodies", "that the engine gave up"},
@@ -145,9 +147,15 @@ void Judge::judge_untouched(const Observation& seen) {
 }
 
 void Judge::judge_glide(const Observation& seen) {
+  if (length(seen.gravity) == 0) return;  // a smaller scene, as it is shrunk
   for (const int i : scene_.rules.gliding) {
-    const Vec3 then = start_.body(i).velocity, now = seen.body(i).velocity;
-    raise(Measure::glide, length(now - then) / length(then), glide_lost);
+    const SeenBody& body = seen.body(i);
+    const double g = length(seen.gravity);
+    const Vec3 then = start_.body(i).velocity, up = (-1 / g) * seen.gravity;
+    const double rises = std::max(0.0, dot(up, body.velocity));
+    const Vec3 along = body.velocity - dot(up, body.velocity) * up;
+    raise(Measure::glide, length(along - then) / length(then), glide_lost);
+    raise(Measure::hop, rises * rises / (2 * g) / (2 * spread(body.mass)), hop_allowed);
   }
 }
 

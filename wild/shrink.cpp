@@ -102,8 +102,8 @@ class Shrinker {
 
  private:
   bool told_by_what_should_be() const {
-    return measure_ == Measure::free_speed || measure_ == Measure::glide || measure_ == Measure::stand ||
-           measure_ == Measure::lost;
+    return measure_ == Measure::free_speed || measure_ == Measure::glide || measure_ == Measure::hop ||
+           measure_ == Measure::stand || measure_ == Measure::lost;
   }
 
   bool breaks(const Scene& scene) {

@@ -21,7 +21,8 @@ enum class Measure : std::uint8_t {
   overlap,           // at rest
   joint_gap,         // of trees
   limit_excess,      // of trees
-  glide,             // speed lost over frictionless, level tiles
+  glide,             // change of velocity along frictionless, level tiles
+  hop,               // how high one sends what glides over it
   stand,             // how far a tower moved
   lost,              // bodies outside of where they belong
   frozen,            // bodies that the library gave up
