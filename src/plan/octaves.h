@@ -20,8 +20,6 @@ class TreeNodes;
 
 /// Of a step, whatever asks for them.
 inline constexpr std::uint32_t most_substeps = 1000;
-/// A step that ends with what asks for so many octaves more than it was made with is made again with all there are.
-inline constexpr unsigned sudden_octaves = 2;
 
 /// The highest octave within StepSettings::refinement and the most sub-steps of a step.
 std::uint8_t highest_octave(const StepSettings& settings);
