@@ -52,12 +52,13 @@ RagdollDef free_human() {
   return def;
 }
 
-void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b) {
+void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b, double largest_force) {
   JointDef def;
   def.a = a;
   def.b = b;
   def.frame_a.position = at_a;
   def.frame_b.position = at_b;
+  def.largest_force = largest_force;
   builder.add_joint(def);
 }
 

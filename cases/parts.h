@@ -27,7 +27,8 @@ struct Pyramid {
 void add_pyramid(scenes::Builder& builder, const Pyramid& pyramid);
 /// The library's human with joints that turn freely, as validation has them.
 RagdollDef free_human();
-void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b);
+void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b,
+             double largest_force = JointDef().largest_force);
 
 /// Links of B1: boxes of 0.04 x 0.04 x 0.2 m and 1 kg along their z axis, the last one `ratio` times as heavy.
 inline constexpr double link_length = 0.2;

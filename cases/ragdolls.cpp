@@ -106,8 +106,9 @@ void pull(Trial& trial, double force, std::optional<double> gap_must, std::optio
   trial.report("not finite", nonfinite(run), 0.0);
 }
 
-/// A kinematic hand goes between two walls that stand 0.1 m apart, and stops behind them.
-void drag(Trial& trial, double speed) {
+/// A kinematic hand goes between two walls that stand 0.1 m apart, and stops behind them. What it holds by a plain pin comes along
+/// whatever it takes; what it `grabs` (as World::grab does) it pulls by 100 times its weight at most.
+void drag(Trial& trial, double speed, bool grabs) {
   int mover = 0;
   Simulated& run = trial.start([&](scenes::Builder& builder) {
     builder.add_ragdoll(human(), {}, {}, 1);
@@ -124,7 +125,7 @@ void drag(Trial& trial, double speed) {
     def.pose.position = at;
     def.velocity = {speed, 0, 0};
     mover = builder.add(without_contacts(def));
-    add_pin(builder, builder.id(mover), {}, builder.id(pulled), {});
+    add_pin(builder, builder.id(mover), {}, builder.id(pulled), {}, grabs ? 100 * 9.81 * 70 : JointDef().largest_force);
     for (double side : {-1.0, 1.0}) builder.add_fixed_box({at.x + 2, at.y, at.z + side * (0.05 + 1)}, {0.2, 3, 1});
   });
   const double bone = shortest_bone(run);
@@ -141,7 +142,7 @@ void drag(Trial& trial, double speed) {
     gain.add(energy(run) / stopped - 1);
   }
   trial.report("not finite", nonfinite(run), 0.0);
-  trial.report("joint gap / shortest bone", watch.gap / bone);
+  trial.report("joint gap / shortest bone", watch.gap / bone, grabs ? std::optional(0.1) : std::nullopt);
   trial.report("beyond limits [deg]", watch.limit);
   trial.report("joint gap / shortest bone, 1 s after", joint_gap(run) / bone, 1e-3);
   trial.report("beyond limits [deg], 1 s after", beyond_limits(run), 5);
@@ -197,13 +198,25 @@ void add_ragdolls(std::vector<Case>& cases) {
                      .more_substeps = fewer,
                      .lost_at = 1},
                     {.name = "dragged at 10 m/s",
-                     .run = [](Trial& t) { drag(t, 10); },
+                     .run = [](Trial& t) { drag(t, 10, false); },
+                     .steps = steps,
+                     .substeps = {4},
+                     .more_steps = {1.0 / 30},
+                     .more_substeps = fewer},
+                    {.name = "grabbed at 10 m/s",
+                     .run = [](Trial& t) { drag(t, 10, true); },
                      .steps = steps,
                      .substeps = {4},
                      .more_steps = {1.0 / 30},
                      .more_substeps = fewer},
                     {.name = "dragged at 50 m/s",
-                     .run = [](Trial& t) { drag(t, 50); },
+                     .run = [](Trial& t) { drag(t, 50, false); },
+                     .steps = steps,
+                     .substeps = {4},
+                     .more_steps = {1.0 / 30},
+                     .more_substeps = fewer},
+                    {.name = "grabbed at 50 m/s",
+                     .run = [](Trial& t) { drag(t, 50, true); },
                      .steps = steps,
                      .substeps = {4},
                      .more_steps = {1.0 / 30},

@@ -326,13 +326,11 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.load_ahead = Scalar(relax ? 1 : 0);
     info.push_speed = Scalar(4);
     info.soft_mass_scale = Scalar(relax ? 1 : 0.95);
-    info.joint_push_speed = Scalar(8);
     info.loop_give = Scalar(1e-5);
     info.seen_turn = Scalar(1);
     info.strayed_turn = Scalar(0.1);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
-    info.spin_floor = Scalar(6e-5);
     info.tree_damping = Scalar(0.25);
     info.restitution_threshold = Scalar(mood_.speed / 10);
     info.rounding = Scalar(1e-3);

@@ -35,8 +35,8 @@ TEST_CASE("placed bodies: more visits while they settle, where they touch someth
   run(world, stepper, 1);
   CHECK(visits(stepper) == 0);  // touches nothing
   const std::vector<BodyId> pair = add_pair(world, 5);
-  const int each = 2 * int(constants::settling_visits - 1) * int(stepper.settings().substeps);
-  for (unsigned i = 1; i < constants::settling_steps; i++) {
+  const int each = 2 * int(constants::rounds - 1) * int(stepper.settings().substeps);
+  for (unsigned i = 1; i < constants::rounds; i++) {
     run(world, stepper, 1);
     CHECK(visits(stepper) == each);
   }

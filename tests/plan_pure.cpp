@@ -251,7 +251,7 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
 TEST_CASE("the plan is kept: repeated steps run the same one") {
   SceneWorld s = scene_world("stack", 3);
   Stepper stepper;
-  run(s.world, stepper, constants::settling_steps);
+  run(s.world, stepper, constants::rounds);
   const StepPlan* first = &stepper.plan();
   const StepPlan copy = *first;
   for (int i = 0; i < 20; i++) {

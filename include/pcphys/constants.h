@@ -50,19 +50,18 @@ inline constexpr double least_load = 0.01;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together.
 /// They seldom do.
 inline constexpr double settling_pace = 1.5;
-/// A manifold stands until its bodies have moved against each other by this share of the smaller one's thickness.
-inline constexpr double manifold_share = 0.01;
 /// Where bodies that both answer move along each other by more than this share in a sub-step, or turn into each other,
 /// their contact is an impact: nothing of it lasts.
 inline constexpr double quick_share = 0.1;
 /// Contacts are kept up to a gap of this share of the smaller shape's radius (of the sphere that holds it), so that
-/// what happens is the same at any size.
-inline constexpr double margin_share = 0.02;
+/// what happens is the same at any size. A manifold stands until its bodies have moved against each other by this share
+/// of the smaller one's thickness.
+inline constexpr double contact_share = 0.01;
 /// What is pressed in by more than this share of its size (twice the radius of gyration) by what stands on it gets as many
-/// sub-steps as bring it down to that: by as many of its own kind as its island is high, where that is slender as by as many again as
-/// it is higher than wide (plan/columns.h); or, by the second share, by one body so many times as heavy, which sinks where
+/// sub-steps as bring it down to that: by as many of its own kind as its island is high, where that is slender as by as
+/// many again as it is higher than wide (plan/columns.h); or by one body at least so many times as heavy, which sinks where
 /// the other rows of its manifold do not (plan/loads.h).
-inline constexpr double pressed = 0.01, load_pressed = 0.001, uneven_masses = 200;
+inline constexpr double pressed = 0.01, uneven_masses = 200;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
 /// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in
@@ -80,48 +79,27 @@ inline constexpr std::uint32_t most_loop_substeps = 512;
 /// Of what a sub-step is too long to resolve in the turning of a tree's bodies, this share is taken out
 /// (docs/joints.md).
 inline constexpr double tree_damping = 0.4;
-/// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
-inline constexpr double tree_spin_floor = 6e-5;
-/// Of fourth order a tree has no stiffness in its inertia: (frequency at which the forces of its pins would turn a
-/// body, times half the sub-step)^2, from above. Beyond it stays at second order.
-inline constexpr double stiff_pins = 1;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints:
-/// what a tree holds by itself answers nothing but rounding. So many roundings (of relative size epsilon) of it at least;
-/// shorter sub-steps have more, as much as leaves it the same spring, and `loop_give_most` at most.
-inline constexpr double loop_give = 1e-7, loop_roundings = 800, loop_give_most = 1e-4;
-/// Contacts keep how they reach into a joint tree, from sub-step to sub-step of a step, until its bodies may have
-/// turned by this [rad].
-inline constexpr double kept_turn = 0.005;
+/// what a tree holds by itself answers nothing but rounding.
+inline constexpr double loop_give = 1e-4;
 /// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by `seen_turn`. Newton's
 /// method there is not to be trusted where it more than doubles the energy of the motion within the tree, as after a
 /// blow or in a whip that sub-steps are too long for: its steps are taken back, and bodies are seen ahead until
 /// `strayed_turn` [rad].
 inline constexpr double seen_turn = 1, strayed_turn = 0.1;
-/// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
-inline constexpr double joint_push_speed = 8;
+/// What is this many roundings (of relative size epsilon) below what it is a difference of is rounding: a velocity below
+/// what the contact's impulse that holds the body would give it, what Newton's method for a net of springs leaves.
+inline constexpr double roundings = 32;
 
-/// A body that a contact holds reads as at rest below this many roundings (of relative size epsilon) of the velocity
-/// that the contact's impulse would give it.
-inline constexpr double rest_roundings = 32;
-
-/// So many roundings (of relative size epsilon) of a contact's arms are in its gaps.
-inline constexpr double gap_roundings = 1;
-
-/// How often a sub-step looks for impacts, at most, while there are any: what one hands on, the next body hands on
-/// again, as in Newton's cradle.
-inline constexpr unsigned impact_sweeps = 8;
-/// Nets of springs (kernels/net_solve.inl): looks at a sub-step's lengths, and most search directions after each. What was
-/// solved is dropped where the sub-step would make more energy than this share of what the net has.
-inline constexpr unsigned net_rounds = 8, net_searches = 12;
+/// What is sought round by round gets so many at most: impacts in a sub-step, since what one hands on, the next body hands
+/// on again, as in Newton's cradle; Newton's method for a net of springs, and its search directions after each step; visits
+/// of contacts in each pass, and such steps, after a body was just placed, since nothing is remembered yet of what holds it
+/// (docs/impulses.md).
+inline constexpr unsigned rounds = 8;
+/// A net's solution is dropped where the sub-step would make more energy than this share of what the net has.
 inline constexpr double net_made = 1e-3;
-/// A Newton step's equations are solved to this many roundings.
-inline constexpr double net_roundings = 10;
-/// Contacts of a body that was just placed are visited so often in each pass, in so many steps: nothing is remembered yet
-/// of what holds it (docs/impulses.md).
-inline constexpr unsigned settling_visits = 8, settling_steps = 8;
-
 /// A body is slow below this speed of its centre of mass [m/s] and this spin [rad/s], and falls asleep with its island
 /// when all of it has been for so long [s] (docs/sleeping.md). Piles at rest keep a hundredth of that and less.
 inline constexpr double sleep_speed = 0.02, sleep_spin = 0.05, sleep_time = 0.5;

@@ -173,7 +173,7 @@ template <class Scalar> struct Detector::Meeting {
   void find(double sent) {
     const double way = this->way(), goes = std::max(way, sent), moved = this->moved();
     const bool quick = this->quick();
-    if (c.touches && !c.struck && !quick && moved <= constants::manifold_share * thick) return;
+    if (c.touches && !c.struck && !quick && moved <= constants::contact_share * thick) return;
     if (!c.touches && c.gap - moved > goes) return stand_aside();
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);

@@ -129,6 +129,7 @@ void Detector::rebuild(const WorldState& s) {
   hints_.clear();
   hinted_ = false;
   proxies_.clear();
+  standing_.clear();
   round_ = false;
   rest_ = 0;
   if (!possible_) return;  // none of the columns below is needed
@@ -176,6 +177,7 @@ void Detector::rebuild(const WorldState& s) {
     round_ |= shape.def.kind == ShapeKind::sphere || shape.def.kind == ShapeKind::capsule;
     if (shape.def.kind == ShapeKind::plane || shape.def.kind == ShapeKind::hull) odd_.push_back(i);
     if (proxies_[i].responds) thinnest_ = std::min(thinnest_, proxies_[i].inner);
+    if (!s.responds(row)) standing_.push_back(i);
     pairs_.add(i, !s.stands(row));
   }
 }
@@ -183,7 +185,7 @@ void Detector::rebuild(const WorldState& s) {
 std::size_t Detector::memory_bytes() const {
   const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
   std::size_t sum =
-      of(proxies_, tight_, margins_, reach_, twists_, odd_, moving_, bodies_, went_, near_, hints_, next_hints_,
+      of(proxies_, tight_, margins_, reach_, twists_, odd_, moving_, bodies_, went_, near_, hints_, next_hints_, standing_,
          standings_, looked_, origins_, levers_, ways_, sent_, renewed_, struck_, unseen_, times_struck_, on_standing_, inner_,
          beside_, touching_, looks_, alone_, soonest_, gone_, next_.keys, next_.ends, next_.features);
   sum += of(scratch_f_.shapes, scratch_f_.kinds, scratch_f_.manifolds, scratch_d_.shapes, scratch_d_.kinds, scratch_d_.manifolds);
@@ -262,25 +264,16 @@ bool Detector::find_strays(const WorldState& s, const AlignedBytes& before) {
                                                 : collect_strays(s, reinterpret_cast<const double*>(before.data()));
 }
 
-// The box of a shape's whole way through the step.
-template <class Scalar> Aabb Detector::way_of(std::uint32_t shape, const Scalar* before, const Scalar* now) const {
-  const Scalar *p = now + proxies_[shape].body * reals_of(Buffer::pose), *q = before + proxies_[shape].body * reals_of(Buffer::pose);
+// Whether something that stands lies on the way from q to p and was too far off to be paired.
+template <class Scalar> bool Detector::passes_unseen(std::uint32_t shape, const Scalar* q, const Scalar* p) const {
   const float r = float(proxies_[shape].radius);
   Aabb way;
   for (int k = 0; k < 3; k++) {
     way.min[k] = float(std::min(p[k], q[k])) - r;
     way.max[k] = float(std::max(p[k], q[k])) + r;
   }
-  return way;
-}
-
-// Whether something lay on its way that was too far off to be paired.
-template <class Scalar> bool Detector::passes_unseen(std::uint32_t shape, const Scalar* before, const Scalar* now) const {
-  const Aabb way = way_of(shape, before, now);
-  for (std::uint32_t i = 0; i < proxies_.size(); i++) {
-    if (!proxies_[i].alive || overlap(tight_[i], tight_[shape])) continue;
-    if (overlap(way, proxies_[i].responds ? way_of(i, before, now) : tight_[i]) && (*filter_)(i, shape)) return true;
-  }
+  for (const std::uint32_t i : standing_)
+    if (overlap(tight_[i], way) && !overlap(tight_[i], tight_[shape])) return true;
   return false;
 }
 
@@ -295,7 +288,7 @@ template <class Scalar> bool Detector::collect_strays(const WorldState& s, const
     const Scalar *p = now + proxy.body * reals_of(Buffer::pose), *q = before + proxy.body * reals_of(Buffer::pose);
     const float x = float(p[0] - q[0]), y = float(p[1] - q[1]), z = float(p[2] - q[2]), seen = reach_[i] + 0.5f * proxy.inner;
     const float way = x * x + y * y + z * z;
-    if (way <= seen * seen || !passes_unseen(i, before, now)) continue;
+    if (way <= seen * seen || !passes_unseen(i, q, p)) continue;
     if (!strays_) went_.assign(s.bodies.size(), 0);
     strays_ = found = true;
     went_[proxy.body] = std::max(went_[proxy.body], std::sqrt(way));

@@ -154,8 +154,7 @@ class Detector {
   void rebuild(const WorldState& state);
   /// Where nothing but joints is other than it was.
   void follow_joints(const WorldState& state);
-  template <class Scalar> Aabb way_of(std::uint32_t shape, const Scalar* before, const Scalar* now) const;
-  template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* before, const Scalar* now) const;
+  template <class Scalar> bool passes_unseen(std::uint32_t shape, const Scalar* from, const Scalar* to) const;
   template <class Scalar> bool collect_strays(const WorldState& state, const Scalar* before);
   /// What of boxes does not change while the structure and the margin stay.
   void list_columns(const WorldState& state, const Options& options);
@@ -235,6 +234,7 @@ class Detector {
   std::vector<std::uint32_t> touched_;  // of those that sleep
   bool possible_ = false;
   std::vector<Proxy> proxies_;
+  std::vector<std::uint32_t> standing_;  // shapes of fixed and kinematic bodies
   float thinnest_ = 0;                   // half the least thickness of what moves by forces [m]
   std::vector<Aabb> tight_;
   std::vector<double> margins_;        // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]

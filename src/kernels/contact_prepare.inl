@@ -104,7 +104,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st_new(PC_PASS m, these, ROW_B, b0); pc_st_new(PC_PASS m, these, ROW_B + 1u, b1); pc_st_new(PC_PASS m, these, ROW_B + 2u, b2); pc_st_new(PC_PASS m, these, ROW_B + 3u, b3);
   // missing points take the mean gap of the others, so that none is the nearest
   precise Real gap = (p0.s * w0 + p1.s * w1 + p2.s * w2 + p3.s * w3) * share;
-  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real rounding = reach * PC_INFO(gap_rounding);
+  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real rounding = reach * (PC_INFO(rounding) * PC_REAL(0.03125));
   Real noise = pc_select(pc_or(flight > zero, material.v.z > zero), zero, rounding);  // (of what bounces the instant counts)
   precise Real s0 = pc_told_gap(p0.s, noise) - (shift.n + b0 * shift.turn1 - a0 * shift.turn2); precise Real s1 = pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise) - (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
   precise Real s2 = pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise) - (shift.n + b2 * shift.turn1 - a2 * shift.turn2); precise Real s3 = pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise) - (shift.n + b3 * shift.turn1 - a3 * shift.turn2);

@@ -11,11 +11,6 @@ PC_FN void pc_keep_meeting(PC_IO Way w, Slot m, Meeting now) {
 }
 // Whether both sides move, and not in one tree.
 PC_FN Mask pc_both_move(PC_IO Way w, Slot m) { return PC_LD(contact_reach, PC_NODE(m, w.reach), 10u) > PC_REAL(0.0); }
-// The arms by which rows were made that are kept where `same`, those of now elsewhere.
-PC_FN Arms pc_arms_of_reach(PC_IO Way w, Slot m, Arms now, Mask same) {
-  Slot q = PC_NODE(m, w.reach + 1u); Arms r = now; r.a = pc_select3(same, pc_ld3_reach(PC_PASS q, 6u), now.a); r.b = pc_select3(same, pc_ld3_reach(PC_PASS q, 9u), now.b);
-  pc_st3_reach(PC_PASS q, 6u, r.a); pc_st3_reach(PC_PASS q, 9u, r.b); return r;
-}
 PC_FN BodyState pc_unmoved() {
   Real zero = PC_REAL(0.0); BodyState b; b.v = pc_zero3(); b.l = b.v; b.inverse_mass = zero; b.phase = zero; b.response = zero; b.unlike = zero; b.inertia = pc_diagonal(zero); return b;
 }

@@ -56,9 +56,9 @@ PC_FN void pc_net_search(PC_IO Slot m, Net n, Mask wants) {
     pc_st3_net(PC_PASS s, NET_FOUND, pc_select3(wants, pc_zero3(), pc_ld3_net(PC_PASS s, NET_FOUND)));
   }
   Real square = pc_net_square(PC_PASS m, n, zero);
-  precise Real enough = square * PC_INFO(net_accuracy);
+  precise Real enough = square * (PC_INFO(rounding) * PC_INFO(rounding));
   Real kept = zero;
-  for (uint i = 0u; i < PC_COUNT(net_searches); i++) {
+  for (uint i = 0u; i < PC_COUNT(rounds); i++) {
     Mask goes = pc_and(wants, pc_and(square > enough, square > PC_TINY));
     if (!PC_ANY(goes)) break;  // lint: allow (steps of those that are done are zero)
     pc_net_turn(PC_PASS m, n, kept);

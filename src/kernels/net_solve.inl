@@ -260,19 +260,19 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Mask asked = pc_net_wants(PC_PASS m, n);
   if (!PC_ANY(asked)) return;  // lint: allow (nothing is stored otherwise)
   pc_net_begin(PC_PASS m, n, asked);
-  uint rounds = PC_COUNT(net_rounds);
+  uint rounds = PC_COUNT(rounds);
   Real share = zero;
   Real level = zero;
   Real open = zero;
   for (uint i = 0u; i < rounds; i++) {
     Merit now = pc_net_merit(PC_PASS m, n, share);
     Mask first = pc_select(PC_IS(i), zero, one) > PC_REAL(0.5);
-    precise Real bound = level + pc_abs(level) * PC_INFO(net_slack);
+    precise Real bound = level + pc_abs(level) * PC_INFO(rounding);
     Mask better = pc_or(first, pc_or(now.level < bound, now.open < open));
     level = pc_select(better, now.level, level);
     open = pc_select(better, now.open, open);
     pc_net_take(PC_PASS m, n, share, pc_and(asked, better));
-    precise Real enough = now.given * PC_INFO(net_accuracy);
+    precise Real enough = now.given * (PC_INFO(rounding) * PC_INFO(rounding));
     Mask goes = pc_and(asked, pc_and(better, now.open > enough));
     Mask back = pc_and(asked, pc_select(better, zero, one) > PC_REAL(0.5));
     share = pc_select(better, zero, share);

@@ -58,13 +58,6 @@ PC_FN Responses pc_outside_responses(PC_IO Way w, Slot m, Meeting now, Vec3 n, V
   if (PC_ANY(pc_max(a.inverse_mass, b.inverse_mass) > PC_REAL(0.0))) return pc_free_responses(a, b, now.arms.a, now.arms.b, n, t1, t2);  // lint: allow (zeros otherwise)
   Responses r; r.l = pc_diagonal(PC_REAL(0.0)); r.a = r.l; r.w1 = pc_zero3(); r.w2 = r.w1; r.wn = r.w1; r.these = PC_REAL(1.0) > PC_REAL(0.0); return r;
 }
-// Whether a contact that was not idle `before` reaches into trees that have handed on nothing since (tree_respond), and meets nothing else that moves.
-PC_FN Mask pc_reaches_same(PC_IO Way w, Slot m, Meeting now, Real before) {
-  Quad a = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN)), 7u); Quad b = PC_GATHER(node_operator, PC_WAY_EACH(m, pc_entry(w, PATH_OWN + 1u)), 7u);
-  Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u); Real free = pc_max(pc_free_mass(tree_a, now.a), pc_free_mass(tree_b, now.b));
-  return pc_and(pc_and(before > PC_REAL(0.0), pc_or(tree_a, tree_b)), pc_max(free, pc_max(a.s, b.s)) < PC_TINY);  // (padding is in none)
-}
-
 // The approach that is told of a row (contact_touch) is that of the sub-step in which it first pushes: on its way there a limb is turned by blows
 // elsewhere.
 PC_FN void pc_see_approach(PC_IO Slot m, uint i, Twist v) {
@@ -78,17 +71,14 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1); Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2);
   for (uint i = 0u; i < 4u; i++) pc_see_approach(PC_PASS m, i, now.twist);
-  Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); Real before = PC_LD(contact_rows, m, ROW_SCALE); PC_ST(contact_rows, m, ROW_SCALE, scale);
+  Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); PC_ST(contact_rows, m, ROW_SCALE, scale);
   if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)
   pc_keep_meeting(PC_PASS w, m, now);
-  // what reaches as it did in the sub-step before keeps its rows; beside lanes that do not they are made once more, from the same numbers
-  Mask same = pc_reaches_same(PC_PASS w, m, now, before); Mask anew = pc_select(same, none, scale) > none; now.arms = pc_arms_of_reach(PC_PASS w, m, now.arms, same);
-  if (!PC_ANY(anew)) return;  // lint: allow (rows are kept)
   bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
   pc_fill_reach(PC_PASS w, m, turns, now.arms, n, t1, t2);
   Responses r = pc_tree_responses(PC_PASS w, m, turns, pc_outside_responses(PC_PASS w, m, now, n, t1, t2));
   Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
   Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
-  r.these = anew; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
+  r.these = scale > none; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
 }
 #undef PC_SOME_ROWS

@@ -43,7 +43,6 @@ const uint TREE_REBOUND = 165u; // where limits throw back, of the three rows: r
 const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
 const uint TREE_RIGID = TREE_SLACK;    // inverse inertia about the centre, 6
-const uint TREE_TURNED = TREE_SPRING;  // angle by which its bodies may have turned since what contacts see of it was made (tree_respond.inl)
 const uint TREE_ENERGY = TREE_REBOUND; // twice that of the motion before the solve, where a limit throws back (tree_rebound.inl)
 // what contacts see, from tree_respond on: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
 const uint TREE_FACTOR = 168u;       // 6

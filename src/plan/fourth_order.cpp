@@ -136,7 +136,7 @@ void FourthOrder::choose(const WorldState& state, const Forest& forest, const So
     std::uint32_t why = why_not_[i];
     if (own) why |= bit(SecondOrder::own_kernel);
     if (touched_[i]) why |= bit(SecondOrder::contact);
-    if (why == 0 && stiffness(state, i, h) > constants::stiff_pins) why |= bit(SecondOrder::stiff);
+    if (why == 0 && stiffness(state, i, h) > 1) why |= bit(SecondOrder::stiff);
     if (why == 0 && spins_faster(state, tree, fastest)) why |= bit(SecondOrder::fast);
     reasons_ |= why;
     if (why != 0) continue;

@@ -44,25 +44,16 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.settling_pace = Scalar(constants::settling_pace);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.push_speed = Scalar(from.push_speed);
-  biased.joint_push_speed = Scalar(constants::joint_push_speed);
-  const double epsilon = std::numeric_limits<Scalar>::epsilon();
-  biased.loop_give = Scalar(std::max(std::min(constants::loop_give * double(1u << (2 * octave)), constants::loop_give_most),
-                                     constants::loop_roundings * epsilon));
-  biased.net_rounds = constants::net_rounds;
-  biased.net_searches = constants::net_searches;
-  biased.net_slack = Scalar(constants::net_roundings * epsilon);
+  biased.loop_give = Scalar(constants::loop_give);
+  biased.rounds = constants::rounds;
   biased.net_made = Scalar(constants::net_made);
-  biased.net_accuracy = Scalar(constants::net_roundings * epsilon * constants::net_roundings * epsilon);
   biased.seen_turn = Scalar(constants::seen_turn);
   biased.strayed_turn = Scalar(constants::strayed_turn);
-  biased.kept_turn = Scalar(constants::kept_turn);
   biased.limit_stiffness = Scalar(rows.mass_scale / rows.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
-  biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
   biased.restitution_threshold = Scalar(from.restitution_threshold);
-  biased.rounding = Scalar(constants::rest_roundings * epsilon);
-  biased.gap_rounding = Scalar(constants::gap_roundings * epsilon);
+  biased.rounding = Scalar(constants::roundings * std::numeric_limits<Scalar>::epsilon());
 
   biased.carries = from.carries;
   biased.substeps = Scalar(from.substeps << octave);
@@ -77,7 +68,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
     info.h_change = Scalar(1 - after / before);
     info.h_before = Scalar(before);
     info.impulse_ratio = Scalar(after / before);
-    info.kept_turn = 0;
   };
   change(Phase::first, from.last_substep > 0 ? from.last_substep : from.h, h);
   infos[unsigned(Phase::first)].begins = 1;

@@ -242,7 +242,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   // before what lasts of the contacts acts again: an impact is between velocities that bodies have
   if (s.free_contacts && s.impacts) {
     b.kernel(contacts(s).impact, Phase::biased, k);
-    b.kernel(contacts(s).impact, Phase::relax, k, constants::impact_sweeps - 1);
+    b.kernel(contacts(s).impact, Phase::relax, k, constants::rounds - 1);
   }
   if (s.free_contacts) b.kernel(contacts(s).warm, Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
@@ -253,8 +253,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.nets) b.kernel(Kernel::net_prepare, Phase::biased, k);
   if (s.nets) b.kernel(Kernel::net_solve, Phase::biased, k);
   if (s.solves_trees()) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
-  // (joints that close loops are stiff: they go by the trees of now)
-  if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, k == 0 || s.tree_joints ? Phase::first : Phase::biased, k);
+  if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
   if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);

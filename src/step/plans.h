@@ -47,7 +47,7 @@ inline void add_contacts(PlanSignature& s, const Schedule& schedule, const Detec
   s.tree_contacts = schedule.contacts.any_with_trees();
   s.friction = found.friction || found.rolling;
   s.restitution = found.restitution;
-  s.visits = found.placed && s.free_contacts ? constants::settling_visits : 1;
+  s.visits = found.placed && s.free_contacts ? constants::rounds : 1;
   s.impacts = found.impacts;
   s.rolling = found.rolling;
   s.touches = s.contact_events && s.contacts();

@@ -242,7 +242,7 @@ Status World::restore(std::span<const std::byte> snapshot) {
     return cut;
 
   s.last_substep = substep;
-  s.settling = constants::settling_steps;
+  s.settling = constants::rounds;
   s.gravity = gravity;
   std::uint32_t index = 0;
   for (std::size_t i = 1; i < s.bodies.size(); i++) {

@@ -90,8 +90,8 @@ void WorldState::bring_in_phase(std::uint32_t row) {
 
 void WorldState::let_settle(std::uint32_t row) {
   if (bodies[row].kind != BodyKind::dynamic) return;
-  tables.set(Buffer::velocity_parts, row, place::settling, constants::settling_steps);
-  settling = constants::settling_steps;
+  tables.set(Buffer::velocity_parts, row, place::settling, constants::rounds);
+  settling = constants::rounds;
 }
 
 void WorldState::stir(std::uint32_t row) {
