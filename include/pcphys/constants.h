@@ -57,20 +57,15 @@ inline constexpr double quick_share = 0.1;
 /// what happens is the same at any size. A manifold stands until its bodies have moved against each other by this share
 /// of the smaller one's thickness.
 inline constexpr double contact_share = 0.01;
-/// What is pressed in by more than this share of its size (twice the radius of gyration) by what stands on it gets as many
-/// sub-steps as bring it down to that: by as many of its own kind as its island is high, where that is slender as by as
-/// many again as it is higher than wide (plan/columns.h); or by one body at least so many times as heavy, which sinks where
-/// the other rows of its manifold do not (plan/loads.h).
-inline constexpr double pressed = 0.01, uneven_masses = 200;
+/// An island gets as many sub-steps as bring (h omega)^2 of each of its rows below this (docs/substeps.md): of a contact
+/// how far, over the body's size (twice the radius of gyration), it is pressed in by one body at least so many times as
+/// heavy (plan/loads.h), or by as many of its own kind as the island is high, and by as many again as it is higher than wide
+/// (plan/columns.h); of a joint with limits the host's pull over the body's size, or its spin where it hangs on what does
+/// not answer; of one that closes a loop the frequency of what swings under its tension, of half the sub-step; of a tree
+/// that nothing touches how much a spin changes.
+inline constexpr double largest_give = 0.01, uneven_masses = 200;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
-/// And so does one that whips: whose spin changed in the last sub-step by more than this, times the sub-step [rad], in
-/// a tree that nothing touches.
-inline constexpr double largest_spin_change = 0.006;
-/// And so does what bends limits or closes loops where (how fast its rows are driven, times the sub-step)^2 is more than
-/// this: by the acceleration that the host's pull gives a body, over its size; by its spin, where it hangs on what does not
-/// answer; by the frequency at which bodies swing under a loop's tension, of half the sub-step.
-inline constexpr double joint_yield = 0.02;
 /// Rounds after which a device that finds islands is stopped; a chain of a million bodies takes 23.
 inline constexpr std::uint32_t most_island_rounds = 1000;
 /// Loops may ask for as many as this, beyond StepSettings::refinement: a pin that closes a loop near its dead centre throws

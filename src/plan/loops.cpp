@@ -39,7 +39,7 @@ void Loops::want(const WorldState& state, double impulse_h, double h, std::uint8
   if (!(impulse_h > 0)) return;
   for (const Loop& loop : loops_) {
     const double tension = length(state.tables.get3(Buffer::joint_impulse, loop.joint, 0)) / impulse_h;
-    const std::uint8_t octave = octave_for(h * h * loop.ratio * tension / 4, constants::joint_yield, highest);
+    const std::uint8_t octave = octave_for(h * h * loop.ratio * tension / 4, constants::largest_give, highest);
     if (octave > 0) wanted.push_back({loop.body, octave});
   }
 }

@@ -94,18 +94,21 @@ void Octaves::count_limited() {
 }
 
 bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
-  const auto made = [&](const Wanted& w) { return of_bodies_.empty() ? 0u : octave_of(of_bodies_[w.body]); };
-  const auto had_enough = [&](const Wanted& w) { return w.octave <= made(w); };
+  const std::size_t before = again_.size();
+  const auto ask_again = [&](std::uint8_t least) {
+    for (const Wanted& w : wanted_) {
+      const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
+      if (w.octave > made) again_.push_back({w.body, std::max(w.octave, least)});
+    }
+    wanted_.clear();
+  };
   wanted_.clear();
   want_for_spins(state, forest, h_, highest_, wanted_);
-  std::erase_if(wanted_, had_enough);
-  const auto spins = std::ptrdiff_t(wanted_.size());
+  ask_again(0);
+  // a tension that sub-steps were too few for says nothing of how many it takes
   loops_.want(state, h_, h_, highest_of_loops_, wanted_);
-  wanted_.erase(std::remove_if(wanted_.begin() + spins, wanted_.end(), had_enough), wanted_.end());
-  // a tension that sub-steps were too few for says nothing of how many it needs
-  for (auto loop = wanted_.begin() + spins; loop != wanted_.end(); ++loop) loop->octave = highest_of_loops_;
-  again_.insert(again_.end(), wanted_.begin(), wanted_.end());
-  return !wanted_.empty();
+  ask_again(highest_of_loops_);
+  return again_.size() > before;
 }
 
 }  // namespace pcphys

@@ -27,7 +27,7 @@ void Pulls::want(const WorldState& state, const Forest& forest, double h, std::u
     const std::uint32_t row = state.body_ids.row(force.body);
     if (row == 0 || !state.responds(row)) continue;  // 0: the force was removed
     const double most = pull(state, row, h);
-    if (const std::uint8_t octave = octave_for(most, constants::joint_yield, highest_octave); octave > 0) pulled_.push_back({row, octave});
+    if (const std::uint8_t octave = octave_for(most, constants::largest_give, highest_octave); octave > 0) pulled_.push_back({row, octave});
   }
   if (pulled_.empty()) return;
   std::ranges::sort(pulled_, {}, &Wanted::body);

@@ -14,7 +14,7 @@ class Forest;
 class Pulls {
  public:
   /// Adds what bodies need, in trees some joints of which have limits, that the host's forces and torques (constants and callbacks) would
-  /// move by more than constants::joint_yield of their size, or turn by so many radians, in a sub-step of `h` [s], up to
+  /// move by more than constants::largest_give of their size, or turn by so many radians, in a sub-step of `h` [s], up to
   /// `highest_octave`. Free where the host gave none.
   void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted);
 

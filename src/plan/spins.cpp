@@ -59,7 +59,7 @@ template <class Scalar>
 std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree, double h,
                              std::uint8_t highest) {
   if (was_touched<Scalar>(state.tables, tree)) return 0;
-  const double most = constants::largest_spin_change / h;
+  const double most = constants::largest_give / h;
   const std::uint8_t octave = octave_for(largest_change(state, bounds, tree, most), most, highest);
   return octave > 0 && !meets_others(state, tree) && !at_limit(state, tree) ? octave : 0;
 }
@@ -73,7 +73,7 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
     if (tree.front().flipped) continue;  // turns on a pivot
     // what swings on something that does not give way bends limits as a pull does (plan/pulls.h)
     const bool whirls = !state.responds(tree.front().body) && !was_touched<Scalar>(state.tables, tree) && has_limits(state, tree);
-    const double most = whirls ? std::sqrt(constants::joint_yield) / h : spin_most;
+    const double most = whirls ? std::sqrt(constants::largest_give) / h : spin_most;
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;
       if (!(bounds.spin(row) > most * most) || !state.responds(row)) continue;
