@@ -53,7 +53,7 @@ TEST_CASE("a body on a pin that stands apart from it is drawn there at the push 
     REQUIRE(made);
     run.step(1.0 / 60);
     const double gap = *run.world.joint_separation(*made);
-    CHECK(gap == doctest::Approx(0.5 - StepSettings().push_speed / 60).epsilon(1e-5));
+    CHECK(gap == doctest::Approx(0.5 - constants::joint_push_speed / 60).epsilon(1e-5));
     CHECK(length(*run.world.velocity(id)) <= 1e-6);
     run.step(1.0 / 60, 60);
     CHECK(*run.world.joint_separation(*made) <= 1e-6);

@@ -89,7 +89,7 @@ TEST_CASE("octaves: a tower asks for its load's, a chain that spins for its turn
   (void)add_links(spinning, {6, 9, 0}, 4, 400);
   (void)add_links(resting, {6, 9, 0}, 4, 0, true);
   Stepper stepper;
-  CHECK(stepper.step(heavy, frame).substeps == 16);
+  CHECK(stepper.step(heavy, frame).substeps == 64);
   CHECK(stepper.step(spinning, frame).substeps == 16);
   for (int i = 0; i < 20; i++) CHECK(stepper.step(resting, frame).substeps == 4);
 }
@@ -220,7 +220,7 @@ TEST_CASE("octaves: a step that makes a free tree spin, or whip, far faster than
       Stepper stepper;
       const StepReport& report = stepper.step(world, frame);
       REQUIRE(report);
-      CHECK(report.repeats == (substeps > 4 ? 1 : 0));
+      CHECK((report.repeats > 0) == (substeps > 4));
       CHECK(report.substeps == substeps);
       must(world.remove(twist));
       CHECK(stepper.step(world, frame).repeats == 0);  // what was chosen before it is enough
@@ -229,7 +229,7 @@ TEST_CASE("octaves: a step that makes a free tree spin, or whip, far faster than
 }
 
 TEST_CASE("octaves: a ragdoll that is pulled gets them by how far its body would go in a sub-step, limits or not, and no other") {
-  // a forearm of 1.7 kg and 0.18 m (twice its radius of gyration): a fiftieth of that in 1/240 s with 350 N
+  // a forearm of 1.7 kg and 0.18 m (twice its radius of gyration): a hundredth of that in 1/240 s with 180 N
   const auto asked = [](bool limits, double force, bool called, Precision precision) {
     World world({precision, {}});
     RagdollDef chain = RagdollDef::human();
@@ -249,8 +249,8 @@ TEST_CASE("octaves: a ragdoll that is pulled gets them by how far its body would
   };
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const bool called : {false, true}) {
-      CHECK(asked(true, 300, called, precision) == 4);
-      CHECK(asked(true, 1e4, called, precision) > asked(true, 3e3, called, precision));
+      CHECK(asked(true, 150, called, precision) == 4);
+      CHECK(asked(true, 1e4, called, precision) > asked(true, 1e3, called, precision));
       CHECK(asked(true, 1e6, called, precision) == 64);
       CHECK(asked(false, 1e3, called, precision) == 4);
     }

@@ -58,12 +58,14 @@ inline constexpr double quick_share = 0.1;
 /// of the smaller one's thickness.
 inline constexpr double contact_share = 0.01;
 /// An island gets as many sub-steps as bring (h omega)^2 of each of its rows below this (docs/substeps.md): of a contact
-/// how far, over the body's size (twice the radius of gyration), it is pressed in by one body at least so many times as
-/// heavy (plan/loads.h), or by as many of its own kind as the island is high, and by as many again as it is higher than wide
-/// (plan/columns.h); of a joint with limits the host's pull over the body's size, or its spin where it hangs on what does
-/// not answer; of one that closes a loop the frequency of what swings under its tension, of half the sub-step; of a tree
-/// that nothing touches how much a spin changes.
-inline constexpr double largest_give = 0.01, uneven_masses = 200;
+/// how far, over the body's size (twice the radius of gyration), it is pressed in by as many bodies of its own kind as the
+/// island is high, and by as many again as it is higher than wide (plan/columns.h); of a joint with limits the host's pull
+/// over the body's size, or its spin where it hangs on what does not answer; of one that closes a loop the frequency of what
+/// swings under its tension, of half the sub-step; of a tree that nothing touches how much a spin changes.
+inline constexpr double largest_give = 0.01;
+/// And by one body at least so many times as heavy (plan/loads.h) a contact is to be pressed in by less than this share: it
+/// sinks where the other rows of its manifold do not.
+inline constexpr double uneven_masses = 200, load_give = 0.001;
 /// A body of a joint tree that would turn by more than this in a sub-step [rad] gets more of them (docs/substeps.md).
 inline constexpr double largest_joint_turn = 0.5;
 /// Rounds after which a device that finds islands is stopped; a chain of a million bodies takes 23.
@@ -76,14 +78,18 @@ inline constexpr std::uint32_t most_loop_substeps = 512;
 inline constexpr double tree_damping = 0.4;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
-/// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints:
-/// what a tree holds by itself answers nothing but rounding.
-inline constexpr double loop_give = 1e-4;
+/// Inside joint trees what is lost in rounding gives by this share: the compliance of a pin that closes a loop, of what its
+/// two bodies would answer without joints, since what a tree holds by itself answers nothing; and the least inertia of a
+/// joint's freedom, of the sum over its axes, where the sub-step does not resolve its turning.
+inline constexpr double tree_give = 1e-4;
 /// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by `seen_turn`. Newton's
 /// method there is not to be trusted where it more than doubles the energy of the motion within the tree, as after a
 /// blow or in a whip that sub-steps are too long for: its steps are taken back, and bodies are seen ahead until
 /// `strayed_turn` [rad].
 inline constexpr double seen_turn = 1, strayed_turn = 0.1;
+/// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
+inline constexpr double joint_push_speed = 8;
+
 /// What is this many roundings (of relative size epsilon) below what it is a difference of is rounding: a velocity below
 /// what the contact's impulse that holds the body would give it, what Newton's method for a net of springs leaves.
 inline constexpr double roundings = 32;

@@ -9,5 +9,5 @@ PC_FN NearerLimit pc_nearer_limit(Real angle, Real lower, Real upper, Mask exist
 }
 // An angle beyond its limit is undone as a soft constraint; an open row stops what would close its slack within the
 // sub-step.
-PC_FN Real pc_soft_bias(PC_IO Real slack) { precise Real rate = slack * PC_INFO(soft_rate); return pc_clamp(rate, -PC_INFO(push_speed), PC_INFO(push_speed)); }
+PC_FN Real pc_soft_bias(PC_IO Real slack) { precise Real rate = slack * PC_INFO(soft_rate); return pc_clamp(rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)); }
 PC_FN Real pc_angle_bias(PC_IO Real slack, Mask open) { precise Real gap_rate = slack * PC_INFO(inverse_h); return pc_select(open, gap_rate, pc_soft_bias(PC_PASS slack)); }

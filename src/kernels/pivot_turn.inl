@@ -123,9 +123,9 @@ PC_FN Motion pc_select_motion(Mask m, Motion a, Motion b) {
   o.l = pc_select3(m, a.l, b.l); o.low = pc_select3(m, a.low, b.low); return o;
 }
 
-// Share of a gap that is closed in a sub-step, at push_speed at most.
+// Share of a gap that is closed in a sub-step, at joint_push_speed at most.
 PC_FN Real pc_share_closed(PC_IO Vec3 gap) {
-  Real size = pc_length(gap); precise Real most = PC_INFO(push_speed) * PC_INFO(h);
+  Real size = pc_length(gap); precise Real most = PC_INFO(joint_push_speed) * PC_INFO(h);
   return pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0));
 }
 PC_FN Pivot pc_pivot(PC_IO Slot n, Index body, Index joint, Real inverse_mass) {

@@ -29,9 +29,9 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
     PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, limit));
   }
 }
-// Speed at which a gap closes: within the sub-step, but not faster than push_speed.
+// Speed at which a gap closes: within the sub-step, but not faster than joint_push_speed.
 PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
-  precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(push_speed);
+  precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
 }
 // 1 where a limit that throws back is left too slowly, by more than 1e-5 of its rate.

@@ -27,9 +27,9 @@ PC_FN Vec3 pc_mean_velocity(PC_IO BodyState b, Vec3 v, Vec3 w, Vec3 arm, Vec3 l)
   Vec3 moved = pc_cross(turn.q.v, pc_madd(pc_cross(turn.q.v, arm), arm, turn.q.w)); precise Real twice = PC_INFO(inverse_h) * PC_REAL(2.0);
   return pc_select3(pc_dot(angle, angle) < PC_REAL(0.25), pc_madd(v, moved, twice), pc_add(v, pc_cross(w, arm)));
 }
-// Velocity that closes a share of the gap, at most push_speed.
+// Velocity that closes a share of the gap, at most joint_push_speed.
 PC_FN Vec3 pc_pin_bias(PC_IO Vec3 gap) {
-  Vec3 v = pc_scale(gap, PC_INFO(soft_rate)); Real size = pc_length(v); Real most = PC_INFO(push_speed);
+  Vec3 v = pc_scale(gap, PC_INFO(soft_rate)); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
 }
 

@@ -85,7 +85,7 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
                  high = std::min(height / size, double(column.bodies));
     const double wide = std::max(column.extent(1), column.extent(2)) + size;
     want(column.root, give * high / size, constants::largest_give);
-    want(column.root, give * high * high * height / (wide * wide), 1);  // from two on a column leans by itself
+    want(column.root, give * high * high * height / (wide * wide), constants::largest_give);
   }
 }
 

@@ -44,7 +44,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.settling_pace = Scalar(constants::settling_pace);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.push_speed = Scalar(from.push_speed);
-  biased.loop_give = Scalar(constants::loop_give);
+  biased.joint_push_speed = Scalar(constants::joint_push_speed);
+  biased.tree_give = Scalar(constants::tree_give);
   biased.rounds = constants::rounds;
   biased.net_made = Scalar(constants::net_made);
   biased.seen_turn = Scalar(constants::seen_turn);

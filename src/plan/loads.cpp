@@ -28,7 +28,7 @@ void Loads::want(const WorldState& state, const StepSettings& settings, double d
     const double load = -u.ratio * dot(state.tables.get3(Buffer::contact, u.contact, 0), state.gravity);
     const double overlap = load / (frequency * frequency), size = state.size(u.lighter);
     if (!(size > 0)) continue;  // it does not rotate, and is as large as one likes
-    const std::uint8_t octave = octave_for(overlap / size, constants::largest_give, highest_octave);
+    const std::uint8_t octave = octave_for(overlap / size, constants::load_give, highest_octave);
     if (octave > 0) wanted.push_back({u.lighter, octave});
   }
 }
