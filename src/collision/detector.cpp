@@ -69,7 +69,7 @@ bool some_could_touch(const WorldState& s) {
 
 /// By body row the lowest row of its joint tree, whatever the order of the joints; 0 for bodies of none, and where the tree hangs on
 /// something that does not respond. (What never gives way may leave a body nowhere to go, wherever it is looked for: docs/substeps.md,
-/// torn trees.) Empty where there are no joints.
+/// hands that slip.) Empty where there are no joints.
 void list_trees(const WorldState& s, std::vector<std::uint32_t>& trees) {
   trees.clear();
   if (s.joints.size() == 1) return;
