@@ -39,7 +39,7 @@ void add_roof(Run& run, double load, double slope) {
 }  // namespace
 
 // The joint that closes the loop is solved inside what the tree leaves it. As a soft row on bare bodies it opened by 47 mm with
-// links of 1 kg, and 84 and 338 mm with one of 10 and of 100; now by 0.12, 0.28 and 2.4 mm, most of it tree_give.
+// links of 1 kg, and 84 and 338 mm with one of 10 and of 100; now by 0.12, 0.28 and 2.4 mm, most of it loop_give.
 TEST_CASE("trees: a bridge between two posts holds to three millimetres") {
   for (const Mode& mode : precisions())
     for (const double load : {1.0, 10.0, 100.0}) {

@@ -327,7 +327,8 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.push_speed = Scalar(4);
     info.soft_mass_scale = Scalar(relax ? 1 : 0.95);
     info.joint_push_speed = Scalar(8);
-    info.tree_give = Scalar(1e-5);
+    info.loop_give = Scalar(1e-5);
+    info.spin_floor = Scalar(6e-5);
     info.seen_turn = Scalar(1);
     info.strayed_turn = Scalar(0.1);
     info.limit_stiffness = Scalar(20);

@@ -78,10 +78,11 @@ inline constexpr std::uint32_t most_loop_substeps = 512;
 inline constexpr double tree_damping = 0.4;
 /// Stiffness of a locked angle inside a joint tree, as a multiple of the joint's own inertia about it.
 inline constexpr double lock_stiffness = 1e4;
-/// Inside joint trees what is lost in rounding gives by this share: the compliance of a pin that closes a loop, of what its
-/// two bodies would answer without joints, since what a tree holds by itself answers nothing; and the least inertia of a
-/// joint's freedom, of the sum over its axes, where the sub-step does not resolve its turning.
-inline constexpr double tree_give = 1e-4;
+/// Least inertia of a joint's freedom inside a tree, as a share of the sum over its axes.
+inline constexpr double tree_spin_floor = 3e-5;
+/// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints:
+/// what a tree holds by itself answers nothing but rounding.
+inline constexpr double loop_give = 1e-4;
 /// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by `seen_turn`. Newton's
 /// method there is not to be trusted where it more than doubles the energy of the motion within the tree, as after a
 /// blow or in a whip that sub-steps are too long for: its steps are taken back, and bodies are seen ahead until

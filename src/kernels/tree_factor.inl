@@ -50,7 +50,7 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
   Mask known = fast > PC_REAL(0.0); Real share = pc_select(known, rounding, unknown); Real times = pc_select(known, PC_REAL(8.0), PC_REAL(1.0));
   precise Real all = xx + yy + zz; precise Real lacks = all * share - pc_least_moment(PC_PASS n);
-  precise Real held = pc_max(lacks, PC_REAL(0.0)) * times + all * fast * PC_INFO(tree_give);
+  precise Real held = pc_max(lacks, PC_REAL(0.0)) * times + all * fast * PC_INFO(spin_floor);
   precise Real least = all * PC_INFO(rounding) * PC_REAL(0.03125);
   Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);

@@ -52,7 +52,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Sym6 g = pc_sym6_add(pc_side_response(PC_PASS w, m, 0u, ia, arm_a), pc_side_response(PC_PASS w, m, 1u, ib, arm_b));
   if (w.below_a + w.below_b > 0u) g = pc_take_across(PC_PASS w, m, arm_a, arm_b, g);  // lint: allow (the same for all lanes; where a joint is not within one tree it takes out zeros)
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
-  precise Real give = (pc_bare_answer(a, arm_a) + pc_bare_answer(b, arm_b)) * PC_INFO(tree_give);
+  precise Real give = (pc_bare_answer(a, arm_a) + pc_bare_answer(b, arm_b)) * PC_INFO(loop_give);
   Sym3 k = pc_sym_inverse(pc_sym_add(g.l, pc_diagonal(give)));
   pc_sts_joint(PC_PASS m, JOINT_K, k); PC_ST(joint_rows, m, JOINT_GIVE, give); pc_sts_joint(PC_PASS m, JOINT_TURN, g.a);
   pc_st3_joint(PC_PASS m, JOINT_MOVE, g.c.a); pc_st3_joint(PC_PASS m, JOINT_MOVE + 3u, g.c.b); pc_st3_joint(PC_PASS m, JOINT_MOVE + 6u, g.c.c);
