@@ -88,8 +88,8 @@ Result<Description> Description::of(const World& world, std::span<const BodyId> 
   if (!world.springs().empty()) return Error{ErrorCode::unavailable, "Peers are given no springs: leave them or the peers out."};
   for (JointId id : world.joints()) {
     const JointDef def = *world.joint(id);
-    if (def.motor.torque > 0 || def.spring.stiffness > 0)
-      return Error{ErrorCode::unavailable, "Peers are given no motors and springs of joints: leave them or the peers out."};
+    if (def.motor.torque > 0 || def.spring.stiffness > 0 || def.yields())
+      return Error{ErrorCode::unavailable, "Peers are given no motors, springs and largest forces of joints: leave them or the peers out."};
     if (!index.contains(def.a) || !index.contains(def.b))
       return Error{ErrorCode::unavailable, "A joint holds a body that the peer was not given: list all bodies of the world."};
     result.joints.push_back({index[def.a], index[def.b], def.frame_a, def.frame_b, def.freedom, def.collide, def.spring.damping});

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 
 #include "collision/hook.h"
 #include "collision/view.h"
 #include "pcphys/constants.h"
+#include "world/union_find.h"
 
 namespace pcphys {
 namespace {
@@ -74,22 +74,18 @@ void list_trees(const WorldState& s, std::vector<std::uint32_t>& trees) {
   trees.clear();
   if (s.joints.size() == 1) return;
   trees.resize(s.bodies.size());
-  std::iota(trees.begin(), trees.end(), 0);
-  const auto root = [&trees](std::uint32_t row) {
-    while (trees[row] != row) row = trees[row] = trees[trees[row]];
-    return row;
-  };
+  UnionFind joined(s.bodies.size());
   std::vector<bool> jointed(s.bodies.size());
   for (std::uint32_t row = 1; row < s.joints.size(); row++) {
     if (s.joints[row].spring) continue;
     std::uint32_t ends[] = {s.body_ids.row(s.joints[row].body_a), s.body_ids.row(s.joints[row].body_b)};
     for (std::uint32_t& end : ends) {
       jointed[end] = true;
-      end = s.responds(end) ? root(end) : 0;  // what hangs on row 0 is held
+      if (!s.responds(end)) end = 0;  // what hangs on row 0 is held
     }
-    trees[std::max(ends[0], ends[1])] = std::min(ends[0], ends[1]);
+    joined.join(ends[0], ends[1]);
   }
-  for (std::uint32_t row = 1; row < trees.size(); row++) trees[row] = jointed[row] ? root(row) : 0;
+  for (std::uint32_t row = 1; row < trees.size(); row++) trees[row] = jointed[row] ? joined.root(row) : 0;
 }
 
 /// Bodies that hang on joints, by row.

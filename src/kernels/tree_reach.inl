@@ -2,7 +2,7 @@
 // units in which their inertias are 1 (node_operator.inl); negative on side a. Rows come in threes: impulses along t1, t2, n, and couples
 // about them. Answers between rows are sums of products over the way; what is pending there moves a row by the same numbers.
 //
-// contact_reach has for each block of slots two of how its sides meet (pc_keep_meeting) and by which arms they reach (pc_arms_of_reach); then on each side that stands in a tree, two slots of
+// contact_reach has for each block of slots two of how its sides meet (pc_keep_meeting); then on each side that stands in a tree, two slots of
 // the root (the halves of its motion), then one a level; then as many for the couples, which are unset where pc_turns_matter says no. Of each
 // row three reals.
 const uint REACH_ROWS = 2u;     // where slots of rows begin

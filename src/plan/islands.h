@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "world/state.h"
+#include "world/union_find.h"
 
 namespace pcphys {
 
@@ -18,7 +19,7 @@ template <class Join> void for_each_edge(const WorldState& state, Join join) {
     join_moving(state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b));
 }
 
-/// On the host: a union-find.
+/// On the host.
 class Islands {
  public:
   /// Follows a change of contacts, joints or kinds of bodies.
@@ -26,14 +27,14 @@ class Islands {
   /// Once for each change.
   void build(const WorldState& state);
   /// The lowest row of the body's island.
-  std::uint32_t root(std::uint32_t body) const;
+  std::uint32_t root(std::uint32_t body) const { return rows_.root(body); }
   /// How many bodies the island of that root has.
   std::uint32_t size(std::uint32_t root) const { return size_[root]; }
 
  private:
-  void join(std::uint32_t a, std::uint32_t b);
   bool built_ = false;
-  std::vector<std::uint32_t> parent_, size_;  // by body row
+  UnionFind rows_;
+  std::vector<std::uint32_t> size_;  // by body row
 };
 
 }  // namespace pcphys

@@ -2,24 +2,11 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
+
+#include "world/union_find.h"
 
 namespace pcphys {
 namespace {
-
-/// Which rows belong together.
-class Groups {
- public:
-  explicit Groups(std::size_t rows) : above_(rows) { std::iota(above_.begin(), above_.end(), 0u); }
-  std::uint32_t root(std::uint32_t row) {
-    while (above_[row] != row) row = above_[row] = above_[above_[row]];
-    return row;
-  }
-  void join(std::uint32_t a, std::uint32_t b) { above_[root(a)] = root(b); }
-
- private:
-  std::vector<std::uint32_t> above_;
-};
 
 constexpr std::uint32_t header = 4;  // numbers of a block
 
@@ -30,7 +17,7 @@ void Nets::build(const WorldState& state) {
   shapes_.clear();
   held_.assign(state.joints.size(), 0);
   springs_ = most_alike_ = 0;
-  Groups groups(state.bodies.size());
+  UnionFind groups(state.bodies.size());
   std::vector<char> pinned(state.bodies.size(), 0);
   std::vector<std::uint32_t> springs;
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {

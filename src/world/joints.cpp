@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <string>
 
 #include "pcphys/constants.h"
 #include "world/state.h"
+#include "world/union_find.h"
 #include "world/validate.h"
 
 namespace pcphys {
@@ -144,19 +144,14 @@ Result<JointId> World::create_joint(const JointDef& given) {
 namespace {
 /// Of all that hangs together with a body by joints [kg].
 double mass_of_all(const WorldState& s, std::uint32_t row) {
-  std::vector<std::uint32_t> roots(s.bodies.size());
-  std::iota(roots.begin(), roots.end(), 0u);
-  const auto root = [&](std::uint32_t at) {
-    while (roots[at] != at) at = roots[at] = roots[roots[at]];
-    return at;
-  };
+  UnionFind joined(s.bodies.size());
   for (const JointRecord& joint : s.joints) {
     const std::uint32_t a = s.body_ids.row(joint.body_a), b = s.body_ids.row(joint.body_b);
-    if (!joint.spring && s.responds(a) && s.responds(b)) roots[root(a)] = root(b);
+    if (!joint.spring && s.responds(a) && s.responds(b)) joined.join(a, b);
   }
   double sum = 0;
-  for (std::uint32_t at = 1; at < roots.size(); at++)
-    if (root(at) == root(row)) sum += s.tables.get(Buffer::mass, at, 3);
+  for (std::uint32_t at = 1; at < s.bodies.size(); at++)
+    if (joined.root(at) == joined.root(row)) sum += s.tables.get(Buffer::mass, at, 3);
   return sum;
 }
 }  // namespace
