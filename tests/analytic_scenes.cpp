@@ -100,8 +100,8 @@ struct SceneRun {
   void check_heap() const {
     CHECK(end.separation.max <= 0.0001);
     CHECK(peak <= 0.010);
-    CHECK(end.penetration.max <= 0.010);  // of 32 heaps the deepest has 7.8 mm
-    CHECK(end.penetration.mean() <= 0.0004);
+    CHECK(end.penetration.max <= 0.006);  // of 32 heaps the deepest has 7.9 mm
+    CHECK(end.penetration.mean() <= 0.0002);
     CHECK(last_limit <= 6 * degree);
   }
 };
