@@ -70,7 +70,8 @@ class Bench {
     wanted.restitution = found_.restitution;
     if (wanted.trees) state().tables.resize(Table::node, schedule_.trees.nodes().rows());
     plan_ = make_plan(wanted);
-    const InfoInputs from(settings_, world_.gravity(), substep_length(dt, settings_.substeps), state().last_substep);
+    const double h = substep_length(dt, settings_.substeps);
+    const InfoInputs from(settings_, world_.gravity(), h, state().last_substep, h);
     fill_infos(from, infos_f_);
     fill_infos(from, infos_d_);
     if (auto status = runner_.prepare(settings_, variant.precision); !status) return status;

@@ -57,7 +57,7 @@ Status run_plan(const StepSettings& settings, const StepPlan& plan, double dt, W
   static Runner runner;  // keeps its backends: a GL context is slow to make
   InfoOf<float> single[phase_count];
   InfoOf<double> twice[phase_count];
-  const InfoInputs from(settings, {}, dt, 0);
+  const InfoInputs from(settings, {}, dt, 0, dt);
   fill_infos(from, single);
   fill_infos(from, twice);
   const void* infos = world.precision() == Precision::f64 ? static_cast<const void*>(twice) : single;

@@ -138,7 +138,7 @@ double processor_time() {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-Steps::Steps(Clock clock) : clock_(clock) { fill_infos(InfoInputs(StepSettings{}, {0, -9.81, 0}, substep, substep), infos_); }
+Steps::Steps(Clock clock) : clock_(clock) { fill_infos(InfoInputs(StepSettings{}, {0, -9.81, 0}, substep, substep, substep), infos_); }
 
 void Steps::step(SceneKind kind, Design& design, StageTimes* times) const {
   const FlushSubnormals flush;

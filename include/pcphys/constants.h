@@ -39,6 +39,8 @@ inline constexpr double moment_tolerance = 1e-6;
 /// go of; the relax pass takes out the velocity. Stiffer than that at rest, and piles bounce on their own
 /// (docs/impulses.md).
 inline constexpr double soft_frequency_times_h = 1.5, soft_damping_ratio = 1.8;
+/// Where sub-steps get shorter, soft rows get as much stiffer in so long [s] (docs/impulses.md).
+inline constexpr double stiffening_time = 1;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a
 /// sub-step: what lies alone on what stands does not sink.
 inline constexpr double contact_preload = 1.75;
@@ -73,6 +75,9 @@ inline constexpr std::uint32_t most_island_rounds = 1000;
 /// Loops may ask for as many as this, beyond StepSettings::refinement: a pin that closes a loop near its dead centre throws
 /// what the sub-step does not resolve.
 inline constexpr std::uint32_t most_loop_substeps = 512;
+/// A pin that closes a loop, or is a row for another reason, pulls no harder than would swing one of its bodies with this (h omega)^2:
+/// twice as much makes energy (docs/joint-trees.md).
+inline constexpr double largest_swing = 0.5;
 /// Of what a sub-step is too long to resolve in the turning of a tree's bodies, this share is taken out
 /// (docs/joints.md).
 inline constexpr double tree_damping = 0.4;

@@ -39,6 +39,15 @@ PC_FN Real pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lowe
   precise Real result = impulse * sign; return result;
 }
 
+// A force F that pulls a body at its arm swings it with omega^2 = F times this: the arm over the moment across it (both directions' sum).
+PC_FN Real pc_swing_ratio(BodyState b, Vec3 arm) {
+  precise Real trace = b.inertia.xx + b.inertia.yy + b.inertia.zz;
+  precise Real square = pc_dot(arm, arm);
+  precise Real both = trace * square - pc_dot(arm, pc_sym_mul(b.inertia, arm));
+  precise Real ratio = both * b.response * pc_inverse_or_zero(pc_sqrt(square));
+  return ratio;
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(joint_ends, m, 0u); Index ib = PC_ENDS(joint_ends, m, 1u); Index joint = PC_ORDER(joint_order, m);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
@@ -59,7 +68,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(joint_rows, m, JOINT_ARM_A, arm_a.x); PC_ST(joint_rows, m, JOINT_ARM_A + 1u, arm_a.y); PC_ST(joint_rows, m, JOINT_ARM_A + 2u, arm_a.z);
   PC_ST(joint_rows, m, JOINT_ARM_B, arm_b.x); PC_ST(joint_rows, m, JOINT_ARM_B + 1u, arm_b.y); PC_ST(joint_rows, m, JOINT_ARM_B + 2u, arm_b.z);
   PC_ST(joint_rows, m, JOINT_GAP, gap.x); PC_ST(joint_rows, m, JOINT_GAP + 1u, gap.y); PC_ST(joint_rows, m, JOINT_GAP + 2u, gap.z);
-  precise Real most = anchor_b.s * PC_INFO(h); PC_ST(joint_rows, m, JOINT_MOST, most);
+  // a pull that swings a body too fast for the sub-step makes energy: a pin gives way to it
+  Real ratio = pc_max(pc_swing_ratio(a, arm_a), pc_swing_ratio(b, arm_b));
+  precise Real most = anchor_b.s * PC_INFO(h); precise Real swings = PC_INFO(inverse_h) * PC_INFO(largest_swing) * pc_inverse_or_zero(ratio);
+  Mask given = most > PC_REAL(0.0); Mask bounded = swings > PC_REAL(0.0);
+  PC_ST(joint_rows, m, JOINT_MOST, pc_select(pc_and(given, bounded), pc_min(most, swings), pc_max(most, swings)));
   PC_ST(joint_rows, m, JOINT_K, k.xx); PC_ST(joint_rows, m, JOINT_K + 1u, k.xy); PC_ST(joint_rows, m, JOINT_K + 2u, k.xz);
   PC_ST(joint_rows, m, JOINT_K + 3u, k.yy); PC_ST(joint_rows, m, JOINT_K + 4u, k.yz); PC_ST(joint_rows, m, JOINT_K + 5u, k.zz);
 

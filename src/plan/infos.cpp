@@ -21,9 +21,13 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
 
 }  // namespace
 
+double soft_substep_length(double before, double h, double dt) {
+  return std::max(h, before / (1 + dt / constants::stiffening_time));
+}
+
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
   const double h = from.h / double(1u << octave);
-  const Soft rows = soft(constants::soft_frequency_times_h, constants::soft_damping_ratio, h);
+  const Soft rows = soft(constants::soft_frequency_times_h * (from.h / from.soft_substep), constants::soft_damping_ratio, h);
 
   InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
   biased = {};
@@ -46,6 +50,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.push_speed = Scalar(from.push_speed);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   biased.loop_give = Scalar(constants::loop_give);
+  biased.largest_swing = Scalar(constants::largest_swing);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.rounds = constants::rounds;
   biased.net_made = Scalar(constants::net_made);

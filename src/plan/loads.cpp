@@ -20,9 +20,8 @@ void Loads::find(const WorldState& state, const TreeNodes& trees) {
   }
 }
 
-void Loads::want(const WorldState& state, const StepSettings& settings, double dt, std::uint8_t highest_octave,
-                 std::vector<Wanted>& wanted) const {
-  const double h = dt / settings.substeps, frequency = constants::soft_frequency_times_h / h;
+void Loads::want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) const {
+  const double frequency = constants::soft_frequency_times_h / h;
   for (const Uneven& u : uneven_) {
     // acceleration that the load would give to what carries it [m/s^2], and how far it is then pressed in [m]
     const double load = -u.ratio * dot(state.tables.get3(Buffer::contact, u.contact, 0), state.gravity);

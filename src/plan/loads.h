@@ -20,8 +20,7 @@ class Loads {
   void find(const WorldState& state, const TreeNodes& trees);
   void forget_contacts() { uneven_.clear(); }
   /// Adds what a step of `dt` needs, up to `highest_octave`, for the weights that could rest on lighter bodies.
-  void want(const WorldState& state, const StepSettings& settings, double dt, std::uint8_t highest_octave,
-            std::vector<Wanted>& wanted) const;
+  void want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) const;
 
  private:
   struct Uneven {

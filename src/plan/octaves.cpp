@@ -35,8 +35,9 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   const std::uint8_t highest = settings.integrator == Integrator::seed ? 0 : highest_octave(settings);
   const std::uint8_t beyond = highest > 0 ? std::uint8_t(highest + 1) : highest;
   const double h = substep_length(dt, settings.substeps);
-  loads_.want(state, settings, dt, beyond, wanted_);
-  if (faces) columns_.want(state, trees, h, beyond, islands_, wanted_);
+  const double soft = soft_substep_length(state.soft_substep, h, dt);
+  loads_.want(state, soft, beyond, wanted_);
+  if (faces) columns_.want(state, trees, soft, beyond, islands_, wanted_);
   want_for_spins(state, forest, h, beyond, wanted_);
   pulls_.want(state, forest, h, beyond, wanted_);
   for (Wanted& w : wanted_) {
@@ -94,20 +95,12 @@ void Octaves::count_limited() {
 }
 
 bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
-  const std::size_t before = again_.size();
-  const auto ask_again = [&](std::uint8_t least) {
-    for (const Wanted& w : wanted_) {
-      const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]);
-      if (w.octave > made) again_.push_back({w.body, std::max(w.octave, least)});
-    }
-    wanted_.clear();
-  };
   wanted_.clear();
   want_for_spins(state, forest, h_, highest_, wanted_);
-  ask_again(0);
-  // a tension that sub-steps were too few for says nothing of how many it takes
   loops_.want(state, h_, h_, highest_of_loops_, wanted_);
-  ask_again(highest_of_loops_);
+  const std::size_t before = again_.size();
+  for (const Wanted& w : wanted_)
+    if (const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]); w.octave > made) again_.push_back(w);
   return again_.size() > before;
 }
 

@@ -15,7 +15,7 @@ class TreeNodes {
   /// answer contacts alone, and their joints follow.
   static constexpr std::uint32_t largest_tree = 64;
   /// For joints that close loops trees are left out where bodies times such joints are more than this, nets: every one of them waits for all others.
-  static constexpr std::size_t most_loop_visits = 2048;
+  static constexpr std::size_t most_loop_visits = 8192;
 
   /// `masses` by body row, 0 for bodies that nothing moves. `closings`, by tree: how many joints close a loop on it. Without
   /// them, as contacts see the forest. Rows are the same in both.

@@ -103,8 +103,8 @@ struct Stepper::Inside {
   /// Compiles it where it is to run, while it can still be refused.
   Status check_kernel(const WorldState& s, const OwnKernel& kernel);
 
-  const void* fill(const WorldState& s, double h) {
-    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, s.kinematic > 0),
+  const void* fill(const WorldState& s, double h, double dt) {
+    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, soft_substep_length(s.soft_substep, h, dt), s.kinematic > 0),
                       octaves_of(octaves.used()));
   }
 
@@ -304,7 +304,7 @@ struct Stepper::Inside {
     ran = true;
     runner.watch(watched);
     looks.look_with(detection());
-    if (ok = runner.run(s, schedule, fill(s, h), report, &looks); !ok) return undo(s, ok);
+    if (ok = runner.run(s, schedule, fill(s, h, dt), report, &looks); !ok) return undo(s, ok);
     if (wanted.islands && !schedule.islands.take())
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "
@@ -323,6 +323,7 @@ struct Stepper::Inside {
     strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
     s.last_substep = h;
+    s.soft_substep = soft_substep_length(s.soft_substep, h, dt);
     if (s.settling > 0) s.settling--;
     tell(wanted, found);
     return {};

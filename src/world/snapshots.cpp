@@ -181,6 +181,7 @@ std::vector<std::byte> World::snapshot() const {
   w.put(magic);
   w.put(object_hash(s));
   w.put(s.last_substep);
+  w.put(s.soft_substep);
   w.put(s.gravity);
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) {
     w.put(s.bodies[row].index);
@@ -217,14 +218,14 @@ Status World::restore(std::span<const std::byte> snapshot) {
   Reader r(snapshot);
   char head[8];
   std::uint64_t objects = 0;
-  double substep = 0;
+  double substep = 0, soft_substep = 0;
   Vec3 gravity;
   if (!r.get(head) || std::memcmp(head, magic, sizeof magic) != 0 || !r.get(objects)) return cut;
   if (objects != object_hash(s))
     return Error{ErrorCode::bad_snapshot,
                  "The snapshot is of a world with other objects, properties or another precision; restore it into one with the "
                  "same bodies, joints, properties and tables."};
-  if (!r.get(substep) || !r.get(gravity)) return cut;
+  if (!r.get(substep) || !r.get(soft_substep) || !r.get(gravity)) return cut;
 
   // the whole length is checked before anything is written, so that a cut snapshot changes nothing
   const StateRows body_rows(s, Table::body), joint_rows(s, Table::joint), contact_rows(s, Table::contact);
@@ -233,7 +234,7 @@ Status World::restore(std::span<const std::byte> snapshot) {
   std::size_t own_part = 0;
   for (const OwnTable& t : s.own.tables)
     if (t.used) own_part += (s.tables.rows(t.table) - 1) * StateRows(s, t.table).bytes();
-  const std::size_t offset = sizeof magic + 8 + 8 + sizeof(Vec3) + fixed_part;
+  const std::size_t offset = sizeof magic + 8 + 2 * 8 + sizeof(Vec3) + fixed_part;
   std::uint32_t contacts = 0;
   if (snapshot.size() < offset + 4) return cut;
   std::memcpy(&contacts, snapshot.data() + offset, 4);
@@ -242,6 +243,7 @@ Status World::restore(std::span<const std::byte> snapshot) {
     return cut;
 
   s.last_substep = substep;
+  s.soft_substep = soft_substep;
   s.settling = constants::rounds;
   s.gravity = gravity;
   std::uint32_t index = 0;

@@ -82,6 +82,7 @@ struct WorldState {
   Tables tables;
   Vec3 gravity;
   double last_substep = 0;  // h of the last step [s]; 0 before the first
+  double soft_substep = 0;  // that soft rows were made for in it, at least as long [s] (plan/infos.h)
 
   IdPool body_ids, joint_ids, force_ids;
   std::vector<BodyRecord> bodies;   // by row
