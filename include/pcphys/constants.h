@@ -75,9 +75,6 @@ inline constexpr std::uint32_t most_island_rounds = 1000;
 /// Loops may ask for as many as this, beyond StepSettings::refinement: a pin that closes a loop near its dead centre throws
 /// what the sub-step does not resolve.
 inline constexpr std::uint32_t most_loop_substeps = 512;
-/// A pin that closes a loop, or is a row for another reason, pulls no harder than would swing one of its bodies with this (h omega)^2:
-/// twice as much makes energy (docs/joint-trees.md).
-inline constexpr double largest_swing = 0.5;
 /// Of what a sub-step is too long to resolve in the turning of a tree's bodies, this share is taken out
 /// (docs/joints.md).
 inline constexpr double tree_damping = 0.4;

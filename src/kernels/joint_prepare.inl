@@ -68,9 +68,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_ST(joint_rows, m, JOINT_ARM_A, arm_a.x); PC_ST(joint_rows, m, JOINT_ARM_A + 1u, arm_a.y); PC_ST(joint_rows, m, JOINT_ARM_A + 2u, arm_a.z);
   PC_ST(joint_rows, m, JOINT_ARM_B, arm_b.x); PC_ST(joint_rows, m, JOINT_ARM_B + 1u, arm_b.y); PC_ST(joint_rows, m, JOINT_ARM_B + 2u, arm_b.z);
   PC_ST(joint_rows, m, JOINT_GAP, gap.x); PC_ST(joint_rows, m, JOINT_GAP + 1u, gap.y); PC_ST(joint_rows, m, JOINT_GAP + 2u, gap.z);
-  // a pull that swings a body too fast for the sub-step makes energy: a pin gives way to it
+  // a pull that swings a body with h omega above 1 makes energy: the pin gives way to it
   Real ratio = pc_max(pc_swing_ratio(a, arm_a), pc_swing_ratio(b, arm_b));
-  precise Real most = anchor_b.s * PC_INFO(h); precise Real swings = PC_INFO(inverse_h) * PC_INFO(largest_swing) * pc_inverse_or_zero(ratio);
+  precise Real most = anchor_b.s * PC_INFO(h);
+  precise Real swings = PC_INFO(inverse_h) * pc_inverse_or_zero(ratio);
   Mask given = most > PC_REAL(0.0); Mask bounded = swings > PC_REAL(0.0);
   PC_ST(joint_rows, m, JOINT_MOST, pc_select(pc_and(given, bounded), pc_min(most, swings), pc_max(most, swings)));
   PC_ST(joint_rows, m, JOINT_K, k.xx); PC_ST(joint_rows, m, JOINT_K + 1u, k.xy); PC_ST(joint_rows, m, JOINT_K + 2u, k.xz);

@@ -50,7 +50,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.push_speed = Scalar(from.push_speed);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   biased.loop_give = Scalar(constants::loop_give);
-  biased.largest_swing = Scalar(constants::largest_swing);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.rounds = constants::rounds;
   biased.net_made = Scalar(constants::net_made);
