@@ -160,10 +160,10 @@ template <class Scalar> struct Detector::Meeting {
     return closing <= 2 * length(s.gravity) * h;
   }
 
-  /// Shapes may be as near by their supports as they are at no point of the manifold: then the nearest points are those
-  /// that act.
-  void find_together(const Manifold<Scalar>& m) {
-    const double most = std::max(0.0, double(least_separation(m))) + seam_share * thick;
+  /// The points within this of the nearest are those that act. (Shapes may be as near by their supports as they are at no point of the
+  /// manifold.)
+  void find_together(const Manifold<Scalar>& m, double within) {
+    const double most = std::max(0.0, double(least_separation(m))) + within;
     c.together = 0;
     for (std::uint32_t i = 0; i < m.count; i++)
       if (double(m.points[i].separation) <= most) c.together |= std::uint8_t(1u << i);
@@ -204,7 +204,7 @@ template <class Scalar> struct Detector::Meeting {
       if (!meets && c.gap > sent) return stand_aside();
       if (meets) m = met;  // else the rows stop what others send them beyond the gap of now
     }
-    find_together(m);
+    find_together(m, c.touches ? seam_share * thick : near);
     to_light_side(m, share);
     if (!c.touches && meets) back_to_start(ta, tb, apart, share, t, m);
     c.struck = !c.jointed && (!c.touches || quick);
@@ -224,7 +224,7 @@ template <class Scalar> struct Detector::Meeting {
     Manifold<Scalar> m;
     const double t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
     if (t < 0) return false;
-    find_together(m);
+    find_together(m, near);
     to_light_side(m, share);
     back_to_start(ta, tb, apart, share, t, m);
     c.struck = true;
