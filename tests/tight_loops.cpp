@@ -54,23 +54,26 @@ void add_net(World& world, int wide, double radius) {
 
 double energy(const World& world) { return world.kinetic_energy() + world.potential_energy(); }
 
-/// Most that energy was above that of the start, over how far the potential energy fell; and the widest gap [m].
+/// Most that energy was above that of the start, over how far the potential energy fell; the widest gap [m]; joints as rows.
 struct Fall {
   double gain, gap;
+  std::uint32_t as_rows;
 };
 Fall fall(World& world, double dt, double seconds) {
   Stepper stepper;
   const double start = energy(world);
   double most = 0, lowest = 0, gap = 0;
+  std::uint32_t as_rows = 0;
   for (int i = 0; i < seconds / dt; i++) {
     const StepReport& report = stepper.step(world, dt);
     REQUIRE(report);
     CHECK(report.frozen.empty());
+    as_rows = report.joints_as_rows;
     most = std::max(most, energy(world) - start);
     lowest = std::min(lowest, world.potential_energy());
     for (const JointId joint : world.joints()) gap = std::max(gap, *world.joint_separation(joint));
   }
-  return {most / -lowest, gap};
+  return {most / -lowest, gap, as_rows};
 }
 
 }  // namespace
@@ -87,6 +90,16 @@ TEST_CASE("tight loops: bridges built straight on two pins make no energy") {
       CHECK(f.gain <= 1e-3);
       CHECK(f.gap <= 0.01);
     }
+}
+
+TEST_CASE("tight loops: a net too large for its trees makes little energy") {
+  World world;
+  add_net(world, 14, 0.05);
+  const Fall f = fall(world, frame, 2);
+  CHECK(f.as_rows > 0);
+  MESSAGE("a net of 14 x 14: energy above the start " << f.gain << " of the fall, gap " << f.gap);
+  CHECK(f.gain <= 0.05);
+  CHECK(f.gap <= 0.05);
 }
 
 TEST_CASE("tight loops: nets of pins that hang by two corners make no energy") {

@@ -27,7 +27,7 @@ void Detector::list_columns(const WorldState& s, const Options& options) {
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
-    margins_[i] = options.contact_margin > 0 ? options.contact_margin : constants::contact_share * (proxy.inner > 0 ? proxy.inner : proxy.radius);
+    margins_[i] = options.contact_margin > 0 ? options.contact_margin : constants::contact_share * proxy.radius;
     const bool box = proxy.kind == ShapeKind::box, ball = proxy.kind == ShapeKind::sphere;
     const Vec3 size = s.shapes[i].def.size;
     const Vec3 half = box ? size : Vec3{0, ball ? 0 : size.y, 0};  // a cylinder's box is within its capsule's

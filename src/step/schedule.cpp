@@ -155,8 +155,7 @@ void TreeSlots::build(const WorldState& state, const Nets& nets) {
   find_drives(state, links, nets);
   answered_.clear();
   for (const std::uint32_t row : forest_.closing())
-    if (!parallel_[row] && (loop_nodes_.node(links[row - 1].a) > 0 || loop_nodes_.node(links[row - 1].b) > 0))
-      answered_.push_back(row);
+    if (!parallel_[row]) answered_.push_back(row);
   width_ = 0;
 }
 

@@ -103,7 +103,7 @@ std::uint64_t hash_world(const WorldState& s) {
 
 // ---- snapshots -----------------------------------------------------------------------------------------
 
-constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '5'};
+constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '6'};
 
 class Writer {
  public:
