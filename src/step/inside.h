@@ -103,9 +103,14 @@ struct Stepper::Inside {
   /// Compiles it where it is to run, while it can still be refused.
   Status check_kernel(const WorldState& s, const OwnKernel& kernel);
 
+  double softened(const WorldState& s, double dt) const {
+    return soft_substep_length(s.soft_substep, substep_length(dt, settings.substeps), dt);
+  }
+  void soften(WorldState& s, double dt) const { s.soft_substep = softened(s, dt); }
+
   const void* fill(const WorldState& s, double h, double dt) {
-    return infos.fill(s.tables.precision(), InfoInputs(settings, s.gravity, h, s.last_substep, soft_substep_length(s.soft_substep, h, dt), s.kinematic > 0),
-                      octaves_of(octaves.used()));
+    const InfoInputs from(settings, s.gravity, h, s.last_substep, softened(s, dt), s.kinematic > 0);
+    return infos.fill(s.tables.precision(), from, octaves_of(octaves.used()));
   }
 
   Status prepare(Precision precision) {
@@ -133,6 +138,7 @@ struct Stepper::Inside {
     if (settings.sleep && idle.holds(s) && own.ordered().empty()) {
       plan = idle.plan;
       idle.report_to(report, s);
+      soften(s, dt);  // as beside what does not sleep
       return {};
     }
     const FlushSubnormals flush;
@@ -323,7 +329,7 @@ struct Stepper::Inside {
     strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
     s.last_substep = h;
-    s.soft_substep = soft_substep_length(s.soft_substep, h, dt);
+    soften(s, dt);
     if (s.settling > 0) s.settling--;
     tell(wanted, found);
     return {};
