@@ -51,3 +51,34 @@ TEST_CASE("changing steps: a pyramid stands in steps of 1/60 and 1/30 s by turns
     CHECK(at_random <= 0.04);
   }
 }
+
+TEST_CASE("changing steps: what wakes has the bits that it has beside what never slept") {
+  const auto stack = [](bool beside) {
+    World world({.precision = Precision::f64});
+    (void)must(world.create_body(fixed_box({0, -0.5, 0}, {5, 0.5, 5})));
+    std::vector<BodyId> boxes;
+    for (int i = 0; i < 5; i++) {
+      BodyDef def = fixed_box({0, 0.5 + i, 0}, {0.5, 0.5, 0.5});
+      def.kind = BodyKind::dynamic;
+      boxes.push_back(must(world.create_body(def)));
+    }
+    if (beside) {
+      BodyDef def = ball({100, 50, 0});
+      def.velocity = {1, 0, 0};
+      (void)must(world.create_body(def));
+    }
+    StepSettings settings;
+    settings.sleep = true;
+    Stepper stepper(settings);
+    run(world, stepper, 60, 1 / 30.0);
+    REQUIRE(*world.is_asleep(boxes[0]));
+    run(world, stepper, 30, 1 / 120.0);
+    must(world.wake(boxes[0]));
+    run(world, stepper, 30, 1 / 120.0);
+    return world.pose(boxes[4])->position;
+  };
+  const Vec3 alone = stack(false), beside = stack(true);
+  CHECK(alone.x == beside.x);
+  CHECK(alone.y == beside.y);
+  CHECK(alone.z == beside.z);
+}

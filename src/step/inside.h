@@ -106,7 +106,11 @@ struct Stepper::Inside {
   double softened(const WorldState& s, double dt) const {
     return soft_substep_length(s.soft_substep, substep_length(dt, settings.substeps), dt);
   }
-  void soften(WorldState& s, double dt) const { s.soft_substep = softened(s, dt); }
+  /// What the next step is told of this one.
+  void follow_step(WorldState& s, double dt) const {
+    s.soft_substep = softened(s, dt);
+    s.last_substep = substep_length(dt, settings.substeps);
+  }
 
   const void* fill(const WorldState& s, double h, double dt) {
     const InfoInputs from(settings, s.gravity, h, s.last_substep, softened(s, dt), s.kinematic > 0);
@@ -138,7 +142,7 @@ struct Stepper::Inside {
     if (settings.sleep && idle.holds(s) && own.ordered().empty()) {
       plan = idle.plan;
       idle.report_to(report, s);
-      soften(s, dt);  // as beside what does not sleep
+      follow_step(s, dt);  // as beside what does not sleep
       return {};
     }
     const FlushSubnormals flush;
@@ -328,8 +332,7 @@ struct Stepper::Inside {
     const AlignedBytes* before = runner.before(Buffer::pose);
     strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
-    s.last_substep = h;
-    soften(s, dt);
+    follow_step(s, dt);
     if (s.settling > 0) s.settling--;
     tell(wanted, found);
     return {};
