@@ -77,9 +77,10 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
 }
 
 void ColouredSlots::follow(const WorldState& state, const TreeNodes& trees) {
-  if (serial_ == state.serial && structure_ == state.structure_version) return;
+  if (serial_ == state.serial && structure_ == state.structure_version && rest_ == state.rest_version) return;
   serial_ = state.serial;
   structure_ = state.structure_version;
+  rest_ = state.rest_version;  // joints of what sleeps are in no tree
   bodies_.resize(state.bodies.size());
   for (std::uint32_t row = 0; row < bodies_.size(); row++)
     bodies_[row] = {state.bodies[row].index, state.responds(row) ? trees.unit(row) : Colouring::fixed_unit};

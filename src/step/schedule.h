@@ -79,7 +79,7 @@ class ColouredSlots {
   void follow(const WorldState& state, const TreeNodes& trees);
 
   std::vector<Body> bodies_;                  // by row
-  std::uint64_t serial_ = 0, structure_ = 0;  // of the world that they are of
+  std::uint64_t serial_ = 0, structure_ = 0, rest_ = 0;  // of the world that they are of
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
   std::vector<std::uint16_t> kinds_;
   std::vector<ContactWork> works_;  // by row, of contacts where there are trees
