@@ -8,4 +8,10 @@ PC_FN BodyState pc_body_state(PC_IO Index i) {
   b.inertia.xx = i0.v.x; b.inertia.xy = i0.v.y; b.inertia.xz = i0.v.z; b.inertia.yy = i0.s; b.inertia.yz = i1.v.x; b.inertia.zz = i1.v.y;
   b.response = i1.v.z; b.unlike = i1.s; return b;
 }
+// What answers impulses at an arm by turning: the sum over three axes.
+PC_FN Real pc_turning_answer(BodyState b, Vec3 arm) {
+  precise Real trace = b.inertia.xx + b.inertia.yy + b.inertia.zz;
+  precise Real answer = (trace * pc_dot(arm, arm) - pc_dot(arm, pc_sym_mul(b.inertia, arm))) * b.response;
+  return answer;
+}
 PC_FN Vec3 pc_angular_velocity(BodyState b) { return pc_sym_mul(b.inertia, b.l); }

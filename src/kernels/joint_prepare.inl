@@ -39,12 +39,9 @@ PC_FN Real pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lowe
   precise Real result = impulse * sign; return result;
 }
 
-// A force F that pulls a body at its arm swings it with omega^2 = F times this: the arm over the moment across it (both directions' sum).
+// A force F that pulls a body at its arm swings it with omega^2 = F times this (plan/loops.cpp has the same).
 PC_FN Real pc_swing_ratio(BodyState b, Vec3 arm) {
-  precise Real trace = b.inertia.xx + b.inertia.yy + b.inertia.zz;
-  precise Real square = pc_dot(arm, arm);
-  precise Real both = trace * square - pc_dot(arm, pc_sym_mul(b.inertia, arm));
-  precise Real ratio = both * b.response * pc_inverse_or_zero(pc_sqrt(square));
+  precise Real ratio = pc_turning_answer(b, arm) * pc_inverse_or_zero(pc_length(arm));
   return ratio;
 }
 

@@ -53,13 +53,13 @@ PC_FN PinArms pc_common_arms(Vec3 frozen_a, Vec3 frozen_b, Vec3 apart) {
   Vec3 moved = pc_select3(way < reach, moved_all, pc_zero3());
   PinArms arms; arms.a = pc_madd(frozen_a, moved, PC_REAL(0.5)); arms.b = pc_madd(frozen_b, moved, PC_REAL(-0.5)); return arms;
 }
-// What lasts of the last sub-step's impulses: of the pin, and of the angle rows as a couple.
-struct JointImpulse { Vec3 pin; Vec3 couple; };
+// What lasts of the angle rows, as a couple.
 PC_FN Vec3 pc_row_couple(PC_IO Slot m, uint row, Real remembered) {
   precise Real impulse = remembered * PC_LD(joint_rows, m, JOINT_SIGN + row);
   return pc_scale(pc_ld3_joint(PC_PASS m, JOINT_AXIS + row * 3u), impulse);
 }
-PC_FN JointImpulse pc_joint_warm(PC_IO Slot m, Quad pin, Quad angle) {
+PC_FN Vec3 pc_lasting_couple(PC_IO Slot m, Quad angle) {
   Vec3 c0 = pc_row_couple(PC_PASS m, 0u, angle.v.x); Vec3 c1 = pc_row_couple(PC_PASS m, 1u, angle.v.y); Vec3 c2 = pc_row_couple(PC_PASS m, 2u, angle.v.z);
-  precise Vec3 couple = c0 + c1 + c2; JointImpulse j; j.pin = pin.v; j.couple = couple; return j;
+  precise Vec3 couple = c0 + c1 + c2;
+  return couple;
 }

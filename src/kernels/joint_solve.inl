@@ -39,10 +39,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 answer = pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted);
   precise Real minus_scale = -PC_INFO(soft_mass_scale);
   precise Vec3 change = answer * minus_scale - pin.v * PC_INFO(soft_impulse_scale);
+  change = pc_within_most(PC_PASS m, pin.v, change);
 #ifdef PC_DRIVES
   change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, pc_sub(vb, va), pin.v), change);
 #endif
-  change = pc_within_most(PC_PASS m, pin.v, change);
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
   pc_joint_apply(PC_PASS ia, ib, a, b, arm_a, arm_b, change, couple);

@@ -21,8 +21,8 @@ PC_FN Real pc_answer_along(PC_IO Slot m, uint i, Sym3 answer) {
 
 // Of a bare body: the sum of its answers at the arm, along three axes.
 PC_FN Real pc_bare_answer(BodyState b, Vec3 arm) {
-  precise Real trace = b.inertia.xx + b.inertia.yy + b.inertia.zz;
-  precise Real sum = b.inverse_mass * PC_REAL(3.0) + (trace * pc_dot(arm, arm) - pc_dot(arm, pc_sym_mul(b.inertia, arm))) * b.response; return sum;
+  precise Real sum = b.inverse_mass * PC_REAL(3.0) + pc_turning_answer(b, arm);
+  return sum;
 }
 PC_FN Six pc_across_at(PC_IO Way w, Slot m, Vec3 arm, Six f) {
   Six x = pc_across(PC_PASS w, m, f); precise Vec3 l = x.l + pc_cross(x.a, arm); return pc_six(l, x.a);

@@ -53,11 +53,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Vec3 rate = pc_mean_velocity(PC_PASS b, vb, wb, arm_b, b.l) - pc_mean_velocity(PC_PASS a, va, wa, arm_a, a.l) + pc_mat_mul(move, couple);
   precise Vec3 wanted = rate + pc_pin_bias(PC_PASS pc_ld3_joint(PC_PASS m, JOINT_GAP)) + pin.v * PC_LD(joint_rows, m, JOINT_GIVE);
   Vec3 change = pc_negate(pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted));
+  change = pc_within_most(PC_PASS m, pin.v, change);
 #ifdef PC_DRIVES
   precise Vec3 tangent = (vb + pc_cross(wb, arm_b)) - (va + pc_cross(wa, arm_a));
   change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, tangent, pin.v), change);
 #endif
-  change = pc_within_most(PC_PASS m, pin.v, change);
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
 

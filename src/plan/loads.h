@@ -19,7 +19,7 @@ class Loads {
   /// Follows a change of contacts: finds those in which a free body could carry one much heavier than itself.
   void find(const WorldState& state, const TreeNodes& trees);
   void forget_contacts() { uneven_.clear(); }
-  /// Adds what a step of `dt` needs, up to `highest_octave`, for the weights that could rest on lighter bodies.
+  /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could rest on lighter bodies.
   void want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) const;
 
  private:

@@ -10,26 +10,26 @@ namespace pcphys {
 
 namespace {
 
-/// Of a body that a force pulls at this arm: arm over the least moment about an axis across it. Moments are principal, the arm in the body.
-double swing_ratio(Vec3 moments, Vec3 arm) {
+/// Omega^2 of a body that a force pulls at this arm, over the force, as pc_swing_ratio (joint_prepare.inl): what answers couples across the
+/// arm, both directions' sum, times the arm. Inverse moments are principal, the arm in the body.
+double swing_ratio(Vec3 inverse_moments, Vec3 arm) {
   const double r2 = dot(arm, arm);
   if (r2 == 0) return 0;
-  const double along = (moments.x * arm.x * arm.x + moments.y * arm.y * arm.y + moments.z * arm.z * arm.z) / r2;
-  const double across = moments.x + moments.y + moments.z - along - std::max({moments.x, moments.y, moments.z});
-  return std::sqrt(r2) / std::max(across, std::min({moments.x, moments.y, moments.z}));
+  const Vec3 across{r2 - arm.x * arm.x, r2 - arm.y * arm.y, r2 - arm.z * arm.z};
+  return dot(inverse_moments, across) / std::sqrt(r2);
 }
 
 }  // namespace
 
-void Loops::find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing) {
+void Loops::find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling) {
   loops_.clear();
-  for (const std::uint32_t row : closing) {
+  for (const std::uint32_t row : pulling) {
     const JointRecord& joint = state.joints[row];
     const JointDef& def = joints.def(state, row);
     double ratio = 0;
     for (const auto& [body, arm] : {std::pair(joint.body_a, def.frame_a.position), std::pair(joint.body_b, def.frame_b.position)})
       if (const std::uint32_t at = state.body_ids.row(body); state.responds(at))
-        ratio = std::max(ratio, swing_ratio(state.tables.get3(Buffer::mass, at, 0), arm));
+        ratio = std::max(ratio, swing_ratio(state.tables.get3(Buffer::mass, at, 4), arm));
     loops_.push_back(
         {row, state.body_ids.row(state.responds(state.body_ids.row(joint.body_a)) ? joint.body_a : joint.body_b), ratio});
   }

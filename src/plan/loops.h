@@ -1,5 +1,5 @@
-// Sub-steps for loops under tension: a joint that closes one needs sub-steps that resolve how fast its bodies swing in it
-// (docs/joint-trees.md). They are chosen by the tension that a step left.
+// Sub-steps for what pulls: a joint that stands in no tree (it closes a loop, or gives way) and a spring between two points need sub-steps
+// that resolve how fast their bodies swing in them (docs/joint-trees.md). They are chosen by the tension that a step left.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,15 +14,15 @@ namespace pcphys {
 
 class Loops {
  public:
-  /// Follows a change of objects. `closing`: rows of the joints that close loops and that trees answer.
-  void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> closing);
+  /// Follows a change of objects. `pulling`: rows of the joints that stand in no tree, and of springs.
+  void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling);
   /// Adds what sub-steps of `h` need, up to `highest` octaves, for the tension that impulses of sub-steps of `impulse_h` were of.
   void want(const WorldState& state, double impulse_h, double h, std::uint8_t highest, std::vector<Wanted>& wanted) const;
 
  private:
   struct Loop {
     std::uint32_t joint, body;
-    double ratio;        // of the square of the frequency at which its lighter body swings, and the force [1/(kg m)]
+    double ratio;  // of the square of the frequency at which its lighter body swings, and the force [1/(kg m)]
   };
 
   std::vector<Loop> loops_;

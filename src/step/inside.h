@@ -112,7 +112,8 @@ struct Stepper::Inside {
     s.last_substep = substep_length(dt, settings.substeps);
   }
 
-  const void* fill(const WorldState& s, double h, double dt) {
+  const void* fill(const WorldState& s, double dt) {
+    const double h = substep_length(dt, settings.substeps);
     const InfoInputs from(settings, s.gravity, h, s.last_substep, softened(s, dt), s.kinematic > 0);
     return infos.fill(s.tables.precision(), from, octaves_of(octaves.used()));
   }
@@ -219,7 +220,7 @@ struct Stepper::Inside {
       schedule.trees.solved().write(s);
       write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
     }
-    octaves.update_structure(s, schedule.trees.solved(), schedule.trees.answered());
+    octaves.update_structure(s, schedule.trees.solved(), schedule.trees.closing());
     fourth.forget();
   }
 
@@ -314,7 +315,7 @@ struct Stepper::Inside {
     ran = true;
     runner.watch(watched);
     looks.look_with(detection());
-    if (ok = runner.run(s, schedule, fill(s, h, dt), report, &looks); !ok) return undo(s, ok);
+    if (ok = runner.run(s, schedule, fill(s, dt), report, &looks); !ok) return undo(s, ok);
     if (wanted.islands && !schedule.islands.take())
       return undo(s, Error{ErrorCode::device_error,
                            "The device found no end of the islands of this world; find them on the CPU "

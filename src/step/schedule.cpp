@@ -154,9 +154,6 @@ void TreeSlots::build(const WorldState& state, const Nets& nets) {
   alike_ = shapes_.most_alike();
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));
   find_drives(state, links, nets);
-  answered_.clear();
-  for (const std::uint32_t row : forest_.closing())
-    if (!parallel_[row]) answered_.push_back(row);
   width_ = 0;
 }
 

@@ -78,7 +78,7 @@ class ColouredSlots {
   /// What is read of bodies, when the world's objects have changed.
   void follow(const WorldState& state, const TreeNodes& trees);
 
-  std::vector<Body> bodies_;                  // by row
+  std::vector<Body> bodies_;                             // by row
   std::uint64_t serial_ = 0, structure_ = 0, rest_ = 0;  // of the world that they are of
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
   std::vector<std::uint16_t> kinds_;
@@ -112,8 +112,6 @@ class TreeSlots {
   std::span<const char> parallel() const { return parallel_; }
   /// Rows of the joints that stand in no tree, and of springs between two points that pull or damp; ascending.
   std::span<const std::uint32_t> closing() const { return closing_; }
-  /// Of them the joints that trees answer.
-  std::span<const std::uint32_t> answered() const { return answered_; }
   /// Whether some joint has a motor or a spring: of those in trees, and of the others.
   bool drives() const { return drives_; }
   bool closing_drives() const { return closing_drives_; }
@@ -134,7 +132,7 @@ class TreeSlots {
 
   TreeNodes nodes_, loop_nodes_;
   std::vector<char> parallel_;
-  std::vector<std::uint32_t> closing_, answered_;
+  std::vector<std::uint32_t> closing_;
   bool drives_ = false, closing_drives_ = false, bare_pivots_ = false;
   std::uint32_t free_springs_ = 0, alike_ = 0;
   std::vector<Pivot> pivots_;
