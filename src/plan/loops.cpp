@@ -21,9 +21,11 @@ double swing_ratio(Vec3 inverse_moments, Vec3 arm) {
 
 }  // namespace
 
-void Loops::find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling) {
+void Loops::find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling,
+                 std::span<const char> parallel) {
   loops_.clear();
   for (const std::uint32_t row : pulling) {
+    if (parallel[row]) continue;
     const JointRecord& joint = state.joints[row];
     const JointDef& def = joints.def(state, row);
     double ratio = 0;

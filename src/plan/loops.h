@@ -14,8 +14,9 @@ namespace pcphys {
 
 class Loops {
  public:
-  /// Follows a change of objects. `pulling`: rows of the joints that stand in no tree, and of springs.
-  void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling);
+  /// Follows a change of objects. `pulling`: rows of the joints that stand in no tree, and of springs. `parallel`: by row, whether another
+  /// joint holds the same two bodies already, so that this one lets nothing swing.
+  void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling, std::span<const char> parallel);
   /// Adds what sub-steps of `h` need, up to `highest` octaves, for the tension that impulses of sub-steps of `impulse_h` were of.
   void want(const WorldState& state, double impulse_h, double h, std::uint8_t highest, std::vector<Wanted>& wanted) const;
 

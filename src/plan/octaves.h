@@ -29,8 +29,9 @@ std::uint8_t highest_loop_octave(const StepSettings& settings);
 class Octaves {
  public:
   /// Follows a change of objects, as Loops::find.
-  void update_structure(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling) {
-    loops_.find(state, joints, pulling);
+  void update_structure(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling,
+                        std::span<const char> parallel) {
+    loops_.find(state, joints, pulling, parallel);
   }
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);

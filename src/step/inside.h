@@ -220,7 +220,7 @@ struct Stepper::Inside {
       schedule.trees.solved().write(s);
       write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
     }
-    octaves.update_structure(s, schedule.trees.solved(), schedule.trees.closing());
+    octaves.update_structure(s, schedule.trees.solved(), schedule.trees.closing(), schedule.trees.parallel());
     fourth.forget();
   }
 
