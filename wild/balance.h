@@ -15,7 +15,7 @@ class Balance {
   void changed(const Observation& before, const Observation& after);
   /// After a step of `dt` [s] in which drives put in at most `work` [J].
   void stepped(const Observation& seen, double work, double dt);
-  /// Undoing overlaps that the host made may add so much more [J].
+  /// Undoing overlaps and gaps that the host made may add so much more [J].
   void allow(double energy) { allowed_ += energy; }
 
   /// The largest rise beyond the lowest so far and what drives put in, as a share of the scale: the most kinetic and

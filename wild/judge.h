@@ -27,7 +27,8 @@ class Judge {
   void stepped(const Observation& before, const Observation& after, const StepFacts& facts);
   /// The deepest overlap at the end, as a share of the smaller of the two shapes.
   void ended(const Observation& seen, double overlap);
-  void allow_overlap(double energy) { balance_.allow(energy); }
+  /// What undoing that the host made shapes overlap, or a joint stand open, may add [J].
+  void allow(double energy) { balance_.allow(energy); }
 
   Verdict& verdict() { return verdict_; }
 

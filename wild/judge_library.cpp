@@ -86,7 +86,12 @@ class LibraryWatcher final : public Watcher {
     const Observation& after = eye_.look(player);
     judge.changed(before_, after);
     before_ = after;
-    if (const SetPose* moved = std::get_if<SetPose>(&call)) allow_overlaps(player, moved->body, true);
+    if (const SetPose* moved = std::get_if<SetPose>(&call)) {
+      allow_overlaps(player, moved->body, true);
+      for (const SeenJoint& joint : after.joints)
+        if (joint.a == moved->body || joint.b == moved->body) allow_gap(joint);
+    }
+    if (const MakeJoint* made = std::get_if<MakeJoint>(&call)) allow_gap(after.joints[std::size_t(made->joint)]);
     if (const MakeBody* made = std::get_if<MakeBody>(&call)) allow_overlaps(player, made->body, true);
     if (std::holds_alternative<Destroy>(call) || std::holds_alternative<SetFilter>(call) ||
         std::holds_alternative<SetCollide>(call))
@@ -139,7 +144,16 @@ class LibraryWatcher final : public Watcher {
   }
   void allow(const Player& player, const SeenBody& body, double deepest) {
     const double push = player.settings().push_speed;
-    judge.allow_overlap(body.mass.mass * (length(eye_.seen().gravity) * deepest + 0.5 * push * push));
+    judge.allow(body.mass.mass * (length(eye_.seen().gravity) * deepest + 0.5 * push * push));
+  }
+  /// Bodies of a joint that the host has opened may be lifted by its gap: it is closed by places alone.
+  void allow_gap(const SeenJoint& joint) {
+    if (!joint.there) return;
+    const Observation& seen = eye_.seen();
+    const SeenBody &a = seen.body(joint.a), &b = seen.body(joint.b);
+    double mass = 0;
+    for (const SeenBody* body : {&a, &b}) mass += body->kind == BodyKind::dynamic ? body->mass.mass : 0;
+    judge.allow(mass * length(seen.gravity) * gap(seen, joint));
   }
   /// Of the contacts of the last step.
   double deepest_share(const Player& player) const {

@@ -76,13 +76,15 @@ double spring_energy(const Observation& seen) {
   return sum;
 }
 
+double gap(const Observation& seen, const SeenJoint& joint) {
+  const Vec3 a = transform(seen.body(joint.a).pose, joint.def.frame_a.position);
+  return length(transform(seen.body(joint.b).pose, joint.def.frame_b.position) - a);
+}
+
 double widest_gap(const Observation& seen) {
   double widest = 0;
-  for (const SeenJoint& j : seen.joints) {
-    if (!j.there) continue;
-    const Vec3 a = transform(seen.body(j.a).pose, j.def.frame_a.position);
-    widest = std::max(widest, length(transform(seen.body(j.b).pose, j.def.frame_b.position) - a));
-  }
+  for (const SeenJoint& joint : seen.joints)
+    if (joint.there) widest = std::max(widest, gap(seen, joint));
   return widest;
 }
 

@@ -55,6 +55,8 @@ inline double energy(const Observation& seen) {
   return kinetic_energy(seen) + potential_energy(seen) + spring_energy(seen);
 }
 
+/// How far the two pins of a joint are apart [m].
+double gap(const Observation& seen, const SeenJoint& joint);
 /// The widest gap of a joint [m], and the most that one is beyond its limits [rad].
 double widest_gap(const Observation& seen);
 double largest_excess(const Observation& seen);

@@ -18,6 +18,8 @@ namespace {
 
 /// Overlaps at the start may grow by so much [m]: positions are floats.
 constexpr double no_overlap = 1e-6;
+/// Joints may be made open by so much more [m].
+constexpr double no_gap = 1e-4;
 constexpr int most_rounds = 4;
 
 /// Bodies that move and touch or hold each other in any step are one island; the fixed ones that an island touches are
@@ -66,6 +68,18 @@ class Islands : public Watcher {
   std::set<int> touched_;
 };
 
+/// How far the joints are open that calls make: without the steps before them bodies stand elsewhere, and to close a gap is work.
+class MadeOpen : public Watcher {
+ public:
+  void after_call(const Player& player, const Call& call, const Status&) override {
+    each_made(call, [&](Object object, int number) {
+      if (object != Object::joint) return;
+      if (const auto gap = player.world().joint_separation(player.joint(number))) most = std::max(most, *gap);
+    });
+  }
+  double most = 0;
+};
+
 class Shrinker {
  public:
   using Progress = std::function<bool(std::size_t, std::uint64_t)>;
@@ -77,6 +91,7 @@ class Shrinker {
     if (!breaks(best_)) return best_;
     take(without(best_, std::vector<bool>(best_.calls.size(), false)));
     overlap_ = deepest_overlap(best_);
+    gap_ = widest_gap(best_);
     fewer_steps();
     if (told_by_what_should_be()) {
       fewer_islands();
@@ -119,7 +134,7 @@ class Shrinker {
   bool take(Scene scene) {
     if (stopped_) return false;
     if (progress_ && !progress_(best_.calls.size(), count_steps(best_))) stopped_ = true;
-    if (stopped_ || !breaks(scene)) return false;
+    if (stopped_ || !breaks(scene) || widest_gap(scene) > gap_ + no_gap) return false;
     best_ = std::move(scene);
     return true;
   }
@@ -233,6 +248,13 @@ class Shrinker {
 
   bool overlaps_no_more(const Scene& scene) const { return deepest_overlap(scene) <= overlap_ + no_overlap; }
 
+  double widest_gap(const Scene& scene) const {
+    MadeOpen made;
+    Player player(scene, options_);
+    (void)player.play(&made);
+    return made.most;
+  }
+
   Scene with_usual_settings() const {
     Scene plain = best_;
     plain.settings = {};
@@ -295,7 +317,7 @@ class Shrinker {
   const PlayOptions& options_;
   Measure measure_;
   const Progress& progress_;
-  double overlap_ = 0;
+  double overlap_ = 0, gap_ = 0;
   std::uint64_t last_ = 0;  // step of the last scene judged, after which its measure was worst
   bool stopped_ = false;
 };

@@ -23,7 +23,7 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real bias = pc_soft_bias(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i)); Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    Real bias = pc_soft_bias(PC_PASS pc_little_beyond(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i))); Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
     precise Real rate = (now + bias) * wanted; Real limit = PC_REAL(0.0);
     if (PC_ANY(pc_throws_back(PC_PASS n))) { precise Real back = pc_lacks_rebound(PC_PASS n, i, now) * wanted; limit = back; }  // lint: allow (zero otherwise)
     PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, limit));
@@ -76,25 +76,65 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
   pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
 }
 
-// The push that closes gaps of more than 32 epsilon of the arm, of all trees of the block or of none.
+// What the push undoes of a joint's angles, as rates of its rows. 1 where there is any.
+PC_FN Real pc_push_angles(PC_IO Slot n) {
+  Real any = PC_REAL(0.0);
+  pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return any;  // lint: allow (zeros otherwise)
+  for (uint i = 0u; i < 3u; i++) {
+    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
+    Mask acts = PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5);
+    Mask open = pc_and(slack > PC_REAL(0.0), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(1.5));
+    precise Real beyond = slack - pc_little_beyond(PC_PASS slack);
+    Real undone = pc_select(open, PC_REAL(0.0), beyond);
+    Real rate = pc_select(acts, pc_soft_bias(PC_PASS undone), PC_REAL(0.0));
+    PC_ST(tree_rows, n, TREE_RATE + i, rate);
+    any = pc_select(pc_nonzero(rate), PC_REAL(1.0), any);
+  }
+  return any;
+}
+// What a sweep from TREE_C and TREE_RATE gives, to the bodies and to the push.
+PC_FN void pc_push(PC_IO Slot m, Tree t) {
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_ld3_tree(PC_PASS n, TREE_CHANGE));
+  }
+  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
+  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), pc_ld3_tree(PC_PASS n, TREE_X)));
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
+  }
+}
+// The push that closes gaps of more than 32 epsilon of the arm and turns back what is beyond its limits. Where it turns, the arms' arcs open
+// gaps again: those are closed with it.
 PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
-  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0);
+  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0); Real turned = PC_REAL(0.0); Vec3 zero = pc_zero3();
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, zero); pc_st3_tree(PC_PASS n, TREE_CHANGE, zero);
+  }
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real here = pc_gap_over(PC_PASS n, gap, noise); open = pc_max(open, here);
-    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here)); pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
+    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here)); turned = pc_max(turned, pc_push_angles(PC_PASS n));
   }
-  PC_MOST(open);
-  if (pc_is_pivot(PC_PASS t) == 1u) { PC_ONE pc_st3_tree(PC_PASS PC_NODE(m, t.first + 1u), TREE_C, pc_zero3()); open = PC_REAL(0.0); }  // pivot_turn closes it
-  if (PC_ANY(open > PC_REAL(0.5))) {  // lint: allow (a push of nothing changes nothing)
-    pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(0.0));
-    pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
-    PC_NODES(k, 0u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X)); }
-  } else {
-    PC_NODES(k, 0u, t) {  // what it would leave
-      Slot n = PC_NODE(m, t.first + k); Vec3 zero = pc_zero3(); Six none = pc_six(zero, zero); pc_st6_tree(PC_PASS n, TREE_F, none); pc_st6_tree(PC_PASS n, TREE_X, none);
-      pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, zero); pc_st3_tree(PC_PASS n, TREE_CHANGE, zero);
-      if (k > 0u) pc_st3_tree(PC_PASS n, TREE_PUSH, zero);
+  if (pc_is_pivot(PC_PASS t) == 1u) { open = PC_REAL(0.0); turned = PC_REAL(0.0); }  // pivot_turn closes it
+  open = pc_max(open, turned); PC_MOST(open); PC_MOST(turned);
+  if (PC_ANY(open > PC_REAL(0.5))) pc_push(PC_PASS m, t);  // lint: allow (a push of nothing changes nothing)
+  if (PC_ANY(turned > PC_REAL(0.5))) {  // lint: allow (selected below)
+    pc_tree_residual(PC_PASS m, t, turned, PC_INFO(seen_turn));
+    PC_NODES(k, 1u, t) {
+      Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real here = pc_gap_over(PC_PASS n, gap, noise);
+      Vec3 left = pc_madd(pc_ld3_tree(PC_PASS n, TREE_C), pc_closing(PC_PASS gap), here);
+      pc_st3_tree(PC_PASS n, TREE_C, pc_scale(left, turned)); pc_st3_tree(PC_PASS n, TREE_RATE, zero);
     }
+    pc_push(PC_PASS m, t);
+  }
+  PC_NODES(k, 0u, t) {  // the same whether other lanes pushed
+    Slot n = PC_NODE(m, t.first + k); Six none = pc_six(zero, zero);
+    pc_st6_tree(PC_PASS n, TREE_F, none); pc_st6_tree(PC_PASS n, TREE_X, none); pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, zero);
+    if (k > 0u) { pc_st3_tree(PC_PASS n, TREE_C, zero); pc_st3_tree(PC_PASS n, TREE_RATE, zero); pc_st3_tree(PC_PASS n, TREE_PUSH, zero); }
   }
 }
 

@@ -2,7 +2,6 @@
 // bodies move, and of a free tree without its centre of mass. The push (tree_again.inl), which spares what is heavy, has what is wider than
 // a thousandth of an arm, and trees that touch something or are dragged, which a shift would move into what they touch.
 
-#include "tree_gap.inl"
 
 // Gap of a node's pin at the poses of now.
 PC_FN Vec3 pc_gap_now(PC_IO Tree t, Slot n, uint k) {

@@ -4,6 +4,7 @@
 #include "tree_rows.inl"
 #include "tree_store.inl"
 #include "tree_stiffness.inl"
+#include "tree_gap.inl"
 #include "tree_whole.inl"
 
 // What is read of a body, once for its own joint and those of its children. In places that the factor fills later: position and its low part,
@@ -64,6 +65,18 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, uint pivot, Quaternion qc, Quate
   for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_REAL(0.0), upper.s));
 }
 
+// A pin that stands open between two bodies that move acts at one point, midway: impulses at two would turn the pair. No further from
+// the body's own end than its arm is long: the inertia of a small body is lost beside that of its mass far away.
+PC_FN void pc_act_midway(PC_IO Slot n, Slot up, Vec3 rc, Vec3 rp, Vec3 gap) {
+  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
+  Mask open = pc_and(pc_gap_over(PC_PASS n, gap, noise) > PC_REAL(0.5), PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0));
+  Vec3 half_gap = pc_scale(gap, PC_REAL(0.5));
+  Real size = pc_length(half_gap); Real arm = pc_length(rc);
+  Vec3 shift = pc_scale(half_gap, pc_select(size > arm, pc_div(arm, pc_max(size, arm)), PC_REAL(1.0)));
+  pc_st3_tree(PC_PASS n, TREE_RC, pc_select3(open, pc_sub(rc, shift), rc));
+  pc_st3_tree(PC_PASS n, TREE_RP, pc_select3(open, pc_add(rp, shift), rp));
+}
+
 PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Index joint = PC_ENDS(tree_ends, n, 1u);
   uint b = pc_is_flipped(PC_PASS t, k); uint c_at = (1u - b) * 2u; uint p_at = b * 2u;  // quads of joint_solved: 0 of body a, 2 of body b
@@ -74,7 +87,9 @@ PC_FN void pc_tree_joint(PC_IO Tree t, Slot n, uint k) {
   Quaternion qc = pc_facing(PC_PASS n); Quaternion qp = pc_facing(PC_PASS up);
   Vec3 rc = pc_rotate(qc, anchor_c.v); Vec3 rp = pc_rotate(qp, anchor_p.v);
   Vec3 apart = pc_add(pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION), pc_ld3_tree(PC_PASS up, TREE_POSITION)), pc_sub(pc_ld3_tree(PC_PASS n, TREE_POSITION + 3u), pc_ld3_tree(PC_PASS up, TREE_POSITION + 3u)));
-  pc_st3_tree(PC_PASS n, TREE_RC, rc); pc_st3_tree(PC_PASS n, TREE_RP, rp); pc_st3_tree(PC_PASS n, TREE_GAP, pc_add(apart, pc_sub(rc, rp)));
+  Vec3 gap = pc_add(apart, pc_sub(rc, rp));
+  pc_st3_tree(PC_PASS n, TREE_RC, rc); pc_st3_tree(PC_PASS n, TREE_RP, rp); pc_st3_tree(PC_PASS n, TREE_GAP, gap);
+  pc_act_midway(PC_PASS n, up, rc, rp, gap);
   pc_st3_tree(PC_PASS n, TREE_PLACE, apart);
   pc_tree_angles(PC_PASS n, b, pc_is_pivot(PC_PASS t), qc, qp, axes_c, axes_p, head, lower, upper, angle.v);
   Real flip = pc_select(PC_IS(b), PC_REAL(-1.0), PC_REAL(1.0));

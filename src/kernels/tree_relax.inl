@@ -2,6 +2,7 @@
 // never held it. Both momenta are kept at the places of now.
 #include "tree_rows.inl"
 #include "tree_store.inl"
+#include "tree_gap.inl"
 #include "tree_whole.inl"
 #include "tree_momentum.inl"
 #include "tree_close.inl"

@@ -26,6 +26,7 @@ const uint TREE_CHANGE = 117u;  // change of the angular momentum
 const uint TREE_PUSH_SPEED = 120u; // change of velocity that closes the gaps, taken back in the relax phase
 const uint TREE_MASS = 123u;    // 0 for a fixed root
 const uint TREE_INERTIA = 124u; // world axes, with the geometric stiffness
+const uint TREE_PUSH_TURN = TREE_INERTIA;  // while it is made, that of the angular momentum so far (TREE_CHANGE)
 const uint TREE_TURN = 130u;    // where the sub-step will turn the body: vector and w - 1
 const uint TREE_LIMIT = 134u;   // impulses of the three angle rows, in the joint's sense
 const uint TREE_FACING = 138u;  // orientation
