@@ -329,7 +329,6 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.joint_push_speed = Scalar(8);
     info.loop_give = Scalar(1e-5);
     info.spin_floor = Scalar(6e-5);
-    info.seen_turn = Scalar(1);
     info.strayed_turn = Scalar(0.1);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);

@@ -45,8 +45,8 @@ inline constexpr double stiffening_time = 1;
 /// sub-step: what lies alone on what stands does not sink.
 inline constexpr double contact_preload = 1.75;
 /// One visit solves a manifold's rows well enough unless the load is so many times what the last sub-step left, or
-/// friction changes by such a share of its limit: then it takes rounds (contact_settle.inl).
-inline constexpr double settled_load = 1.5, settled_friction = 0.5;
+/// friction changes by half of its limit: then it takes rounds (contact_settle.inl).
+inline constexpr double settled_load = 1.5;
 /// Not for loads below this share of what gravity makes in a sub-step: those are rounding.
 inline constexpr double least_load = 0.01;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together.
@@ -85,11 +85,11 @@ inline constexpr double tree_spin_floor = 3e-5;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints:
 /// what a tree holds by itself answers nothing but rounding.
 inline constexpr double loop_give = 1e-4;
-/// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by `seen_turn`. Newton's
+/// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by a radian. Newton's
 /// method there is not to be trusted where it more than doubles the energy of the motion within the tree, as after a
 /// blow or in a whip that sub-steps are too long for: its steps are taken back, and bodies are seen ahead until
 /// `strayed_turn` [rad].
-inline constexpr double seen_turn = 1, strayed_turn = 0.1;
+inline constexpr double strayed_turn = 0.1;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

@@ -5,14 +5,14 @@
 const uint SETTLE_ROUNDS = 16u;  // of a visit that takes rounds; all lanes make as many
 
 // Whether rounds are needed: more than one point, and the load becomes settled_load times what it is, or that part of it (of an
-// impact that is remembered nothing is left); or in the biased visit friction changes by settled_friction of its limit. (Bodies
+// impact that is remembered nothing is left); or in the biased visit friction changes by half of its limit. (Bodies
 // that stand side by side press each other by rounding alone: no load.)
 PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real arriving, Real coming, Real mass, Friction f) {
   precise Real least = mass * PC_INFO(least_load); Mask loaded = pc_max(load, pc_max(arriving, coming)) > least;
   precise Real more = arriving - load * PC_INFO(settled_load); precise Real less = load - pc_max(arriving, PC_REAL(0.0)) * PC_INFO(settled_load);
   Mask several = pc_and(PC_LD(contact_rows, m, ROW_MASS + 1u) > PC_REAL(0.0), loaded); Mask changes = pc_max(more, less) > PC_REAL(0.0);
 #ifndef PC_FRICTIONLESS
-  precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC) * PC_INFO(settled_friction); precise Real square = limit * limit;
+  precise Real change = f.change1 * f.change1 + f.change2 * f.change2; precise Real limit = coming * PC_LD(contact_rows, m, ROW_MU_KINETIC) * PC_REAL(0.5); precise Real square = limit * limit;
   Mask biased = PC_INFO(load_ahead) < PC_REAL(0.5); changes = pc_or(changes, pc_and(biased, change > square));
 #endif
   return pc_and(several, changes);

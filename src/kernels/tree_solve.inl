@@ -18,11 +18,10 @@
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-  Mask turns = PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5);
   for (uint i = 0u; i < 3u; i++) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
-    Real wanted = pc_angle_bias(PC_PASS pc_select(pc_or(open, turns), slack, pc_little_beyond(PC_PASS slack)), open);
+    Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack)), open);
     precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     Real on = PC_LD(tree_rows, n, TREE_ON + i);
@@ -89,7 +88,7 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
-  pc_tree_residual(PC_PASS m, t, one, PC_INFO(seen_turn));
+  pc_tree_residual(PC_PASS m, t, one, PC_REAL(1.0));
   Vec3 push = pc_zero3(); Vec3 turn = pc_zero3(); Real load = PC_REAL(0.0);  // what contacts and loops give to the tree as a whole, and whether they do
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); push = pc_add(push, f.l);

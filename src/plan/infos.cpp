@@ -44,7 +44,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.soft_impulse_scale = Scalar(rows.impulse_scale);
   biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
   biased.settled_load = Scalar(constants::settled_load);
-  biased.settled_friction = Scalar(constants::settled_friction);
   biased.settling_pace = Scalar(constants::settling_pace);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.push_speed = Scalar(from.push_speed);
@@ -54,7 +53,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.rounds = constants::rounds;
   biased.net_made = Scalar(constants::net_made);
-  biased.seen_turn = Scalar(constants::seen_turn);
   biased.strayed_turn = Scalar(constants::strayed_turn);
   biased.limit_stiffness = Scalar(rows.mass_scale / rows.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
