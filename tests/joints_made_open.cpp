@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include "support_world.h"
+#include "wild/dice.h"
 
 using namespace worldtest;
 
@@ -14,20 +14,11 @@ namespace {
 
 enum class Freedom { ball, cone, hinge };
 
-class Dice {
- public:
-  explicit Dice(unsigned seed) : engine_(seed) {}
-  double between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
-  Vec3 vector(double most) { return {between(-most, most), between(-most, most), between(-most, most)}; }
-  Quat orientation() {
-    const Quat q{between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)};
-    const double size = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-    return {q.x / size, q.y / size, q.z / size, q.w / size};
-  }
+using wild::Dice;
 
- private:
-  std::mt19937 engine_;
-};
+Vec3 random_vector(Dice& dice, double most) {
+  return {dice.between(-most, most), dice.between(-most, most), dice.between(-most, most)};
+}
 
 struct Scene {
   Freedom freedom = Freedom::ball;
@@ -54,16 +45,16 @@ AngleFreedom freedom_of(Freedom kind, Dice& dice) {
 
 /// A chain of boxes that touch nothing, anywhere within 2 m of each other.
 void build(World& world, const Scene& scene, unsigned seed) {
-  Dice dice(seed);
+  Dice dice("joints made open", seed);
   std::vector<BodyId> made;
   for (int i = 0; i < scene.bodies; i++) {
     BodyDef def;
-    def.pose = {dice.vector(1), dice.orientation()};
+    def.pose = {random_vector(dice, 1), dice.orientation()};
     if (scene.moves) {
-      def.velocity = dice.vector(1);
-      def.angular_velocity = dice.vector(5);
+      def.velocity = random_vector(dice, 1);
+      def.angular_velocity = random_vector(dice, 5);
     }
-    const double size = std::exp(dice.between(-3.5, -1));
+    const double size = dice.by_ratio(0.03, 0.37);
     def.shapes = {ShapeDef::box({size, size * dice.between(0.2, 1), size})};
     def.shapes[0].filter.mask = 0;
     made.push_back(must(world.create_body(def)));
@@ -72,8 +63,8 @@ void build(World& world, const Scene& scene, unsigned seed) {
     JointDef def;
     def.a = made[std::size_t(i - 1)];
     def.b = made[std::size_t(i)];
-    def.frame_a.position = dice.vector(0.1);
-    def.frame_b.position = dice.vector(0.1);
+    def.frame_a.position = random_vector(dice, 0.1);
+    def.frame_b.position = random_vector(dice, 0.1);
     def.freedom = freedom_of(scene.freedom, dice);
     if (scene.closed) {
       const Pose a = must(world.pose(def.a));

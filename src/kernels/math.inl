@@ -54,6 +54,8 @@ PC_FN Vec3 pc_negate(Vec3 a) { return Vec3(-a.x, -a.y, -a.z); }
 // (what some devices flush has no inverse anywhere)
 PC_FN Real pc_inverse_or_zero(Real x) { return pc_select(x > PC_LEAST, pc_div(PC_REAL(1.0), x), PC_REAL(0.0)); }
 PC_FN Real pc_length(Vec3 a) { return pc_sqrt(pc_dot(a, a)); }
+// By how much to scale what is so large, that it is no larger than `most`.
+PC_FN Real pc_share_within(Real size, Real most) { return pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); }
 PC_FN Vec3 pc_unit_or_zero(Vec3 a) { return pc_scale(a, pc_inverse_or_zero(pc_length(a))); }
 
 // Below PC_TINY stored values snap to zero, so that products of two of them never become subnormal:

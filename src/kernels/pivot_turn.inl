@@ -126,7 +126,7 @@ PC_FN Motion pc_select_motion(Mask m, Motion a, Motion b) {
 // Share of a gap that is closed in a sub-step, at joint_push_speed at most.
 PC_FN Real pc_share_closed(PC_IO Vec3 gap) {
   Real size = pc_length(gap); precise Real most = PC_INFO(joint_push_speed) * PC_INFO(h);
-  return pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0));
+  return pc_share_within(size, most);
 }
 PC_FN Pivot pc_pivot(PC_IO Slot n, Index body, Index joint, Real inverse_mass) {
   Quad about = PC_GATHER(joint_pivot, joint, 0u); Quad axes = PC_GATHER(joint_pivot, joint, 1u); Quad arm = PC_GATHER(joint_pivot, joint, 2u);

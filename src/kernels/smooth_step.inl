@@ -125,7 +125,7 @@ PC_FN void pc_smooth_turn(PC_IO Slot n) {
 // How much of a gap the sub-step closes: what is more than 32 epsilon of the arm, but no faster than joint_push_speed.
 PC_FN Vec3 pc_smooth_closing(PC_IO Vec3 gap, Vec3 arm) {
   Real size = pc_length(gap); precise Real most = PC_INFO(h) * PC_INFO(joint_push_speed); precise Real noise = pc_length(arm) * PC_INFO(rounding);
-  Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_select3(size > noise, pc_scale(gap, share), pc_zero3());
+  Real share = pc_share_within(size, most); return pc_select3(size > noise, pc_scale(gap, share), pc_zero3());
 }
 PC_FN Vec3 pc_smooth_swing(Turn turn, Vec3 r) { Vec3 s = pc_scale(pc_cross(turn.q.v, r), PC_REAL(2.0)); precise Vec3 d = s * turn.q.w + pc_cross(turn.q.v, s); return d; }
 // How far a node moves: with its parent, by what both arms swing, and by what closes the gap. Its arms and velocity at the end.

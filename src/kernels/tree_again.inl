@@ -32,7 +32,7 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
 // Speed at which a gap closes: within the sub-step, but not faster than joint_push_speed.
 PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
   precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
-  Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
+  Real share = pc_share_within(size, most); return pc_scale(v, share);
 }
 // 1 where a limit that throws back is left too slowly, by more than 1e-5 of its rate.
 PC_FN Real pc_rebound_lacks(PC_IO Slot n, Slot up) {
@@ -123,7 +123,7 @@ PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
   open = pc_max(open, turned); PC_MOST(open); PC_MOST(turned);
   if (PC_ANY(open > PC_REAL(0.5))) pc_push(PC_PASS m, t);  // lint: allow (a push of nothing changes nothing)
   if (PC_ANY(turned > PC_REAL(0.5))) {  // lint: allow (selected below)
-    pc_tree_residual(PC_PASS m, t, turned, PC_REAL(1.0));
+    pc_tree_residual(PC_PASS m, t, turned);
     PC_NODES(k, 1u, t) {
       Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real here = pc_gap_over(PC_PASS n, gap, noise);
       Vec3 left = pc_madd(pc_ld3_tree(PC_PASS n, TREE_C), pc_closing(PC_PASS gap), here);
@@ -143,12 +143,12 @@ PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
   PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
-  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0), PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
+  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
   Real steps = wanted;
   if (PC_ANY(steps > PC_REAL(0.5))) pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
   for (uint turn = 0u; turn < 4u; turn++) {
     if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
-    if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted, PC_REAL(1.0));
+    if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted);
     Real left = pc_left(PC_PASS m, t, PC_REAL(2e-9));
     pc_newton_step(PC_PASS m, t, wanted);
     wanted = pc_min(wanted, left);
@@ -165,7 +165,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     if (PC_ANY(again > PC_REAL(0.5))) {  // lint: allow (as above)
       pc_take_back(PC_PASS m, t, kept, again > PC_REAL(0.5));
       for (uint turn = 0u; turn < 2u; turn++) {
-        pc_tree_residual(PC_PASS m, t, again, PC_INFO(strayed_turn));
+        pc_tree_residual_to(PC_PASS m, t, again, PC_INFO(strayed_turn));
         pc_newton_step(PC_PASS m, t, again);
       }
     }

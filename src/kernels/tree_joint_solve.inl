@@ -30,7 +30,7 @@ PC_FN Vec3 pc_mean_velocity(PC_IO BodyState b, Vec3 v, Vec3 w, Vec3 arm, Vec3 l)
 // Velocity that closes a share of the gap, at most joint_push_speed.
 PC_FN Vec3 pc_pin_bias(PC_IO Vec3 gap) {
   Vec3 v = pc_scale(gap, PC_INFO(soft_rate)); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
-  Real share = pc_select(size > most, pc_div(most, pc_max(size, most)), PC_REAL(1.0)); return pc_scale(v, share);
+  Real share = pc_share_within(size, most); return pc_scale(v, share);
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {

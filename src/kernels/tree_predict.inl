@@ -5,7 +5,7 @@
 // How much of the sub-step a body is seen ahead: until it has turned by `most` [rad]. Rates of what comes later are those of until then.
 PC_FN Real pc_seen_ahead(PC_IO Vec3 spin, Real most) {
   precise Real turn = pc_length(spin) * PC_INFO(h);
-  return pc_select(turn > most, pc_div(most, pc_max(turn, most)), PC_REAL(1.0));
+  return pc_share_within(turn, most);
 }
 // How fast an arm of a node moves until then, as a mean.
 PC_FN Vec3 pc_swing_rate(PC_IO Slot n, Vec3 arm, Real most) {
@@ -39,7 +39,8 @@ PC_FN void pc_pivot_residual(PC_IO Slot m, Tree t) {
   Vec3 c = pc_add(b.v, pc_cross(w, pc_ld3_tree(PC_PASS n, TREE_RC))); precise Real noise = pc_length(b.v) * PC_INFO(rounding);
   pc_st3_tree(PC_PASS n, TREE_C, pc_select3(pc_length(c) > noise, c, pc_zero3()));
 }
-PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted, Real most) {
+// Bodies seen ahead until they have turned by `most` [rad].
+PC_FN void pc_tree_residual_to(PC_IO Slot m, Tree t, Real wanted, Real most) {
   if (pc_is_pivot(PC_PASS t) == 1u) { PC_MEET; PC_ONE pc_pivot_residual(PC_PASS m, t); PC_MEET; return; }
   pc_tree_predict(PC_PASS m, t, wanted > PC_REAL(0.5), most);
   PC_MEET;
@@ -50,3 +51,5 @@ PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted, Real most) {
     pc_st3_tree(PC_PASS n, TREE_C, c);
   }
 }
+// Until they have turned by a radian.
+PC_FN void pc_tree_residual(PC_IO Slot m, Tree t, Real wanted) { pc_tree_residual_to(PC_PASS m, t, wanted, PC_REAL(1.0)); }

@@ -71,8 +71,7 @@ PC_FN void pc_act_midway(PC_IO Slot n, Slot up, Vec3 rc, Vec3 rp, Vec3 gap) {
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
   Mask open = pc_and(pc_gap_over(PC_PASS n, gap, noise) > PC_REAL(0.5), PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0));
   Vec3 half_gap = pc_scale(gap, PC_REAL(0.5));
-  Real size = pc_length(half_gap); Real arm = pc_length(rc);
-  Vec3 shift = pc_scale(half_gap, pc_select(size > arm, pc_div(arm, pc_max(size, arm)), PC_REAL(1.0)));
+  Vec3 shift = pc_scale(half_gap, pc_share_within(pc_length(half_gap), pc_length(rc)));
   pc_st3_tree(PC_PASS n, TREE_RC, pc_select3(open, pc_sub(rc, shift), rc));
   pc_st3_tree(PC_PASS n, TREE_RP, pc_select3(open, pc_add(rp, shift), rp));
 }

@@ -88,7 +88,7 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
-  pc_tree_residual(PC_PASS m, t, one, PC_REAL(1.0));
+  pc_tree_residual(PC_PASS m, t, one);
   Vec3 push = pc_zero3(); Vec3 turn = pc_zero3(); Real load = PC_REAL(0.0);  // what contacts and loops give to the tree as a whole, and whether they do
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); push = pc_add(push, f.l);
