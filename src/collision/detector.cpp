@@ -212,21 +212,30 @@ bool Detector::some_material(const WorldState& s, std::initializer_list<std::uin
   return false;
 }
 
+namespace {
+/// What a list holds beside pairs whose tight boxes overlap depends on what the broad phase has seen, so it has room for some more:
+/// whether there are too many is asked of those that overlap.
+constexpr std::size_t list_room(std::size_t max_pairs) { return 4 * max_pairs + 64; }
+
+Error too_many_pairs(std::uint64_t needed, bool exact, std::size_t room) {
+  return {ErrorCode::buffer_full, "The scene has " + std::to_string(needed) + (exact ? "" : " or fewer") +
+                                      " pairs of shapes close together and room for " + std::to_string(room) +
+                                      "; raise StepSettings::max_pairs, or spread the bodies. The world is as before the step."};
+}
+}  // namespace
+
 Status Detector::find_pairs(const WorldState& s, double dt, const Options& options) {
   follow(s);
   follow_rest(s);
+  near_.clear();
   if (!possible_) return {};
   if (s.tables.precision() == Precision::f32)
     bound(s, dt, options, scratch_f_);
   else
     bound(s, dt, options, scratch_d_);
-  pairs_.set_capacity(options.max_pairs);
+  pairs_.set_capacity(list_room(options.max_pairs));
   const PairReport report = pairs_.update(tight_);
-  if (report.overflow)
-    return Error{ErrorCode::buffer_full,
-                 "The scene has " + std::to_string(report.pairs_needed) + (report.needed_is_exact ? "" : " or fewer") +
-                     " pairs of shapes close together and room for " + std::to_string(options.max_pairs) +
-                     "; raise StepSettings::max_pairs, or spread the bodies. The world is as before the step."};
+  if (report.overflow) return too_many_pairs(report.pairs_needed, false, options.max_pairs);
   if (report.refused > 0) {
     const std::uint32_t body = s.shapes[report.first_refused].body;
     structure_ = 0;  // the broad phase dropped the shape: list all of them anew once the host has mended it
@@ -243,6 +252,8 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
       next_hints_[i] = previous[i] < hints_.size() ? hints_[previous[i]] : 0;
     hints_.swap(next_hints_);
   }
+  list_near();
+  if (near_.size() > options.max_pairs) return too_many_pairs(near_.size(), true, options.max_pairs);
   return {};
 }
 

@@ -78,7 +78,7 @@ class Detector {
   /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points
   /// see it [m].
   std::span<const Vec3> origins() const { return origins_; }
-  /// After the step: contacts that came apart in it have no points.
+  /// After the step, which was made: contacts that came apart in it have no points.
   void let_go(WorldState& state);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
@@ -165,8 +165,9 @@ class Detector {
   /// Takes over contacts of the last step, from the first row to before the last.
   template <class Scalar>
   void keep(const WorldState& state, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found);
-  /// The pairs whose tight boxes overlap and that are looked at, into `near_`.
+  /// The pairs whose tight boxes overlap into `near_`, and of these those that are looked at.
   void list_near();
+  void leave_out_sleepers();
   /// Finds the manifolds of pairs that go in lanes, and marks all pairs that may have one.
   template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
   /// Calls does(i) for the pairs that may have a manifold.

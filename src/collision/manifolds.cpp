@@ -32,7 +32,10 @@ void Detector::list_near() {
     n += overlap(tight_[pairs[i].a], tight_[pairs[i].b]);
   }
   near_.resize(n);
-  if (!parts_.empty()) std::erase_if(near_, [&](std::uint32_t i) { return !looked_at(pairs[i]); });
+}
+
+void Detector::leave_out_sleepers() {
+  if (!parts_.empty()) std::erase_if(near_, [&](std::uint32_t i) { return !looked_at(pairs_.pairs()[i]); });
 }
 
 template <class Scalar> void Detector::sort_out(const Options& options, Scratch<Scalar>& scratch) {
@@ -204,8 +207,8 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   std::uint32_t old = 1;
   hints_.resize(pairs.size());
   found = {};
-  found.pairs = std::uint32_t(pairs.size());
-  list_near();
+  found.pairs = std::uint32_t(near_.size());
+  leave_out_sleepers();
   if (round_) sort_out(options, scratch);
   find_manifolds(s, options, scratch);
   std::size_t of_alone = 0;

@@ -56,7 +56,7 @@ template <class Scalar> class Slowness {
   double speed_, spin_, dt_;
 };
 
-/// Counts the time of each body that moved; whether some came to be quiet for `settings.sleep_time`.
+/// Counts the time of each body that moved; whether some have been quiet for `settings.sleep_time`.
 template <class Scalar>
 bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
                 std::span<const char> restless, const StepSettings& settings) {
@@ -67,10 +67,9 @@ bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const A
   for (const std::uint32_t row : moved) {
     if (row == 0) continue;  // pads
     Scalar& time = rest[row * rest_fields + rest_quiet_time];
-    const bool was = time >= enough;
     const bool slow = rest[row * rest_fields + rest_can_sleep] > 0 && (restless.empty() || !restless[row]) && slowness.slow(row);
     time = slow ? std::min(Scalar(double(time) + dt), enough) : Scalar(0);
-    some |= !was && time >= enough;
+    some |= time >= enough;
   }
   return some;
 }
@@ -132,7 +131,7 @@ std::uint32_t Sleepers::wake_marked(WorldState& state) {
 }
 
 void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
-                      const StepSettings& settings, bool changed, std::span<const std::uint32_t> labels, StepReport& report) {
+                      const StepSettings& settings, std::span<const std::uint32_t> labels, StepReport& report) {
   labels_ = labels;
   const bool single = state.tables.precision() == Precision::f32;
   const double sleep_time = single ? double(float(settings.sleep_time)) : settings.sleep_time;  // as the table holds it
@@ -142,7 +141,7 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
     state.tables.touch(Buffer::rest);
     state.rests = true;
   }
-  if (some || changed) report.fell_asleep = choose(state, moved, sleep_time);
+  if (some) report.fell_asleep = choose(state, moved, sleep_time);
   if (state.stirred > 0) state.calm();
   report.asleep = state.sleepers;
   report.islands_asleep = count_islands(state);

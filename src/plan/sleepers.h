@@ -55,11 +55,10 @@ class Sleepers {
   /// With the contacts of a step: wakes the islands of these bodies.
   std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
   /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep. `before`: the poses that
-  /// the step began with; null where velocities tell enough, of bodies in flight. `changed`: islands are others than after the last
-  /// step. `labels`: by body row the lowest row of its island, where a device has found them; empty: they are found here. Reports who
-  /// sleeps.
+  /// the step began with; null where velocities tell enough, of bodies in flight. `labels`: by body row the lowest row of its island,
+  /// where a device has found them; empty: they are found here. Reports who sleeps.
   void follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
-              const StepSettings& settings, bool changed, std::span<const std::uint32_t> labels, StepReport& report);
+              const StepSettings& settings, std::span<const std::uint32_t> labels, StepReport& report);
   /// What the next `follow` is to know: by body row who is not at rest, however slow (empty: nobody), and whether all bodies act on each
   /// other, so that they sleep together or not at all.
   void disturb(std::span<const char> restless, bool together) {

@@ -148,25 +148,28 @@ struct Stepper::Inside {
     }
     const FlushSubnormals flush;
     if (serial != s.serial) runner.forget();
-    if (s.rests && !settings.sleep) s.forget_rest();
+    if (s.rests && !settings.sleep) {
+      runner.keep(s, Buffer::rest);
+      s.forget_rest();
+    }
     detector.forget_strays();
     schedule.own.near.forget_strays();
     octaves.begin();
     tries = 0;
     watched = false;
     while (ok = attempt(s, dt), !ok || !outside.empty() || strayed || tighter || suspect || !written) {
-      if (!ok && (ran || ok.error().code != ErrorCode::not_finite)) return put_rest_back(s, ok);
-      if (ok) (void)undo(s, {});
+      undo(s);
+      if (!ok && (ran || ok.error().code != ErrorCode::not_finite)) return ok;
       report.repeats++;
       if (strayed || tighter) continue;
       // the step anew, to see which kernel of the host's own it came from, if one it was
       watched |= suspect;
       if (suspect) continue;
-      if (!written) return put_rest_back(s, written);
+      if (!written) return written;
       // others may have met it: those that leave the range by themselves are to blame, where there are any
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
-      if (leaving.empty()) return put_rest_back(s, ok);
+      if (leaving.empty()) return ok;
       freeze(s);
       update_structure(s);
     }
@@ -191,21 +194,13 @@ struct Stepper::Inside {
     const std::span<const std::uint32_t> labels = finds_islands() ? schedule.islands.labels() : std::span<const std::uint32_t>();
     unrest.find(s, own.ordered(), runner);
     sleepers.disturb(unrest.rows(), unrest.together(own.ordered()));
-    sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, regrouped, labels, report);
+    sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, labels, report);
     unrest.stir_sleepers(s);
     if (s.sleepers == 0 || report.fell_asleep < schedule.moving || !own.ordered().empty() || s.callbacks > 0) return;
     update_structure(s);
     PlanSignature nothing = signature(settings, s, schedule);
     nothing.shapes = detector.possible();
     idle = {s, plans.find(nothing, own.ordered()), report};
-  }
-
-  /// A step that could not be made has woken nobody.
-  Status put_rest_back(WorldState& s, const Status& failed) {
-    if (!runner.before(Buffer::rest)) return failed;
-    runner.undo(s);
-    s.count_rest();
-    return failed;
   }
 
   void update_structure(WorldState& s) {
@@ -263,7 +258,7 @@ struct Stepper::Inside {
       if (ok = detector.find_pairs(s, dt, detection()); !ok) return ok;
       lap(Timer::broad);
       called.add(s, runner);
-      if (ok = detector.find_contacts(s, detection(), found); !ok) return undo(s, ok);
+      if (ok = detector.find_contacts(s, detection(), found); !ok) return ok;
       lap(Timer::narrow);
       if (detector.touched().empty()) return {};
       runner.keep(s, Buffer::rest);
@@ -289,7 +284,8 @@ struct Stepper::Inside {
     written = {};
     Status ok = detect(s, dt, found);
     if (!ok) return ok;
-    regrouped = found.changed || other || contacts_version != s.contacts_version;
+    if (found.changed) s.contacts_version++;  // whichever stepper comes next
+    regrouped = other || contacts_version != s.contacts_version;
     if (regrouped) update_contacts(s);
     choose_substeps(s, dt, found);
     PlanSignature wanted = signature(settings, s, schedule);
@@ -298,7 +294,7 @@ struct Stepper::Inside {
     const double h = substep_length(dt, wanted.substeps);
     wanted.shapes = detector.possible();
     add_contacts(wanted, schedule, found);
-    if (ok = order_own(s, dt, schedule); !ok) return undo(s, ok);
+    if (ok = order_own(s, dt, schedule); !ok) return ok;
     jumps.act(s, own.ordered(), schedule.moving_bodies(), h, dt, runner);
     if (other) s.tables.resize(Table::node, 1);
     remember(s);
@@ -308,18 +304,18 @@ struct Stepper::Inside {
     if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
     list_islands(s, wanted);
     plan = &plans.find(wanted, own.ordered());
-    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return undo(s, ok);
+    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return ok;
     lap(Timer::plan);
 
     if (plan->flight && settings.body_events) recorder.keep_poses(s);
     ran = true;
     runner.watch(watched);
     looks.look_with(detection());
-    if (ok = runner.run(s, schedule, fill(s, dt), report, &looks); !ok) return undo(s, ok);
+    if (ok = runner.run(s, schedule, fill(s, dt), report, &looks); !ok) return ok;
     if (wanted.islands && !schedule.islands.take())
-      return undo(s, Error{ErrorCode::device_error,
-                           "The device found no end of the islands of this world; find them on the CPU "
-                           "(StepSettings::islands). The world is as it was."});
+      return Error{ErrorCode::device_error,
+                   "The device found no end of the islands of this world; find them on the CPU (StepSettings::islands). The world "
+                   "is as it was."};
     tighter = once_more(octaves.find_tighter(s, schedule.trees.forest()));
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
@@ -372,14 +368,13 @@ struct Stepper::Inside {
   }
 
   /// The world as it was: what the step wrote into its tables goes back, and the contacts are the last step's again.
-  Status undo(WorldState& s, const Status& failed) {
+  void undo(WorldState& s) {
     runner.undo(s);
-    if (s.rests) s.count_rest();
+    s.count_rest();
     detector.put_back(s);
     s.tables.resize(Table::node, 0);  // nothing is pending, not in the row that pads either
     s.tables.resize(Table::node, 1);
     s.contacts_version++;
-    return failed;
   }
 
   void remember(const WorldState& s) {

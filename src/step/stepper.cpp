@@ -51,6 +51,7 @@ Status Stepper::configure(const StepSettings& settings) {
   inside_->settings = settings;
   inside_->checked = true;
   inside_->prepared.reset();
+  inside_->idle = {};
   return {};
 }
 const StepSettings& Stepper::settings() const { return inside_->settings; }

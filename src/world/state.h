@@ -109,7 +109,7 @@ struct WorldState {
   bool rests = false;                       // some body has a property of rest that is not as it was made
   std::uint64_t rest_version = 1;           // who sleeps, and who is stirred
   std::uint64_t removals = 0;               // of properties and tables of the host's own
-  std::uint64_t contacts_version = 1;       // contacts that no step made: a snapshot was restored
+  std::uint64_t contacts_version = 1;       // which contacts there are
 
   /// Body rows of a contact: the first is the one that moves, so that arms are short.
   std::array<std::uint32_t, 2> ends_of(const ContactKey& key) const;
