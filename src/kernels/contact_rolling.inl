@@ -20,8 +20,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad rough_a = PC_GATHER(material, ia, 1u); Quad rough_b = PC_GATHER(material, ib, 1u);
   precise Real load = PC_LD(contact_impulses, m, 0u) + PC_LD(contact_impulses, m, 1u) + PC_LD(contact_impulses, m, 2u) + PC_LD(contact_impulses, m, 3u);
   precise Real roll_limit = pc_max(rough_a.v.x, rough_b.v.x) * load; precise Real twist_limit = pc_max(rough_a.v.y, rough_b.v.y) * load;
-  Real zero = PC_REAL(0.0); Real kept = PC_INFO(load_ahead);
-  precise Real r1 = PC_LD(rolling_impulses, m, 0u) * kept; precise Real r2 = PC_LD(rolling_impulses, m, 1u) * kept; precise Real rt = PC_LD(rolling_impulses, m, 2u) * kept;
+  Real zero = PC_REAL(0.0); Mask adds = PC_INFO(load_ahead) > PC_REAL(0.5);
+  Real r1 = pc_select(adds, PC_LD(rolling_impulses, m, 0u), zero); Real r2 = pc_select(adds, PC_LD(rolling_impulses, m, 1u), zero); Real rt = pc_select(adds, PC_LD(rolling_impulses, m, 2u), zero);
 
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);

@@ -79,6 +79,7 @@ class Sequence {
       if (leads) {
         first = outcome;
         hash = after;
+        counts_.digest = counts_.digest * 1099511628211ull ^ hash;
         found_.calls.back() += outcome.code == ErrorCode::none ? "" : std::string(": ") + name(outcome.code);
         if (outcome.code != ErrorCode::none && !call.composite && before != after) return fail(*host, "a refused call changed the world");
         continue;

@@ -10,6 +10,7 @@ namespace fuzz {
 
 struct Counts {
   std::uint64_t sequences = 0, calls = 0, refused = 0, steps = 0;  // calls and steps on all hosts
+  std::uint64_t digest = 0;                                         // of the worlds that came of them
 };
 
 struct Finding {
