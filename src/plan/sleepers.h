@@ -15,15 +15,16 @@ namespace pcphys {
 class Idle {
  public:
   Idle() = default;
-  Idle(const WorldState& state, const StepPlan& plan, const StepReport& report)
+  /// Contacts of what sleeps keep their points.
+  Idle(const WorldState& state, const StepPlan& plan, std::uint32_t substeps, std::uint32_t islands)
       : plan(&plan),
         serial_(state.serial),
         structure_(state.structure_version),
         rest_(state.rest_version),
         contacts_(state.contacts_version),
-        substeps_(report.substeps),
-        points_(report.points),
-        islands_(report.islands_asleep) {}
+        substeps_(substeps),
+        points_(count_points(state)),
+        islands_(islands) {}
 
   /// Whether nothing has been changed since. (Nothing else moves what sleeps.)
   bool holds(const WorldState& s) const {
@@ -41,6 +42,12 @@ class Idle {
   const StepPlan* plan = nullptr;
 
  private:
+  static std::uint32_t count_points(const WorldState& state) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t row = 1; row < state.contact_rows(); row++) sum += std::uint32_t(state.tables.get(Buffer::contact, row, 3));
+    return sum;
+  }
+
   std::uint64_t serial_ = 0, structure_ = 0, rest_ = 0, contacts_ = 0;
   std::uint32_t substeps_ = 0, points_ = 0, islands_ = 0;
 };

@@ -200,7 +200,7 @@ struct Stepper::Inside {
     update_structure(s);
     PlanSignature nothing = signature(settings, s, schedule);
     nothing.shapes = detector.possible();
-    idle = {s, plans.find(nothing, own.ordered()), report};
+    idle = {s, plans.find(nothing, own.ordered()), settings.substeps, report.islands_asleep};
   }
 
   void update_structure(WorldState& s) {
