@@ -53,7 +53,7 @@ TEST_CASE("memory lists the host's own properties by name and table, where they 
       CHECK(bytes(world, stepper, "sums", place, "") >= 4 * real);
       CHECK(bytes(world, stepper, "moving_by_id", Place::cpu, "") >= count * 4);
       if (place == Place::gl) CHECK(bytes(world, stepper, "thrust", Place::gl, "body") >= count * 4 * real);
-      stepper.remove_kernels();
+      must(stepper.remove_kernels());
       must(world.remove_property("thrust"));
       run(world, stepper, 1);
       CHECK(bytes(world, stepper, "thrust", Place::cpu, "body") == 0);

@@ -136,11 +136,11 @@ TEST_CASE("kernels that go together, or with their stepper, wake all, and nobody
       CHECK(gathers());
       t.fall_asleep();
       World other;
-      if (way == Way::all) t.stepper.remove_kernels();
+      if (way == Way::all) must(t.stepper.remove_kernels());
       if (way == Way::stepper) t.stepper = Stepper(settings);
       if (way == Way::another_world) must(t.stepper.add_kernel(other, {.text = push::text(), .parameters = {{"by", Vec3{}}}}));
       CHECK(t.all_asleep());
-      if (way == Way::another_world) t.stepper.remove_kernels();
+      if (way == Way::another_world) must(t.stepper.remove_kernels());
       run(t.world, t.stepper, 1);
       for (int i = 0; i < 6; i++) CHECK(!t.asleep(i));
       CHECK(!gathers());

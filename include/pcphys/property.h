@@ -53,11 +53,10 @@ PCPHYS_PROPERTY_VALUE(std::uint32_t, uint32)
 template <class T>
 concept PropertyValue = is_property_value<T>;
 
-/// Names a property whose values are of type T, whichever world's it is: a stale one, or one of another world that has no such
-/// property, is ErrorCode::stale_id.
+/// Names a property of a world whose values are of type T.
 template <PropertyValue T> using Property = Id<T>;
 
-/// Names a table: of bodies, of joints, or one of the host's own (World::add_table).
+/// Names a table: of bodies, of joints, whichever world's, or one of the host's own (World::add_table).
 using TableId = Id<struct TableTag>;
 inline constexpr TableId body_table{0, 1}, joint_table{1, 1};
 
@@ -65,11 +64,11 @@ inline constexpr TableId body_table{0, 1}, joint_table{1, 1};
 struct RowOf {
   enum class Kind : std::uint8_t { body, joint, row };
   Kind kind;
-  std::uint32_t index, generation;
-  RowOf(BodyId id) : kind(Kind::body), index(id.index), generation(id.generation) {}
-  RowOf(JointId id) : kind(Kind::joint), index(id.index), generation(id.generation) {}
-  RowOf(SpringId id) : kind(Kind::joint), index(id.index), generation(id.generation) {}
-  explicit RowOf(std::uint32_t row) : kind(Kind::row), index(row), generation(0) {}
+  Id<struct AnyTag> id;  // of a row: its number in place of an index
+  RowOf(BodyId of) : kind(Kind::body), id{of.index, of.generation, of.world} {}
+  RowOf(JointId of) : kind(Kind::joint), id{of.index, of.generation, of.world} {}
+  RowOf(SpringId of) : kind(Kind::joint), id{of.index, of.generation, of.world} {}
+  explicit RowOf(std::uint32_t row) : kind(Kind::row), id{row, 0, 0} {}
 };
 
 /// A value as its numbers, in the order of its members.

@@ -1,7 +1,6 @@
 // Errors are values: a code with a name, and a sentence that tells the caller what to do.
 // No function of the library throws across its border.
 #pragma once
-#include <cassert>
 #include <memory>
 #include <string>
 #include <utility>
@@ -26,7 +25,8 @@ enum class ErrorCode {
   buffer_full,          // a fixed capacity is too small; the message says how much is needed
   device_error,         // the GL driver refused a program, a buffer or a dispatch
   bad_file,             // a file cannot be read or written, or does not hold what it should
-  bad_snapshot          // bytes that are not a snapshot of a world of this kind
+  bad_snapshot,         // bytes that are not a snapshot of a world of this kind
+  busy                  // a step of this world or stepper runs: its callbacks may look, not change
 };
 
 /// "bad_mass" and so on: the name in error messages and in JSON.
@@ -37,7 +37,16 @@ struct Error {
   std::string message;  // a whole sentence: what was wrong and what to do
 };
 
-/// A value, or why there is none.
+namespace detail {
+/// What no error can answer: says the sentence on standard error and ends the process by abort().
+[[noreturn]] void misuse(const char* sentence);
+[[noreturn]] void no_value(const Error& error);
+[[noreturn]] void no_error();
+[[noreturn]] void moved_from(const char* what, const char* call);
+}  // namespace detail
+
+/// A value, or why there is none. Taking the value where there is none, or the error where there is a value, ends the process with a
+/// sentence that holds the error's.
 template <class T> class [[nodiscard]] Result {
  public:
   Result(T value) : content_(std::in_place_index<0>, std::move(value)) {}
@@ -45,31 +54,35 @@ template <class T> class [[nodiscard]] Result {
 
   explicit operator bool() const { return content_.index() == 0; }
   T& operator*() & {
-    assert(*this);
-    return *std::get_if<0>(&content_);
+    return value();
   }
   const T& operator*() const& {
-    assert(*this);
-    return *std::get_if<0>(&content_);
+    return value();
   }
   T&& operator*() && {
-    assert(*this);
-    return std::move(*std::get_if<0>(&content_));
+    return std::move(value());
   }
   T* operator->() {
-    assert(*this);
-    return std::get_if<0>(&content_);
+    return &value();
   }
   const T* operator->() const {
-    assert(*this);
-    return std::get_if<0>(&content_);
+    return &value();
   }
   const Error& error() const {
-    assert(!*this);
+    if (*this) detail::no_error();
     return *std::get_if<1>(&content_);
   }
 
  private:
+  const T& value() const {
+    if (!*this) detail::no_value(error());
+    return *std::get_if<0>(&content_);
+  }
+  T& value() {
+    if (!*this) detail::no_value(error());
+    return *std::get_if<0>(&content_);
+  }
+
   std::variant<T, Error> content_;
 };
 
@@ -83,7 +96,7 @@ template <> class [[nodiscard]] Result<void> {
 
   explicit operator bool() const { return !error_; }
   const Error& error() const {
-    assert(!*this);
+    if (!error_) detail::no_error();
     return *error_;
   }
 

@@ -99,6 +99,9 @@ struct BufferUse {
   std::size_t bytes = 0;
 };
 
+/// A world may be stepped by several steppers, one after the other: what comes of a step follows from the world and the settings, not from
+/// what its stepper made before (but for Stepper::events, which tell of changes since its last step). While one steps a world, and of
+/// itself, any other change is ErrorCode::busy.
 class Stepper {
  public:
   explicit Stepper(const StepSettings& settings = {});
@@ -125,7 +128,7 @@ class Stepper {
   Status remove_kernel(World& world, std::string_view name);
   /// All of them, whether their world is still there or not: then this stepper can step another. Where it is, its next step, by whatever
   /// stepper, wakes who sleeps there, as remove_kernel does at once; so it is when a stepper goes that has kernels.
-  void remove_kernels();
+  Status remove_kernels();
   /// From the next step on; of the type that it was given as.
   Status set_parameter(std::string_view kernel, const KernelParameter& parameter);
 
@@ -147,6 +150,11 @@ class Stepper {
 
  private:
   struct Inside;
+  Inside& inside(const char* call = __builtin_FUNCTION());
+  const Inside& inside(const char* call = __builtin_FUNCTION()) const;
+  /// Whether no step of it runs, nor of the world.
+  Status changeable(const char* call = __builtin_FUNCTION()) const;
+  Status changeable(const World& world, const char* call = __builtin_FUNCTION()) const;
   std::unique_ptr<Inside> inside_;
 };
 

@@ -2,7 +2,8 @@
 //
 // Every function that takes an id answers a stale one with ErrorCode::stale_id, every one that takes
 // numbers answers NaN and infinity with ErrorCode::not_finite, and a refused call leaves the world exactly
-// as it was. A world is used by one thread at a time.
+// as it was. While a step of it runs, which callbacks see, every change is ErrorCode::busy. Nothing but a destructor and an assignment
+// may be called of a world that was moved from: that ends the process with a sentence. A world is used by one thread at a time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -41,7 +42,7 @@ struct WorldDef {
 };
 
 using ForceId = Id<struct ForceTag>;
-/// Evaluated once a step, before anything moves. It may read the world, not change it.
+/// Evaluated once a step, before anything moves. It may read the world, not change it. What it throws makes the step fail.
 using ForceCallback = std::function<Wrench(const World&, BodyId)>;
 
 class World {
@@ -182,12 +183,12 @@ class World {
   /// with them (any of its own that is no `input`) can be read, not set: that is ErrorCode::bad_argument.
   template <PropertyValue T> Result<T> get(Property<T> property, RowOf object) const {
     PropertyNumbers numbers;
-    if (Status ok = read(property.index, property.generation, object, numbers.x); !ok) return ok.error();
+    if (Status ok = read({property.index, property.generation, property.world}, object, numbers.x); !ok) return ok.error();
     return numbers.as<T>();
   }
   template <PropertyValue T> Status set(Property<T> property, RowOf object, const T& value) {
     const PropertyNumbers numbers(value);
-    return write(property.index, property.generation, object, numbers.x);
+    return write({property.index, property.generation, property.world}, object, numbers.x);
   }
   /// All of them, the library's first, then the host's own in the order of their handles. Names stand as long as the properties.
   std::vector<PropertyInfo> properties() const;
@@ -208,20 +209,31 @@ class World {
   Status restore(std::span<const std::byte> snapshot);
 
   /// The inside, for the library's own stages.
-  WorldState& state() { return *state_; }
-  const WorldState& state() const { return *state_; }
+  WorldState& state(const char* call = __builtin_FUNCTION()) {
+    if (!state_) detail::moved_from("World", call);
+    return *state_;
+  }
+  const WorldState& state(const char* call = __builtin_FUNCTION()) const {
+    if (!state_) detail::moved_from("World", call);
+    return *state_;
+  }
 
  private:
   using AnyProperty = Id<struct AnyPropertyTag>;
   template <class T> static Result<Property<T>> handle(const Result<AnyProperty>& found) {
     if (!found) return found.error();
-    return Property<T>{found->index, found->generation};
+    return Property<T>{found->index, found->generation, found->world};
   }
   Result<AnyProperty> add_property(std::string_view name, PropertyType type, const double* initial, std::string_view unit,
                                    TableId table, Role role);
   Result<AnyProperty> find_property(std::string_view name, PropertyType type) const;
-  Status read(std::uint32_t property, std::uint32_t generation, RowOf object, double* numbers) const;
-  Status write(std::uint32_t property, std::uint32_t generation, RowOf object, const double* numbers);
+  Status read(AnyProperty property, RowOf object, double* numbers) const;
+  Status write(AnyProperty property, RowOf object, const double* numbers);
+  /// Whether no step of it runs, and the object is there.
+  Status changeable() const;
+  Status changeable(BodyId body) const;
+  Status changeable(JointId joint) const;
+  Status changeable(SpringId spring) const;
 
   std::unique_ptr<WorldState> state_;
 };

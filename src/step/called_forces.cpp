@@ -1,5 +1,6 @@
 #include "step/called_forces.h"
 
+#include <exception>
 #include <string>
 #include <utility>
 
@@ -18,13 +19,32 @@ Status check(const Wrench& answer, std::uint32_t body) {
 
 }  // namespace
 
+namespace {
+Error threw(std::uint32_t body, const std::string& what) {
+  return {ErrorCode::bad_argument, "A force callback of body " + std::to_string(body) + " threw " + what +
+                                       "; it must answer with a force. The world is as before the step."};
+}
+
+Result<Wrench> call(const ForceRecord& f, const World& world, BodyId body) {
+  try {
+    return f.callback(world, body);
+  } catch (const std::exception& e) {
+    return threw(f.body, "\"" + std::string(e.what()) + "\"");
+  } catch (...) {
+    return threw(f.body, "something");
+  }
+}
+}  // namespace
+
 Status CalledForces::ask(const World& world) {
   const WorldState& s = world.state();
   answers_.clear();
   if (s.callbacks == 0) return {};
   for (const ForceRecord& f : s.forces) {
     if (!f.callback) continue;
-    answers_.push_back(f.callback(world, s.body_ids.id<BodyId>(f.body)));
+    const Result<Wrench> answer = call(f, world, s.body_ids.id<BodyId>(f.body));
+    if (!answer) return answer.error();
+    answers_.push_back(*answer);
     if (Status ok = check(answers_.back(), f.body); !ok) return ok;
   }
   return {};

@@ -1,6 +1,7 @@
 // One step, readable on a screen: forces, contacts, schedule, plan, run.
 #pragma once
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <chrono>
 #include <optional>
@@ -38,6 +39,8 @@ struct Stepper::Inside {
   using Clock = std::chrono::steady_clock;
   static constexpr int most_tries = 8;
 
+  std::atomic<bool> running{false};
+  StepReport refused;  // of a step that was asked for while one runs
   StepSettings settings;
   bool checked = false;               // the settings
   std::optional<Precision> prepared;  // for worlds of this one, by the settings

@@ -1,4 +1,5 @@
 // What a host calls of a stepper.
+#include <atomic>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -42,23 +43,76 @@ void Stepper::Inside::choose_order(FourthOrder& order, const WorldState& s, cons
 }
 
 Stepper::Stepper(const StepSettings& settings) : inside_(std::make_unique<Inside>()) { inside_->settings = settings; }
-Stepper::~Stepper() = default;
-Stepper::Stepper(Stepper&&) noexcept = default;
-Stepper& Stepper::operator=(Stepper&&) noexcept = default;
+Stepper::~Stepper() {
+  if (inside_ && inside_->running) detail::misuse("A Stepper was destroyed while it makes a step; no callback may do that.");
+}
+Stepper::Stepper(Stepper&& other) noexcept {
+  if (other.inside_ && other.inside_->running)
+    detail::misuse("A Stepper was moved while it makes a step; no callback may do that.");
+  inside_ = std::move(other.inside_);
+}
+Stepper& Stepper::operator=(Stepper&& other) noexcept {
+  Stepper taken(std::move(other));
+  Stepper given(std::move(*this));
+  inside_ = std::move(taken.inside_);
+  return *this;
+}
 
-Status Stepper::configure(const StepSettings& settings) {
-  if (Status ok = check_settings(settings); !ok) return ok;
-  inside_->settings = settings;
-  inside_->checked = true;
-  inside_->prepared.reset();
-  inside_->idle = {};
+Stepper::Inside& Stepper::inside(const char* call) {
+  if (!inside_) detail::moved_from("Stepper", call);
+  return *inside_;
+}
+const Stepper::Inside& Stepper::inside(const char* call) const {
+  if (!inside_) detail::moved_from("Stepper", call);
+  return *inside_;
+}
+Status Stepper::changeable(const char* call) const {
+  if (inside(call).running) return busy("stepper");
   return {};
 }
-const StepSettings& Stepper::settings() const { return inside_->settings; }
+Status Stepper::changeable(const World& world, const char* call) const {
+  if (world.state(call).stepping) return busy("world");
+  return changeable(call);
+}
+
+Status Stepper::configure(const StepSettings& settings) {
+  if (Status ok = changeable(); !ok) return ok;
+  if (Status ok = check_settings(settings); !ok) return ok;
+  Inside& in = inside();
+  in.settings = settings;
+  in.checked = true;
+  in.prepared.reset();
+  in.idle = {};
+  return {};
+}
+const StepSettings& Stepper::settings() const { return inside().settings; }
+
+namespace {
+/// Of a flag that is up while a step runs: of what was already up there is none.
+class Running {
+ public:
+  explicit Running(std::atomic<bool>& flag) : flag_(flag.exchange(true) ? nullptr : &flag) {}
+  Running(const Running&) = delete;
+  Running& operator=(const Running&) = delete;
+  ~Running() {
+    if (flag_) *flag_ = false;
+  }
+  explicit operator bool() const { return flag_; }
+
+ private:
+  std::atomic<bool>* flag_;
+};
+}  // namespace
 
 const StepReport& Stepper::step(World& world, double dt) {
   using Clock = Inside::Clock;
-  Inside& in = *inside_;
+  Inside& in = inside();
+  WorldState& s = world.state();
+  const Running stepper_runs(in.running), world_runs(s.stepping);
+  if (!stepper_runs || !world_runs) {
+    in.refused.error = busy(stepper_runs ? "world" : "stepper");
+    return in.refused;
+  }
   static const StepReport blank;
   const std::uint64_t made = in.report.step;
   in.report = blank;
@@ -75,13 +129,17 @@ const StepReport& Stepper::step(World& world, double dt) {
   return in.report;
 }
 
-StepEvents Stepper::events() const { return inside_->recorder.events(); }
+StepEvents Stepper::events() const { return inside().recorder.events(); }
 
-const StepPlan& Stepper::plan() const { return inside_->plan ? *inside_->plan : inside_->no_plan; }
+const StepPlan& Stepper::plan() const {
+  const Inside& in = inside();
+  return in.plan ? *in.plan : in.no_plan;
+}
 
 Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
-  Inside& in = *inside_;
-  Status ok = check_dt(dt);
+  Inside& in = inside();
+  Status ok = changeable();
+  if (ok) ok = check_dt(dt);
   if (ok) ok = check_settings(in.settings);
   if (ok) ok = in.own.check(world.state());
   if (!ok) return ok.error();
@@ -113,7 +171,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
 }
 
 Status Stepper::add_kernel(World& world, const KernelDef& def) {
-  Inside& in = *inside_;
+  if (Status ok = changeable(world); !ok) return ok;
+  Inside& in = inside();
   WorldState& s = world.state();
   std::optional<OwnWork> others;  // of another world: they give way, unless this one is refused
   if (in.own.of_another(s)) {
@@ -136,15 +195,21 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
 }
 
 Status Stepper::remove_kernel(World& world, std::string_view name) {
-  const Status ok = inside_->own.remove(world.state(), name);
+  if (Status ok = changeable(world); !ok) return ok;
+  const Status ok = inside().own.remove(world.state(), name);
   if (ok) world.state().stir_all();
   return ok;
 }
 
-void Stepper::remove_kernels() { inside_->own.clear(); }
+Status Stepper::remove_kernels() {
+  if (Status ok = changeable(); !ok) return ok;
+  inside().own.clear();
+  return {};
+}
 
 Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& parameter) {
-  OwnKernel* k = inside_->own.find(kernel);
+  if (Status ok = changeable(); !ok) return ok;
+  OwnKernel* k = inside().own.find(kernel);
   if (!k)
     return Error{ErrorCode::unknown_name, "There is no kernel \"" + std::string(kernel) + "\"; Stepper::add_kernel adds one."};
   if (k->parameters_before.empty()) k->parameters_before = k->parameters;
@@ -152,15 +217,16 @@ Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& pa
 }
 
 std::vector<BufferUse> Stepper::memory(const World& world) const {
+  const Inside& in = inside();
   MemoryUses uses(world.state());
   uses.add_host(inside_->schedule);
-  uses.add("collision", "", Place::cpu, inside_->detector.memory_bytes());
-  inside_->runner.list_memory(uses);
+  uses.add("collision", "", Place::cpu, in.detector.memory_bytes());
+  in.runner.list_memory(uses);
   return uses.take();
 }
 
-void Stepper::set_trace(ContactTrace* trace) { inside_->runner.trace(trace); }
+void Stepper::set_trace(ContactTrace* trace) { inside().runner.trace(trace); }
 
-std::string Stepper::device(Place place) const { return inside_->runner.device(place); }
+std::string Stepper::device(Place place) const { return inside().runner.device(place); }
 
 }  // namespace pcphys

@@ -40,33 +40,65 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
 }  // namespace
 
 World::World(const WorldDef& def) : state_(std::make_unique<WorldState>(def)) {}
-World::~World() = default;
-World::World(World&&) noexcept = default;
-World& World::operator=(World&&) noexcept = default;
+World::~World() {
+  if (state_ && state_->stepping) detail::misuse("A World was destroyed while a step of it runs; no callback may do that.");
+}
+World::World(World&& other) noexcept {
+  if (other.state_ && other.state_->stepping) detail::misuse("A World was moved while a step of it runs; no callback may do that.");
+  state_ = std::move(other.state_);
+}
+World& World::operator=(World&& other) noexcept {
+  World taken(std::move(other));
+  World given(std::move(*this));
+  state_ = std::move(taken.state_);
+  return *this;
+}
 
-BodyId World::ground() const { return state_->body_ids.id<BodyId>(0); }
-bool World::valid(BodyId body) const { return state_->body_ids.valid(body); }
-std::size_t World::body_count() const { return state_->body_ids.count() - 1; }
-Precision World::precision() const { return state_->tables.precision(); }
-Vec3 World::gravity() const { return state_->gravity; }
+Status World::changeable() const {
+  if (state().stepping) return busy("world");
+  return {};
+}
+Status World::changeable(BodyId body) const {
+  if (Status ok = changeable(); !ok) return ok;
+  if (!valid(body)) return stale("body");
+  return {};
+}
+Status World::changeable(JointId joint) const {
+  if (Status ok = changeable(); !ok) return ok;
+  if (!valid(joint)) return stale("joint");
+  return {};
+}
+Status World::changeable(SpringId spring) const {
+  if (Status ok = changeable(); !ok) return ok;
+  if (!valid(spring)) return stale("spring");
+  return {};
+}
+
+BodyId World::ground() const { return state().body_ids.id<BodyId>(0); }
+bool World::valid(BodyId body) const { return state().body_ids.valid(body); }
+std::size_t World::body_count() const { return state().body_ids.count() - 1; }
+Precision World::precision() const { return state().tables.precision(); }
+Vec3 World::gravity() const { return state().gravity; }
 
 Status World::set_gravity(Vec3 gravity) {
+  if (Status ok = changeable(); !ok) return ok;
   if (Status ok = check_finite(gravity, "gravity"); !ok) return ok;
-  if (gravity == state_->gravity) return {};
-  for (std::uint32_t row = 1; row < state_->bodies.size(); row++) {
-    state_->kick(row, gravity - state_->gravity, {});
-    state_->stir(row);
+  if (gravity == state().gravity) return {};
+  for (std::uint32_t row = 1; row < state().bodies.size(); row++) {
+    state().kick(row, gravity - state().gravity, {});
+    state().stir(row);
   }
-  state_->gravity = gravity;
+  state().gravity = gravity;
   return {};
 }
 
 Result<BodyId> World::create_body(const BodyDef& def) {
+  if (Status ok = changeable(); !ok) return ok.error();
   Quat orientation;
   const Result<MassProperties> mass = check(def, orientation);
   if (!mass) return mass.error();
 
-  WorldState& s = *state_;
+  WorldState& s = state();
   const std::uint32_t row = std::uint32_t(s.bodies.size());
   const std::uint32_t index = s.body_ids.allocate(row);
   s.bodies.push_back({index, def.kind, false, {}, {}});
@@ -95,8 +127,8 @@ Result<BodyId> World::create_body(const BodyDef& def) {
 }
 
 Status World::destroy(BodyId body) {
-  WorldState& s = *state_;
-  if (!s.body_ids.valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok;
+  WorldState& s = state();
   if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
   s.stir_neighbours(s.body_ids.row(body.index));
   for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
@@ -120,43 +152,43 @@ Status World::destroy(BodyId body) {
 
 std::vector<BodyId> World::bodies() const {
   std::vector<BodyId> ids;
-  for (std::uint32_t i = 1; i < state_->body_ids.size(); i++)
-    if (state_->body_ids.alive(i)) ids.push_back(state_->body_ids.id<BodyId>(i));
+  for (std::uint32_t i = 1; i < state().body_ids.size(); i++)
+    if (state().body_ids.alive(i)) ids.push_back(state().body_ids.id<BodyId>(i));
   return ids;
 }
 
 Result<std::uint32_t> World::row_of(BodyId body) const {
   if (!valid(body)) return stale("body");
-  return state_->body_ids.row(body.index);
+  return state().body_ids.row(body.index);
 }
 Result<std::uint32_t> World::row_of(JointId joint) const {
   if (!valid(joint)) return stale("joint");
-  return state_->joint_ids.row(joint.index);
+  return state().joint_ids.row(joint.index);
 }
 Result<bool> World::frozen(BodyId body) const {
   if (!valid(body)) return stale("body");
-  return state_->bodies[state_->body_ids.row(body.index)].frozen;
+  return state().bodies[state().body_ids.row(body.index)].frozen;
 }
 Result<BodyKind> World::kind(BodyId body) const {
   if (!valid(body)) return stale("body");
-  return state_->bodies[state_->body_ids.row(body.index)].kind;
+  return state().bodies[state().body_ids.row(body.index)].kind;
 }
 
 // ---- state ---------------------------------------------------------------------------------------------
 
 Result<Pose> World::pose(BodyId body) const {
   if (!valid(body)) return stale("body");
-  return state_->pose(state_->body_ids.row(body.index));
+  return state().pose(state().body_ids.row(body.index));
 }
 
 Status World::set_pose(BodyId body, const Pose& pose) {
-  if (!valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok;
   if (body.index == 0)
     return Error{ErrorCode::bad_argument, "The ground stays at the origin; create a fixed body for anything else."};
   Quat q = pose.orientation;
   if (Status ok = check_finite(pose.position, "position of a body"); !ok) return ok;
   if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
-  WorldState& s = *state_;
+  WorldState& s = state();
   const std::uint32_t row = s.body_ids.row(body.index);
   s.change(row);
   const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.orientation(row));
@@ -173,43 +205,43 @@ Status World::set_pose(BodyId body, const Pose& pose) {
 
 Result<Vec3> World::velocity(BodyId body) const {
   if (!valid(body)) return stale("body");
-  return state_->velocity(state_->body_ids.row(body.index));
+  return state().velocity(state().body_ids.row(body.index));
 }
 
 Status World::set_velocity(BodyId body, Vec3 velocity) {
-  if (!valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(velocity, "velocity of a body"); !ok) return ok;
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  if (state_->bodies[row].kind == BodyKind::fixed)
+  const std::uint32_t row = state().body_ids.row(body.index);
+  if (state().bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
-  state_->change(row);
-  state_->bring_in_phase(row);
-  state_->tables.set3(Buffer::motion, row, 0, velocity);
+  state().change(row);
+  state().bring_in_phase(row);
+  state().tables.set3(Buffer::motion, row, 0, velocity);
   return {};
 }
 
 Result<Vec3> World::angular_velocity(BodyId body) const {
   if (!valid(body)) return stale("body");
-  return state_->angular_velocity(state_->body_ids.row(body.index));
+  return state().angular_velocity(state().body_ids.row(body.index));
 }
 
 Status World::set_angular_velocity(BodyId body, Vec3 w) {
-  if (!valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(w, "angular velocity of a body"); !ok) return ok;
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  if (state_->bodies[row].kind == BodyKind::fixed)
+  const std::uint32_t row = state().body_ids.row(body.index);
+  if (state().bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
-  if (!state_->rotates(row) && w != Vec3{}) return no_rotation();
-  state_->change(row);
-  state_->bring_in_phase(row);
-  state_->set_angular_velocity(row, w);
+  if (!state().rotates(row) && w != Vec3{}) return no_rotation();
+  state().change(row);
+  state().bring_in_phase(row);
+  state().set_angular_velocity(row, w);
   return {};
 }
 
 Result<Vec3> World::angular_momentum(BodyId body) const {
   if (!valid(body)) return stale("body");
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  return state_->bodies[row].kind == BodyKind::dynamic ? state_->momentum_of_rotation(row) : Vec3{};
+  const std::uint32_t row = state().body_ids.row(body.index);
+  return state().bodies[row].kind == BodyKind::dynamic ? state().momentum_of_rotation(row) : Vec3{};
 }
 
 namespace {
@@ -222,16 +254,16 @@ Status need_substep(const WorldState& s) {
 
 Result<Vec3> World::position_last(BodyId body) const {
   if (!valid(body)) return stale("body");
-  if (Status ok = need_substep(*state_); !ok) return ok.error();
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  return state_->pose(row).position - state_->last_substep * state_->tables.get3(Buffer::motion, row, 0);
+  if (Status ok = need_substep(state()); !ok) return ok.error();
+  const std::uint32_t row = state().body_ids.row(body.index);
+  return state().pose(row).position - state().last_substep * state().tables.get3(Buffer::motion, row, 0);
 }
 
 Status World::set_position_last(BodyId body, Vec3 position) {
-  if (!valid(body)) return stale("body");
-  if (Status ok = need_substep(*state_); !ok) return ok;
+  if (Status ok = changeable(body); !ok) return ok;
+  if (Status ok = need_substep(state()); !ok) return ok;
   if (Status ok = check_finite(position, "last position of a body"); !ok) return ok;
-  WorldState& s = *state_;
+  WorldState& s = state();
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
@@ -244,22 +276,22 @@ Status World::set_position_last(BodyId body, Vec3 position) {
 
 Result<Quat> World::orientation_last(BodyId body) const {
   if (!valid(body)) return stale("body");
-  if (Status ok = need_substep(*state_); !ok) return ok.error();
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  const Quat q = state_->orientation(row);
-  const Vec3 pi = rotate(conjugate(q), state_->tables.get3(Buffer::motion, row, 4)),
-             i = state_->tables.get3(Buffer::mass, row, 4);
+  if (Status ok = need_substep(state()); !ok) return ok.error();
+  const std::uint32_t row = state().body_ids.row(body.index);
+  const Quat q = state().orientation(row);
+  const Vec3 pi = rotate(conjugate(q), state().tables.get3(Buffer::motion, row, 4)),
+             i = state().tables.get3(Buffer::mass, row, 4);
   const Vec3 w = rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
   const double speed = length(w);
   if (speed == 0) return q;
-  return axis_angle((1 / speed) * w, -speed * state_->last_substep) * q;
+  return axis_angle((1 / speed) * w, -speed * state().last_substep) * q;
 }
 
 Status World::set_orientation_last(BodyId body, Quat last) {
-  if (!valid(body)) return stale("body");
-  if (Status ok = need_substep(*state_); !ok) return ok;
+  if (Status ok = changeable(body); !ok) return ok;
+  if (Status ok = need_substep(state()); !ok) return ok;
   if (Status ok = check_unit(last, "last orientation of a body"); !ok) return ok;
-  WorldState& s = *state_;
+  WorldState& s = state();
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
@@ -280,14 +312,14 @@ Status World::set_orientation_last(BodyId body, Quat last) {
 
 Result<MassProperties> World::mass_properties(BodyId body) const {
   if (!valid(body)) return stale("body");
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  if (state_->bodies[row].frozen) return state_->frozen.at(body.index);
-  return MassProperties{state_->tables.get(Buffer::mass, row, 3), state_->tables.get3(Buffer::mass, row, 0)};
+  const std::uint32_t row = state().body_ids.row(body.index);
+  if (state().bodies[row].frozen) return state().frozen.at(body.index);
+  return MassProperties{state().tables.get(Buffer::mass, row, 3), state().tables.get3(Buffer::mass, row, 0)};
 }
 
 Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
-  if (!valid(body)) return stale("body");
-  WorldState& s = *state_;
+  if (Status ok = changeable(body); !ok) return ok;
+  WorldState& s = state();
   const std::uint32_t row = s.body_ids.row(body.index);
   const bool rotates = s.rotates(row);
   if (Status ok = check(mass, rotates); !ok) return ok;
@@ -303,59 +335,61 @@ Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
 
 Result<Material> World::material(BodyId body) const {
   if (!valid(body)) return stale("body");
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  const Tables& t = state_->tables;
+  const std::uint32_t row = state().body_ids.row(body.index);
+  const Tables& t = state().tables;
   const auto get = [&](std::uint32_t k) { return t.get(Buffer::material, row, k); };
   return Material{get(0), get(1), get(2), get(4), get(5), Combine(std::uint8_t(get(3))), Combine(std::uint8_t(get(6)))};
 }
 
 Status World::set_material(BodyId body, const Material& material) {
-  if (!valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check(material); !ok) return ok;
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  write_material(state_->tables, row, material);
-  state_->stir(row);
+  const std::uint32_t row = state().body_ids.row(body.index);
+  write_material(state().tables, row, material);
+  state().stir(row);
   return {};
 }
 
 Status World::set_drag(BodyId body, double linear, double angular) {
-  if (!valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(linear, "linear drag of a body"); !ok) return ok;
   if (Status ok = check_finite(angular, "angular drag of a body"); !ok) return ok;
   if (linear < 0 || angular < 0) return Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
-  const std::uint32_t row = state_->body_ids.row(body.index);
-  state_->change(row);
-  state_->bring_in_phase(row);
-  state_->tables.set(Buffer::force, row, 3, linear);
-  state_->tables.set(Buffer::force, row, 7, angular);
-  state_->structure_version++;  // the plan leaves drag out where there is none
+  const std::uint32_t row = state().body_ids.row(body.index);
+  state().change(row);
+  state().bring_in_phase(row);
+  state().tables.set(Buffer::force, row, 3, linear);
+  state().tables.set(Buffer::force, row, 7, angular);
+  state().structure_version++;  // the plan leaves drag out where there is none
   return {};
 }
 
 Result<std::vector<ShapeDef>> World::shapes(BodyId body) const {
   if (!valid(body)) return stale("body");
   std::vector<ShapeDef> defs;
-  for (std::uint32_t shape : state_->bodies[state_->body_ids.row(body.index)].shapes) defs.push_back(state_->shapes[shape].def);
+  for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes) defs.push_back(state().shapes[shape].def);
   return defs;
 }
 
 Status World::set_filter(BodyId body, const Filter& filter) {
-  if (!valid(body)) return stale("body");
-  for (std::uint32_t shape : state_->bodies[state_->body_ids.row(body.index)].shapes)
-    state_->shapes[shape].filter = state_->shapes[shape].def.filter = filter;
-  state_->structure_version++;
-  state_->stir(state_->body_ids.row(body.index));
+  if (Status ok = changeable(body); !ok) return ok;
+  for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes)
+    state().shapes[shape].filter = state().shapes[shape].def.filter = filter;
+  state().structure_version++;
+  state().stir(state().body_ids.row(body.index));
   return {};
 }
 
 Status World::set_collide(BodyId a, BodyId b, bool collide) {
-  if (!valid(a) || !valid(b)) return stale("body");
-  const auto pair = state_->no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
+  Status ok = changeable(a);
+  if (ok) ok = changeable(b);
+  if (!ok) return ok;
+  const auto pair = state().no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
   pair->second.asked = !collide;
-  if (!pair->second.any()) state_->no_collide.erase(pair);
-  state_->structure_version++;
-  state_->stir_moving(state_->body_ids.row(a.index));
-  state_->stir_moving(state_->body_ids.row(b.index));
+  if (!pair->second.any()) state().no_collide.erase(pair);
+  state().structure_version++;
+  state().stir_moving(state().body_ids.row(a.index));
+  state().stir_moving(state().body_ids.row(b.index));
   return {};
 }
 

@@ -28,7 +28,7 @@ void WorldState::drop_contacts(std::uint32_t row, std::uint32_t last_row) {
 }
 
 std::vector<Contact> World::contacts() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   const Tables& t = s.tables;
   std::vector<Contact> found;
   found.reserve(s.contact_rows() - 1);

@@ -1,5 +1,5 @@
 // Hands out indices, smallest free first, and generations: which id an object gets depends only on the
-// sequence of calls. Also keeps each index's row in its table.
+// sequence of calls. An index whose generations are used up is not used again. Also keeps each index's row in its table.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -14,7 +14,9 @@ class IdPool {
     std::uint32_t generation = 0, row = 0;
     bool alive = false;
   };
+  static constexpr std::uint32_t last_generation = 0xffffffffu;
 
+  explicit IdPool(std::uint32_t world = 1) : world_(world) {}
   std::uint32_t allocate(std::uint32_t row) {
     std::uint32_t index = 0;
     if (free_.empty()) {
@@ -34,13 +36,14 @@ class IdPool {
   void release(std::uint32_t index) {
     slots_[index].alive = false;
     alive_--;
+    if (slots_[index].generation == last_generation) return;
     free_.push_back(index);
     std::push_heap(free_.begin(), free_.end(), std::greater<>());
   }
   template <class Id> bool valid(Id id) const {
-    return id.index < slots_.size() && slots_[id.index].alive && slots_[id.index].generation == id.generation;
+    return id.index < slots_.size() && slots_[id.index].alive && slots_[id.index].generation == id.generation && id.world == world_;
   }
-  template <class Id> Id id(std::uint32_t index) const { return {index, slots_[index].generation}; }
+  template <class Id> Id id(std::uint32_t index) const { return {index, slots_[index].generation, world_}; }
   std::uint32_t row(std::uint32_t index) const { return slots_[index].row; }
   void set_row(std::uint32_t index, std::uint32_t row) { slots_[index].row = row; }
   bool alive(std::uint32_t index) const { return slots_[index].alive; }
@@ -49,6 +52,7 @@ class IdPool {
   std::uint32_t count() const { return alive_; }
 
  private:
+  std::uint32_t world_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> free_;  // min-heap
   std::uint32_t alive_ = 0;

@@ -94,13 +94,13 @@ template <class AnyId> std::vector<AnyId> all_alive(const WorldState& s, bool sp
 }
 }  // namespace
 
-bool World::valid(JointId joint) const { return is_alive(*state_, joint, false); }
-bool World::valid(SpringId spring) const { return is_alive(*state_, spring, true); }
-std::vector<JointId> World::joints() const { return all_alive<JointId>(*state_, false); }
-std::vector<SpringId> World::springs() const { return all_alive<SpringId>(*state_, true); }
+bool World::valid(JointId joint) const { return is_alive(state(), joint, false); }
+bool World::valid(SpringId spring) const { return is_alive(state(), spring, true); }
+std::vector<JointId> World::joints() const { return all_alive<JointId>(state(), false); }
+std::vector<SpringId> World::springs() const { return all_alive<SpringId>(state(), true); }
 
 std::size_t World::joint_count() const {
-  return state_->joints.size() - 1 - state_->springs;  // row 0 pads
+  return state().joints.size() - 1 - state().springs;  // row 0 pads
 }
 
 namespace {
@@ -132,13 +132,14 @@ std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<Sp
 
 Result<JointId> World::create_joint(const JointDef& given) {
   JointDef def = given;
-  Status ok = check_ends(*this, def.a, def.b, "joint");
+  Status ok = changeable();
+  if (ok) ok = check_ends(*this, def.a, def.b, "joint");
   if (ok) ok = check(def);
   for (const BodyId body : {def.a, def.b})
-    if (ok && !state_->rotates(state_->body_ids.row(body.index)))
+    if (ok && !state().rotates(state().body_ids.row(body.index)))
       ok = Error{ErrorCode::bad_joint, "A body that does not rotate (BodyDef::rotates) takes no joint; create one that does, or a spring."};
   if (!ok) return ok.error();
-  return state_->joint_ids.id<JointId>(new_row(*state_, def, {}));
+  return state().joint_ids.id<JointId>(new_row(state(), def, {}));
 }
 
 namespace {
@@ -160,7 +161,7 @@ Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) {
   Status ok = check_finite(point, "point of a grab");
   if (ok && (!valid(hand) || !valid(body))) ok = stale("body");
   if (!ok) return ok.error();
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   const std::uint32_t a = s.body_ids.row(hand.index), b = s.body_ids.row(body.index);
   if (s.bodies[a].kind != BodyKind::kinematic || s.bodies[b].kind != BodyKind::dynamic)
     return Error{ErrorCode::bad_joint, "A hand that grabs is a kinematic body, and what it grabs a dynamic one."};
@@ -179,7 +180,8 @@ Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) {
 }
 
 Result<SpringId> World::create_spring(const SpringDef& def) {
-  Status ok = check_ends(*this, def.a, def.b, "spring");
+  Status ok = changeable();
+  if (ok) ok = check_ends(*this, def.a, def.b, "spring");
   if (ok) ok = check(def);
   if (!ok) return ok.error();
   JointDef ends;
@@ -188,7 +190,7 @@ Result<SpringId> World::create_spring(const SpringDef& def) {
   ends.frame_a.position = def.anchor_a;
   ends.frame_b.position = def.anchor_b;
   ends.collide = true;
-  return state_->joint_ids.id<SpringId>(new_row(*state_, ends, def));
+  return state().joint_ids.id<SpringId>(new_row(state(), ends, def));
 }
 
 void WorldState::remove_joint(std::uint32_t row) {
@@ -204,51 +206,51 @@ void WorldState::remove_joint(std::uint32_t row) {
 }
 
 Status World::destroy(JointId joint) {
-  if (!valid(joint)) return stale("joint");
-  state_->remove_joint(state_->joint_ids.row(joint.index));
+  if (Status ok = changeable(joint); !ok) return ok;
+  state().remove_joint(state().joint_ids.row(joint.index));
   return {};
 }
 
 Status World::destroy(SpringId spring) {
-  if (!valid(spring)) return stale("spring");
-  state_->remove_joint(state_->joint_ids.row(spring.index));
+  if (Status ok = changeable(spring); !ok) return ok;
+  state().remove_joint(state().joint_ids.row(spring.index));
   return {};
 }
 
 Status World::set_motor(JointId joint, const Motor& motor) {
-  if (!valid(joint)) return stale("joint");
+  if (Status ok = changeable(joint); !ok) return ok;
   if (Status ok = check(motor); !ok) return ok;
-  change_drive(*state_, state_->joint_ids.row(joint.index), [&](JointRecord& r) { r.def.motor = motor; });
+  change_drive(state(), state().joint_ids.row(joint.index), [&](JointRecord& r) { r.def.motor = motor; });
   return {};
 }
 
 Status World::set_spring(JointId joint, const AngularSpring& given) {
-  if (!valid(joint)) return stale("joint");
+  if (Status ok = changeable(joint); !ok) return ok;
   AngularSpring spring = given;
   if (Status ok = check(spring); !ok) return ok;
-  change_drive(*state_, state_->joint_ids.row(joint.index), [&](JointRecord& r) { r.def.spring = spring; });
+  change_drive(state(), state().joint_ids.row(joint.index), [&](JointRecord& r) { r.def.spring = spring; });
   return {};
 }
 
 Status World::set_spring(SpringId spring, double rest_length, double stiffness, double damping) {
-  if (!valid(spring)) return stale("spring");
-  const std::uint32_t row = state_->joint_ids.row(spring.index);
-  SpringDef def = *state_->joints[row].spring;
+  if (Status ok = changeable(spring); !ok) return ok;
+  const std::uint32_t row = state().joint_ids.row(spring.index);
+  SpringDef def = *state().joints[row].spring;
   def.rest_length = rest_length;
   def.stiffness = stiffness;
   def.damping = damping;
   if (Status ok = check(def); !ok) return ok;
-  change_drive(*state_, row, [&](JointRecord& r) { r.spring = def; });
+  change_drive(state(), row, [&](JointRecord& r) { r.spring = def; });
   return {};
 }
 
 Result<SpringDef> World::spring(SpringId spring) const {
   if (!valid(spring)) return stale("spring");
-  return *state_->joints[state_->joint_ids.row(spring.index)].spring;
+  return *state().joints[state().joint_ids.row(spring.index)].spring;
 }
 
 double World::spring_energy() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   double sum = 0;
   for (const JointRecord& r : s.joints) {
     if (!r.driven()) continue;
@@ -268,13 +270,13 @@ double World::spring_energy() const {
 
 Result<JointDef> World::joint(JointId joint) const {
   if (!valid(joint)) return stale("joint");
-  return state_->joints[state_->joint_ids.row(joint.index)].def;
+  return state().joints[state().joint_ids.row(joint.index)].def;
 }
 
 Result<double> World::joint_separation(JointId joint) const {
   if (!valid(joint)) return stale("joint");
-  const JointRecord& r = state_->joints[state_->joint_ids.row(joint.index)];
-  const Pose a = state_->pose(state_->body_ids.row(r.body_a)), b = state_->pose(state_->body_ids.row(r.body_b));
+  const JointRecord& r = state().joints[state().joint_ids.row(joint.index)];
+  const Pose a = state().pose(state().body_ids.row(r.body_a)), b = state().pose(state().body_ids.row(r.body_b));
   return length(transform(a, r.def.frame_a.position) - transform(b, r.def.frame_b.position));
 }
 
@@ -319,7 +321,8 @@ Status check(const RagdollDef& def, const Pose& frame, Vec3 velocity) {
 
 Result<Ragdoll> World::create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity) {
   Pose frame = pose;
-  Status ok = check_unit(frame.orientation, "orientation of a ragdoll");
+  Status ok = changeable();
+  if (ok) ok = check_unit(frame.orientation, "orientation of a ragdoll");
   if (ok) ok = check(def, frame, velocity);  // all of it before anything is made: a refused call uses up no id
   if (!ok) return ok.error();
   Ragdoll made;
@@ -357,20 +360,21 @@ ForceId new_force(WorldState& s, ForceRecord record) {
 }  // namespace
 
 Result<ForceId> World::add_force(BodyId body, const Wrench& wrench) {
-  if (!valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok.error();
   if (Status ok = check_finite(wrench.force, "force on a body"); !ok) return ok.error();
   if (Status ok = check_finite(wrench.torque, "torque on a body"); !ok) return ok.error();
-  return new_force(*state_, {body.index, wrench, {}});
+  return new_force(state(), {body.index, wrench, {}});
 }
 
 Result<ForceId> World::add_force(BodyId body, ForceCallback callback) {
-  if (!valid(body)) return stale("body");
+  if (Status ok = changeable(body); !ok) return ok.error();
   if (!callback) return Error{ErrorCode::bad_argument, "The force callback is empty; pass a function."};
-  return new_force(*state_, {body.index, {}, std::move(callback)});
+  return new_force(state(), {body.index, {}, std::move(callback)});
 }
 
 Status World::remove(ForceId force) {
-  WorldState& s = *state_;
+  if (Status ok = changeable(); !ok) return ok;
+  WorldState& s = state();
   if (!s.force_ids.valid(force)) return stale("force");
   const std::uint32_t row = s.body_ids.row(s.forces[force.index].body);
   s.change(row);

@@ -4,7 +4,7 @@
 namespace pcphys {
 
 double World::kinetic_energy() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   double sum = 0;
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) {
     if (s.bodies[row].kind != BodyKind::dynamic) continue;
@@ -15,7 +15,7 @@ double World::kinetic_energy() const {
 }
 
 double World::potential_energy() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   double sum = 0;
   for (std::uint32_t row = 1; row < s.bodies.size(); row++)
     sum -= s.tables.get(Buffer::mass, row, 3) * dot(s.gravity, s.pose(row).position);
@@ -23,7 +23,7 @@ double World::potential_energy() const {
 }
 
 Vec3 World::momentum() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   Vec3 sum;
   for (std::uint32_t row = 1; row < s.bodies.size(); row++)
     sum = sum + s.tables.get(Buffer::mass, row, 3) * s.tables.get3(Buffer::motion, row, 0);
@@ -31,7 +31,7 @@ Vec3 World::momentum() const {
 }
 
 Vec3 World::angular_momentum() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   Vec3 sum;
   for (std::uint32_t row = 1; row < s.bodies.size(); row++)
     if (s.bodies[row].kind == BodyKind::dynamic)
@@ -40,10 +40,10 @@ Vec3 World::angular_momentum() const {
   return sum;
 }
 
-std::size_t World::contact_count() const { return state_->contact_rows() - 1; }
+std::size_t World::contact_count() const { return state().contact_rows() - 1; }
 
 std::size_t World::memory_bytes() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   return s.tables.memory_bytes() + s.bodies.capacity() * sizeof(BodyRecord) + s.joints.capacity() * sizeof(JointRecord) +
          s.shapes.capacity() * sizeof(ShapeRecord) +
          s.contacts.keys.capacity() * (sizeof(ContactKey) + sizeof(s.contacts.ends[0]) + sizeof(s.contacts.features[0]));

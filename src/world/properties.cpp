@@ -28,7 +28,7 @@ Found listed(const WorldState& s, std::uint32_t k) {
           p.table,
           p.buffer,
           std::uint32_t(p.offset * s.tables.real_bytes()),
-          {k, 1}};
+          {k, 1, s.id_world()}};
 }
 Found own(const WorldState& s, std::uint32_t k) {
   const OwnProperty& p = s.own.list[k];
@@ -36,7 +36,7 @@ Found own(const WorldState& s, std::uint32_t k) {
           p.table,
           p.buffer,
           0,
-          {std::uint32_t(pcphys::properties().size()) + k, p.generation}};
+          {std::uint32_t(pcphys::properties().size()) + k, p.generation, s.id_world()}};
 }
 template <class Do> void each_property(const WorldState& s, Do&& what) {
   for (std::uint32_t k = 0; k < properties().size(); k++) what(listed(s, k));
@@ -50,14 +50,15 @@ bool by_name(const WorldState& s, std::string_view name, Found& found) {
   });
   return any;
 }
-bool by_id(const WorldState& s, std::uint32_t index, std::uint32_t generation, Found& found) {
+template <class Id> bool by_id(const WorldState& s, Id id, Found& found) {
   const std::uint32_t listed_count = std::uint32_t(properties().size());
-  if (index < listed_count) {
-    found = listed(s, index);
-    return generation == 1;
+  if (id.world != s.id_world()) return false;
+  if (id.index < listed_count) {
+    found = listed(s, id.index);
+    return id.generation == 1;
   }
-  const std::uint32_t k = index - listed_count;
-  if (k >= s.own.list.size() || !s.own.list[k].used || s.own.list[k].generation != generation) return false;
+  const std::uint32_t k = id.index - listed_count;
+  if (k >= s.own.list.size() || !s.own.list[k].used || s.own.list[k].generation != id.generation) return false;
   found = own(s, k);
   return true;
 }
@@ -180,15 +181,15 @@ Result<std::uint32_t> find_row(const WorldState& s, const Found& f, RowOf object
     return Error{ErrorCode::bad_argument, "The property " + quoted(f.info.name) + " is of the table " + quoted(f.info.table) +
                                               "; ask with a " + kinds[std::size_t(wanted)] + "."};
   if (object.kind == RowOf::Kind::row) {
-    if (object.index == 0 || object.index >= s.tables.rows(f.table))
+    if (object.id.index == 0 || object.id.index >= s.tables.rows(f.table))
       return Error{ErrorCode::bad_argument, "The table " + quoted(f.info.table) + " has rows 1 to " +
                                                 std::to_string(s.tables.rows(f.table) - 1) + "; there is no row " +
-                                                std::to_string(object.index) + "."};
-    return object.index;
+                                                std::to_string(object.id.index) + "."};
+    return object.id.index;
   }
   const IdPool& pool = object.kind == RowOf::Kind::body ? s.body_ids : s.joint_ids;
-  if (!pool.valid(BodyId{object.index, object.generation})) return stale(kinds[std::size_t(object.kind)]);
-  return pool.row(object.index);
+  if (!pool.valid(object.id)) return stale(kinds[std::size_t(object.kind)]);
+  return pool.row(object.id.index);
 }
 
 }  // namespace
@@ -210,15 +211,16 @@ Result<Table> WorldState::table_of(TableId id) const {
   if (id == body_table) return Table::body;
   if (id == joint_table) return Table::joint;
   const std::uint32_t k = id.index - own_tables_from;
-  if (id.index < own_tables_from || k >= own.tables.size() || !own.tables[k].used || own.tables[k].generation != id.generation)
+  if (id.index < own_tables_from || k >= own.tables.size() || !own.tables[k].used || own.tables[k].generation != id.generation ||
+      id.world != id_world())
     return stale("table");
   return own.tables[k].table;
 }
 
 Result<PropertyView> World::view(std::string_view property) const {
-  const Tables& t = state_->tables;
+  const Tables& t = state().tables;
   Found f;
-  if (!by_name(*state_, property, f)) return unknown(property);
+  if (!by_name(state(), property, f)) return unknown(property);
   const PropertyType type = f.info.type;
   return PropertyView{t.bytes(f.buffer).data() + f.offset,
                       t.rows(f.table),
@@ -230,8 +232,9 @@ Result<PropertyView> World::view(std::string_view property) const {
 
 Result<World::AnyProperty> World::add_property(std::string_view name, PropertyType type, const double* initial,
                                                std::string_view unit, TableId table, Role role) {
-  WorldState& s = *state_;
-  Status ok = check_name(name, "property");
+  WorldState& s = state();
+  Status ok = changeable();
+  if (ok) ok = check_name(name, "property");
   if (ok) ok = check_numbers(type, initial, name, s.tables.real_bytes());
   if (!ok) return ok.error();
   Found there;
@@ -244,11 +247,12 @@ Result<World::AnyProperty> World::add_property(std::string_view name, PropertyTy
     write_number(row.data() + c * number_bytes(type, real), type, real, initial[c]);
   const Buffer buffer = s.tables.add(*of, std::span(row).first(own_row_bytes(type, real)));
   const std::uint32_t k = s.own.add({std::string(name), std::string(unit), type, role, *of, buffer});
-  return AnyProperty{std::uint32_t(pcphys::properties().size()) + k, s.own.list[k].generation};
+  return AnyProperty{std::uint32_t(pcphys::properties().size()) + k, s.own.list[k].generation, s.id_world()};
 }
 
 Status World::remove_property(std::string_view name) {
-  WorldState& s = *state_;
+  if (Status ok = changeable(); !ok) return ok;
+  WorldState& s = state();
   Found f;
   if (!by_name(s, name, f)) return unknown(name);
   if (!f.info.own)
@@ -262,18 +266,18 @@ Status World::remove_property(std::string_view name) {
 
 Result<World::AnyProperty> World::find_property(std::string_view name, PropertyType type) const {
   Found f;
-  if (!by_name(*state_, name, f)) return unknown(name);
+  if (!by_name(state(), name, f)) return unknown(name);
   if (f.info.type != type)
     return Error{ErrorCode::wrong_type, "The property " + quoted(name) + " holds values of type " +
                                             std::string(pcphys::name(f.info.type)) + ", not " + std::string(pcphys::name(type)) +
                                             "."};
-  return AnyProperty{f.id.index, f.id.generation};
+  return AnyProperty{f.id.index, f.id.generation, f.id.world};
 }
 
-Status World::read(std::uint32_t property, std::uint32_t generation, RowOf object, double* numbers) const {
-  const WorldState& s = *state_;
+Status World::read(AnyProperty property, RowOf object, double* numbers) const {
+  const WorldState& s = state();
   Found f;
-  if (!by_id(s, property, generation, f)) return stale("property");
+  if (!by_id(s, property, f)) return stale("property");
   const Result<std::uint32_t> row = find_row(s, f, object);
   if (!row) return row.error();
   const std::size_t real = s.tables.real_bytes();
@@ -283,10 +287,11 @@ Status World::read(std::uint32_t property, std::uint32_t generation, RowOf objec
   return {};
 }
 
-Status World::write(std::uint32_t property, std::uint32_t generation, RowOf object, const double* numbers) {
-  WorldState& s = *state_;
+Status World::write(AnyProperty property, RowOf object, const double* numbers) {
+  if (Status ok = changeable(); !ok) return ok;
+  WorldState& s = state();
   Found f;
-  if (!by_id(s, property, generation, f)) return stale("property");
+  if (!by_id(s, property, f)) return stale("property");
   if (!f.info.own)
     return Error{ErrorCode::bad_argument,
                  "The property " + quoted(f.info.name) +
@@ -310,7 +315,7 @@ Status World::write(std::uint32_t property, std::uint32_t generation, RowOf obje
 
 std::vector<PropertyInfo> World::properties() const {
   std::vector<PropertyInfo> all;
-  each_property(*state_, [&](const Found& f) { all.push_back(f.info); });
+  each_property(state(), [&](const Found& f) { all.push_back(f.info); });
   return all;
 }
 
@@ -340,7 +345,8 @@ Status resize_own(WorldState& s, const OwnTable& table, std::uint32_t rows) {
 }  // namespace
 
 Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) {
-  WorldState& s = *state_;
+  if (Status ok = changeable(); !ok) return ok.error();
+  WorldState& s = state();
   if (Status ok = check_name(name, "table"); !ok) return ok.error();
   if (Status ok = check_rows(name, rows); !ok) return ok.error();
   bool there = false;
@@ -353,7 +359,7 @@ Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) {
   OwnTable& t = s.own.tables[k];
   t = {std::string(name), s.tables.add_table(), t.generation + 1, true};
   s.tables.resize(t.table, rows + 1);
-  return TableId{own_tables_from + k, t.generation};
+  return TableId{own_tables_from + k, t.generation, s.id_world()};
 }
 
 namespace {
@@ -367,19 +373,21 @@ Result<OwnTable*> own_table(WorldState& s, TableId id, const char* what) {
 }  // namespace
 
 Status World::resize(TableId table, std::uint32_t rows) {
-  const Result<OwnTable*> found = own_table(*state_, table, "resized");
+  if (Status ok = changeable(); !ok) return ok;
+  const Result<OwnTable*> found = own_table(state(), table, "resized");
   if (!found) return found.error();
-  return resize_own(*state_, **found, rows);
+  return resize_own(state(), **found, rows);
 }
 
 Result<std::uint32_t> World::rows(TableId table) const {
-  const Result<Table> found = state_->table_of(table);
+  const Result<Table> found = state().table_of(table);
   if (!found) return found.error();
-  return state_->tables.rows(*found) - 1;
+  return state().tables.rows(*found) - 1;
 }
 
 Status World::remove(TableId table) {
-  WorldState& s = *state_;
+  if (Status ok = changeable(); !ok) return ok;
+  WorldState& s = state();
   const Result<OwnTable*> found = own_table(s, table, "removed");
   if (!found) return found.error();
   for (OwnProperty& p : s.own.list)

@@ -172,10 +172,10 @@ void read_row(Reader& r, WorldState& s, const StateRows& rows, std::uint32_t row
 
 }  // namespace
 
-std::uint64_t World::hash() const { return hash_world(*state_); }
+std::uint64_t World::hash() const { return hash_world(state()); }
 
 std::vector<std::byte> World::snapshot() const {
-  const WorldState& s = *state_;
+  const WorldState& s = state();
   const StateRows bodies(s, Table::body), joints(s, Table::joint), contacts(s, Table::contact);
   Writer w;
   w.put(magic);
@@ -207,7 +207,8 @@ std::vector<std::byte> World::snapshot() const {
 }
 
 Status World::restore(std::span<const std::byte> snapshot) {
-  WorldState& s = *state_;
+  if (Status ok = changeable(); !ok) return ok;
+  WorldState& s = state();
   const Error cut{ErrorCode::bad_snapshot, "These bytes are no whole snapshot; take them from World::snapshot, unchanged."};
   std::uint64_t sum = 0;
   if (snapshot.size() < sizeof sum) return cut;

@@ -1,6 +1,7 @@
 // The inside of a world: tables, ids, and the host-side columns that no kernel reads.
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -78,13 +79,16 @@ enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, res
 struct WorldState {
   explicit WorldState(const WorldDef& def);
 
-  std::uint64_t serial;  // another for each world of the process: what a stepper remembers is of one of them
+  std::uint64_t serial;                 // another for each world of the process: what a stepper remembers is of one of them
+  std::atomic<bool> stepping{false};    // some stepper steps it: nothing else may change it
+  /// As ids carry it.
+  std::uint32_t id_world() const { return std::uint32_t(serial % 0xffffffffu) + 1; }
   Tables tables;
   Vec3 gravity;
   double last_substep = 0;  // h of the last step [s]; 0 before the first
   double soft_substep = 0;  // that soft rows were made for in it, at least as long [s] (plan/infos.h)
 
-  IdPool body_ids, joint_ids, force_ids;
+  IdPool body_ids{id_world()}, joint_ids{id_world()}, force_ids{id_world()};
   std::vector<BodyRecord> bodies;   // by row
   std::vector<JointRecord> joints;  // by row; row 0 pads
   std::uint32_t springs = 0;        // how many of them are springs between two points

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "pcphys/constants.h"
@@ -29,9 +30,27 @@ const char* name(ErrorCode code) {
   constexpr const char* names[] = {"none",          "not_finite",  "bad_mass",    "degenerate_shape", "not_unit_quaternion",
                                    "bad_time_step", "stale_id",    "bad_joint",   "bad_argument",     "unknown_name",
                                    "name_taken",    "wrong_type",  "unavailable", "buffer_full",      "device_error",
-                                   "bad_file",      "bad_snapshot"};
+                                   "bad_file",      "bad_snapshot", "busy"};
   return names[int(code)];
 }
+
+namespace detail {
+void misuse(const char* sentence) {
+  std::fprintf(stderr, "pcphys: %s\n", sentence);
+  std::abort();
+}
+void no_value(const Error& error) {
+  misuse(("The value of a Result was taken, which holds an error in its place: " + std::string(name(error.code)) + ". " +
+          error.message)
+             .c_str());
+}
+void no_error() { misuse("The error of a Result was asked for, which holds none: it succeeded."); }
+void moved_from(const char* what, const char* call) {
+  misuse((std::string(what) + "::" + call + " was called on a " + what +
+          " that was moved from; use the one that it was moved to, or assign another to it first.")
+             .c_str());
+}
+}  // namespace detail
 
 std::string number(double x) {
   char text[32];
@@ -42,6 +61,11 @@ std::string number(double x) {
 Error stale(const char* what) {
   return {ErrorCode::stale_id,
           std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
+}
+
+Error busy(const char* what) {
+  return {ErrorCode::busy, std::string("A step of this ") + what +
+                               " runs; callbacks may look at the world, not change it. Do this when Stepper::step has returned."};
 }
 
 Error no_rotation() {

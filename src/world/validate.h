@@ -11,6 +11,8 @@ namespace pcphys {
 std::string number(double x);
 /// Of an id that names nothing; `what` is "body", "joint", "force".
 Error stale(const char* what);
+/// `what` is "world" or "stepper".
+Error busy(const char* what);
 /// Of an angular velocity for a body of BodyDef::rotates = false.
 Error no_rotation();
 Status check_finite(double value, const char* what);
