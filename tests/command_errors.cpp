@@ -53,8 +53,11 @@ const Refused cases[] = {
     {"run balls --drag -1", 2, "drag"},
     {"run ragdolls --joint-damping -1", 2, "joint-damping"},
     {"run balls --gltf motion.obj", 2, ".gltf or .glb"},
-    {"run balls --json - --hash", 2, "--json -"},
-    {"run balls --json - --csv -", 2, "--json -"},
+    {"run balls --json - --hash", 2, "Standard output is asked for by --json and by --hash"},
+    {"run balls --json - --csv -", 2, "Standard output is asked for by --json and by --csv"},
+    {"run balls --json - --json a.json", 2, "--json"},
+    {"run balls --json .", 1, "Is a directory"},
+    {"run balls --steps 1 --json /dev/full", 1, "No space left on device"},
     {"run balls --json /no/such/folder/a.json", 1, "/no/such/folder/a.json"},
     {"run balls --csv /no/such/folder/a.csv", 1, "folder that exists"},
     {"run balls --gltf /no/such/folder/a.glb", 1, "folder that exists"},
@@ -80,7 +83,7 @@ const Refused cases[] = {
     {"compare balls --peer-iterations -1", 2, "--peer-iterations is -1"},
     {"compare balls --budget 0", 2, "--budget"},
     {"compare balls --steps 0", 2, "--steps is 0"},
-    {"compare balls --json - --csv -", 2, "--json -"},
+    {"compare balls --json - --csv -", 2, "--json and by --csv"},
     {"compare balls --json /no/such/folder/a.json", 1, "folder that exists"},
 };
 
