@@ -63,6 +63,7 @@ int command_line(int argc, char** argv) {
   WildOptions wild_options;
   CLI::App* wild_command = app.add_subcommand("wild", "random scenes, and what holds in all of them");
   add_wild_options(*wild_command, wild_options);
+  for (CLI::App* command : app.get_subcommands({})) check_values(*command);
 
   const auto is_first_word = [&](CLI::App* command) { return command->check_name(argv[1]); };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first_word).empty())
