@@ -108,14 +108,17 @@ TEST_CASE("outputs: two for one place are refused, however it is spelled") {
   std::filesystem::create_symlink("new", folder.file("dangling"));
   const std::string names[][2] = {{"old", "old"}, {"old", "./old"},     {"old", "hard"},     {"old", "soft"},
                                   {"new", "new"}, {"new", "./././new"}, {"new", "dangling"}, {"/dev/stdout", "-"}};
+  struct Two {
+    std::string sub_command, a, b;
+  };
+  const Two pairs[] = {{short_run, "--json ", " --csv "},
+                       {short_run, "--events ", " --json "},
+                       {"plan balls ", "--json ", " --csv "},
+                       {"scenes ", "--json ", " --csv "},
+                       {"wild encounter --count 1 ", "--csv ", " --shrink-to "}};
   for (const auto& [first, second] : names) {
     CAPTURE(first + " " + second);
-    struct Two {
-      std::string sub_command, a, b;
-    };
-    for (const Two& two : {Two{short_run, "--json ", " --csv "}, Two{short_run, "--events ", " --json "},
-                           Two{"plan balls ", "--json ", " --csv "}, Two{"scenes ", "--json ", " --csv "},
-                           Two{"wild encounter --count 1 ", "--csv ", " --shrink-to "}}) {
+    for (const Two& two : pairs) {
       const std::string in_folder = "cd " + std::filesystem::path(old).parent_path().string() + "; ";
       const Ran ran = shell(in_folder + program + " " + two.sub_command + two.a + first + two.b + second);
       CHECK(ran.code == 2);
