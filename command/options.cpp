@@ -70,8 +70,11 @@ Status check_range(const char* option, long long value, long long low, long long
 }
 
 Status check_budget(double seconds) {
-  if (seconds > 0) return {};
-  return bad("--budget is " + std::to_string(seconds) + "; give seconds of stepping above 0.");
+  constexpr double most = 1e9;  // 30 years, so that seconds can be counted
+  if (seconds > 0 && seconds <= most) return {};
+  std::ostringstream value;
+  value << seconds;
+  return bad("--budget is " + value.str() + "; give seconds above 0, and at most 1e9.");
 }
 
 Result<std::vector<std::string>> peer_names(const std::string& list) {

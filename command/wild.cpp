@@ -28,9 +28,7 @@ Status check_numbers(const WildOptions& options) {
   if (auto status = check_range("threads", options.threads, 0, 256); !status) return status;
   if (auto status = check_range("bits", options.bits, 0, many); !status) return status;
   if (auto status = check_range("bits-gl", options.bits_gl, 0, many); !status) return status;
-  if (options.budget && !(*options.budget > 0 && std::isfinite(*options.budget)))
-    return bad("--budget is " + std::to_string(*options.budget) + "; give seconds above 0.");
-  return {};
+  return options.budget ? check_budget(*options.budget) : Status();
 }
 
 Status check_gl(const wild::RunOptions& run) {

@@ -87,6 +87,7 @@ const Refused cases[] = {
     {"compare balls --peer-substeps -1", 2, "--peer-substeps is -1"},
     {"compare balls --peer-iterations -1", 2, "--peer-iterations is -1"},
     {"compare balls --budget 0", 2, "--budget"},
+    {"compare balls --budget inf", 2, "--budget"},
     {"compare balls --steps 0", 2, "--steps is 0"},
     {"compare balls --json - --csv -", 2, "--json and by --csv"},
     {"compare balls --json /no/such/folder/a.json", 1, "folder that exists"},

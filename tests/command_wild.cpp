@@ -23,6 +23,7 @@ const Refused cases[] = {
     {"wild encounter --budget soon", 2, "soon"},
     {"wild encounter --budget nan", 2, "give seconds above 0"},
     {"wild encounter --budget inf", 2, "give seconds above 0"},
+    {"wild encounter --budget 1e300", 2, "--budget is 1e+300"},
     {"wild encounter --precision half", 2, "float, double, both"},
     {"wild encounter --backend cuda", 2, "cpu, gl"},
     {"wild encounter --lanes 3", 2, "auto, 1, 4, 8"},
