@@ -1,6 +1,7 @@
 // The command pcphys: one program over the library. docs/command.md is its contract.
 #include <CLI/CLI.hpp>
-#include <iostream>
+#include <exception>
+#include <new>
 
 #include "commands.h"
 #include "output.h"
@@ -11,12 +12,8 @@ using namespace pcphys::command;
 
 namespace {
 
-/// One line, whatever CLI11 has to say.
 int usage_error(const std::string& message) {
-  std::string line = message;
-  for (char& c : line)
-    if (c == '\n') c = ' ';
-  std::cerr << "pcphys: " << line << (line.ends_with(".") ? "" : ".") << " `pcphys --help` tells what there is.\n";
+  print_error(message + (message.ends_with(".") ? "" : ".") + " `pcphys --help` tells what there is.");
   return exit_usage;
 }
 
@@ -25,9 +22,7 @@ void add_report_options(CLI::App& app, OutputOptions& options) {
   app.add_option("--csv", options.csv, "write a table to this file");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int command_line(int argc, char** argv) {
   CLI::App app{"pcphys: physics with one source for CPU and GPU", "pcphys"};
   app.set_version_flag("--version", "pcphys " PCPHYS_VERSION);
   app.require_subcommand(1);
@@ -68,6 +63,7 @@ int main(int argc, char** argv) {
   WildOptions wild_options;
   CLI::App* wild_command = app.add_subcommand("wild", "random scenes, and what holds in all of them");
   add_wild_options(*wild_command, wild_options);
+  for (CLI::App* command : app.get_subcommands({})) check_values(*command);
 
   const auto is_first_word = [&](CLI::App* command) { return command->check_name(argv[1]); };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first_word).empty())
@@ -88,4 +84,19 @@ int main(int argc, char** argv) {
   if (*compare_command) return compare(compare_options, run_options);
   if (*wild_command) return wild(wild_options);
   return usage_error("A sub-command is missing.");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  guard_streams();
+  int code = exit_failed;
+  try {
+    code = command_line(argc, argv);
+  } catch (const std::bad_alloc&) {
+    print_error("This machine has not enough memory for that; ask for fewer objects or steps.");
+  } catch (const std::exception& error) {
+    print_error(std::string("An error of pcphys itself, which its authors should know of: ") + error.what() + ".");
+  }
+  return finish_streams(code);
 }

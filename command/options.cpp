@@ -22,19 +22,42 @@ Result<Place> place_of(const char* option, const std::string& text) {
   return bad(std::string("--") + option + " is '" + text + "'; give cpu or gl.");
 }
 
-std::optional<double> number(std::string_view text) {
-  double value = 0;
+/// Nothing where the text is no decimal number from end to end, or one that `Number` cannot hold.
+template <class Number>
+std::optional<Number> number(std::string_view text) {
+  Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
   return value;
 }
 
+/// What is wrong with the value of an option of this type of CLI11's; "" where nothing is.
+std::string check_value(const std::string& type, std::string& text) {
+  if (text.empty()) return "The value is empty; give one, or leave the option out.";
+  if (type == "INT") {
+    const auto value = number<long long>(text);
+    if (!value) return "'" + text + "' is not a whole number that 64 bits hold.";
+    text = std::to_string(*value);  // CLI11 would read 010 as eight
+  }
+  if (type == "FLOAT" && !number<double>(text)) return "'" + text + "' is not a number that double precision holds.";
+  return "";
+}
+
 }  // namespace
+
+void check_values(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) {
+    const bool flag = option->get_items_expected_min() == 0;
+    if (flag) continue;
+    const std::string type = option->get_type_name();
+    option->transform(CLI::Validator([type](std::string& text) { return check_value(type, text); }, ""));
+  }
+}
 
 Result<double> time_step(const std::string& text) {
   const std::size_t slash = text.find('/');
-  const auto above = number(std::string_view(text).substr(0, slash));
-  const auto below = slash == std::string::npos ? std::optional<double>(1.0) : number(std::string_view(text).substr(slash + 1));
+  const auto above = number<double>(std::string_view(text).substr(0, slash));
+  const auto below = slash == std::string::npos ? std::optional<double>(1.0) : number<double>(std::string_view(text).substr(slash + 1));
   const double dt = above && below ? *above / *below : std::numeric_limits<double>::quiet_NaN();
   if (std::isfinite(dt) && dt > 0) return dt;
   return bad("--dt is '" + text + "'; give a time step above 0 in seconds, such as 0.01 or 1/60.");
@@ -47,8 +70,11 @@ Status check_range(const char* option, long long value, long long low, long long
 }
 
 Status check_budget(double seconds) {
-  if (seconds > 0) return {};
-  return bad("--budget is " + std::to_string(seconds) + "; give seconds of stepping above 0.");
+  constexpr double most = 1e9;  // 30 years, so that seconds can be counted
+  if (seconds > 0 && seconds <= most) return {};
+  std::ostringstream value;
+  value << seconds;
+  return bad("--budget is " + value.str() + "; give seconds above 0, and at most 1e9.");
 }
 
 Result<std::vector<std::string>> peer_names(const std::string& list) {

@@ -81,6 +81,9 @@ void add_output_options(CLI::App& app, RunOptions& options);
 void add_case_options(CLI::App& app, CaseOptions& options);
 void add_compare_options(CLI::App& app, CompareOptions& options);
 void add_wild_options(CLI::App& app, WildOptions& options);
+/// To be called when all options are there: refuses empty values of any, and of numbers what is not one from end to end
+/// or has no place in 64 bits.
+void check_values(CLI::App& app);
 
 // Errors: bad_argument with a sentence that names the option and what it accepts.
 Status check_range(const char* option, long long value, long long low, long long high);

@@ -1,6 +1,8 @@
 // Where results go: standard output, or files that are known to be writable before a long run starts.
 #pragma once
 #include <cstdint>
+#include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -10,8 +12,8 @@ namespace pcphys::command {
 
 using Json = nlohmann::ordered_json;
 
-/// A file that the result will be written to at the end. Opening it checks that this will be possible; when
-/// nothing is written in the end, a file that was not there before is not there after.
+/// Where a result goes at the end of a run. Opening it checks that this will be possible, and leaves a file that is
+/// there as it is.
 class OutputFile {
  public:
   OutputFile() = default;
@@ -19,18 +21,35 @@ class OutputFile {
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();
 
-  /// "" is no file, "-" is standard output. Errors: bad_file.
+  /// "" is no file; "-" is standard output, as is every other name of it, such as /dev/stdout. Errors: bad_file.
   static Result<OutputFile> open(const std::string& path);
 
   explicit operator bool() const { return !path_.empty(); }
   bool standard_output() const { return path_ == "-"; }
-  const std::string& path() const { return path_; }
+  /// Whether what is written to one would be lost or mixed with what is written to the other.
+  bool same_place(const OutputFile& other) const { return !place_.empty() && place_ == other.place_; }
+  /// Once at most. A file is replaced as a whole, or stays as it was; a device or a pipe is written directly.
   Status write(const std::string& content);
 
  private:
-  std::string path_;
-  bool created_ = false;
+  Status prepare_file();
+  Status prepare_stream();
+
+  std::string path_;              // as it was given
+  std::filesystem::path target_;  // where links from there lead
+  std::string place_;             // equal for all names of one place; empty where two may write
+  int stream_ = -1;               // descriptor of a device, a pipe or what is open already
 };
+
+/// An output that a sub-command was asked for.
+struct Output {
+  const char* option;
+  std::string path;
+  OutputFile& file;
+};
+
+/// Errors: bad_file; bad_argument where two outputs go to one place.
+Status open_outputs(std::initializer_list<Output> outputs);
 
 /// Where --json and --csv of a sub-command go.
 struct ResultFiles {
@@ -66,5 +85,14 @@ enum Exit : int { exit_ok = 0, exit_failed = 1, exit_usage = 2, exit_unsound = 3
 
 /// Prints one line to standard error, and says which code to exit with.
 int fail(const Error& error);
+/// The sentence on one line, whatever names of files and other programs' messages hold.
+void print_error(std::string sentence);
+
+/// To be called first: a stream that is closed, a pipe without a reader and a file at its limit become errors of
+/// writing.
+void guard_streams();
+/// To be called last, with the exit code of what was done. It says so when standard output did not take all that was
+/// printed.
+int finish_streams(int code);
 
 }  // namespace pcphys::command

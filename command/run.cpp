@@ -20,22 +20,13 @@ struct Files {
     if (!options.gltf.empty() && !gltf)
       return Error{ErrorCode::bad_argument, "--gltf is '" + options.gltf + "'; give a file name that ends in .gltf or .glb."};
     Files files;
-    struct Choice {
-      const std::string& path;
-      OutputFile& file;
-    };
-    for (const Choice& choice : {Choice{options.json, files.json}, Choice{options.csv, files.csv},
-                                 Choice{options.gltf, files.gltf}, Choice{options.events, files.events}}) {
-      auto file = OutputFile::open(choice.path);
-      if (!file) return file.error();
-      choice.file = std::move(*file);
-    }
-    if (files.json.standard_output() && (files.csv.standard_output() || options.hash))
-      return Error{ErrorCode::bad_argument,
-                   "--json - prints nothing but JSON, which holds the hash too; leave out --hash and give --csv a file."};
-    if (files.events.standard_output() && (files.json.standard_output() || files.csv.standard_output() || options.hash))
-      return Error{ErrorCode::bad_argument,
-                   "--events - prints nothing but events; leave out --hash and give --json and --csv files."};
+    OutputFile hash;
+    const Status status = open_outputs({{"--json", options.json, files.json},
+                                        {"--csv", options.csv, files.csv},
+                                        {"--gltf", options.gltf, files.gltf},
+                                        {"--events", options.events, files.events},
+                                        {"--hash", options.hash ? "-" : "", hash}});
+    if (!status) return status.error();
     return files;
   }
 };

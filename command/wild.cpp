@@ -28,9 +28,7 @@ Status check_numbers(const WildOptions& options) {
   if (auto status = check_range("threads", options.threads, 0, 256); !status) return status;
   if (auto status = check_range("bits", options.bits, 0, many); !status) return status;
   if (auto status = check_range("bits-gl", options.bits_gl, 0, many); !status) return status;
-  if (options.budget && !(*options.budget > 0 && std::isfinite(*options.budget)))
-    return bad("--budget is " + std::to_string(*options.budget) + "; give seconds above 0.");
-  return {};
+  return options.budget ? check_budget(*options.budget) : Status();
 }
 
 Status check_gl(const wild::RunOptions& run) {
@@ -160,32 +158,32 @@ int wild(const WildOptions& options) {
   if (options.list) return list_families();
   const auto run = resolve(options);
   if (!run) return fail(run.error());
-  auto files = ResultFiles::open(options.json, options.csv);
-  if (!files) return fail(files.error());
   const bool shrinks = options.shrink || !options.shrink_to.empty();
-  auto program = OutputFile::open(shrinks && options.shrink_to.empty() ? "-" : options.shrink_to);
-  if (!program) return fail(program.error());
-  if (program->standard_output() && (files->json.standard_output() || files->csv.standard_output()))
-    return fail(bad(
-        "--shrink prints nothing but a program; give --json and --csv a file, or the program with --shrink-to FILE."));
+  const bool printed = shrinks && options.shrink_to.empty();
+  ResultFiles files;
+  OutputFile program;
+  const Status opened = open_outputs({{"--json", options.json, files.json},
+                                      {"--csv", options.csv, files.csv},
+                                      {printed ? "--shrink" : "--shrink-to", printed ? "-" : options.shrink_to, program}});
+  if (!opened) return fail(opened.error());
 
   const auto summaries = play(*run, shrinks);
   if (!summaries) return fail(summaries.error());
-  if (files->printed() && !program->standard_output()) {
+  if (files.printed() && !program.standard_output()) {
     if (single(options))
       for (const wild::Summary& summary : *summaries) print_scene(summary, run->first_seed);
     else
       print_run(*summaries, *run);
     std::fflush(stdout);
   }
-  if (auto status = files->write(to_json(*summaries, *run), to_csv(*summaries)); !status) return fail(status.error());
+  if (auto status = files.write(to_json(*summaries, *run), to_csv(*summaries)); !status) return fail(status.error());
   const wild::Summary* broken = first_broken(*summaries);
   if (!broken) {
     if (shrinks) std::cerr << "pcphys: nothing broke, so there is nothing to shrink.\n";
     return exit_ok;
   }
   if (shrinks)
-    if (auto status = shrink_first(*broken, *run, *program); !status) return fail(status.error());
+    if (auto status = shrink_first(*broken, *run, program); !status) return fail(status.error());
   return exit_failed;
 }
 

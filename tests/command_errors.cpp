@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <sstream>
+#include <string>
 
 #include "command_support.h"
 
@@ -53,8 +55,14 @@ const Refused cases[] = {
     {"run balls --drag -1", 2, "drag"},
     {"run ragdolls --joint-damping -1", 2, "joint-damping"},
     {"run balls --gltf motion.obj", 2, ".gltf or .glb"},
-    {"run balls --json - --hash", 2, "--json -"},
-    {"run balls --json - --csv -", 2, "--json -"},
+    {"run balls --json - --hash", 2, "Standard output is asked for by --json and by --hash"},
+    {"run balls --json - --csv -", 2, "Standard output is asked for by --json and by --csv"},
+    {"run balls --json - --json a.json", 2, "--json"},
+    {"run balls --json ''", 2, "--json: The value is empty"},
+    {"run balls --dt ''", 2, "--dt: The value is empty"},
+    {"run ''", 2, "SCENE: The value is empty"},
+    {"run balls --json .", 1, "Is a directory"},
+    {"run balls --steps 1 --json /dev/full", 1, "No space left on device"},
     {"run balls --json /no/such/folder/a.json", 1, "/no/such/folder/a.json"},
     {"run balls --csv /no/such/folder/a.csv", 1, "folder that exists"},
     {"run balls --gltf /no/such/folder/a.glb", 1, "folder that exists"},
@@ -79,8 +87,9 @@ const Refused cases[] = {
     {"compare balls --peer-substeps -1", 2, "--peer-substeps is -1"},
     {"compare balls --peer-iterations -1", 2, "--peer-iterations is -1"},
     {"compare balls --budget 0", 2, "--budget"},
+    {"compare balls --budget inf", 2, "--budget"},
     {"compare balls --steps 0", 2, "--steps is 0"},
-    {"compare balls --json - --csv -", 2, "--json -"},
+    {"compare balls --json - --csv -", 2, "--json and by --csv"},
     {"compare balls --json /no/such/folder/a.json", 1, "folder that exists"},
 };
 
@@ -88,6 +97,33 @@ const Refused cases[] = {
 
 TEST_CASE("errors: one line, the right code, nothing on standard output") {
   check_refused(cases);
+}
+
+TEST_CASE("errors: every option that takes a number refuses what is none, or has no place in 64 bits") {
+  std::size_t tried = 0;
+  for (const char* sub_command :
+       {"run balls", "plan balls", "tables", "accuracy A1", "stability B1", "compare balls", "wild floor"}) {
+    std::istringstream help(command(std::string(sub_command) + " --help").out);
+    for (std::string line; std::getline(help, line);) {
+      std::istringstream words(line);
+      std::string option, type;
+      words >> option >> type;
+      const bool whole = type.starts_with("INT"), real = type.starts_with("FLOAT");
+      if (!whole && !real) continue;
+      tried++;
+      for (const char* value : {"''", "' '", "1x", "1,5", whole ? "36893488147419103232" : "1e400"}) {
+        const std::string arguments = std::string(sub_command) + " " + option + " " + value;
+        const Refused refused{arguments.c_str(), 2, option.c_str()};
+        check_refused({&refused, 1});
+      }
+    }
+  }
+  CHECK(tried > 50);
+}
+
+TEST_CASE("errors: numbers are decimal, with leading zeros too") {
+  const std::string run = "run balls --steps 1 --hash --count ";
+  CHECK(command(run + "010").out == command(run + "10").out);
 }
 
 TEST_CASE("errors: an unwritable file is noticed before the run, and a failed run leaves no file behind") {

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <span>
 #include <string>
 
@@ -33,6 +34,12 @@ class Folder {
   ~Folder() { std::filesystem::remove_all(path_); }
   Folder(const Folder&) = delete;
   std::string file(const std::string& name) const { return (path_ / name).string(); }
+  /// Names of all files, hidden ones too.
+  std::set<std::string> names() const {
+    std::set<std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) all.insert(entry.path().filename());
+    return all;
+  }
 
  private:
   std::filesystem::path path_;
@@ -45,14 +52,16 @@ struct Ran {
   Json json() const { return Json::parse(out, nullptr, false); }
 };
 
-/// `pcphys ARGUMENTS`, through the shell.
-inline Ran command(const std::string& arguments) {
+/// Whatever the shell makes of the line.
+inline Ran shell(const std::string& line) {
   Folder folder;
-  const std::string line =
-      std::string(PCPHYS_COMMAND) + " " + arguments + " >" + folder.file("out") + " 2>" + folder.file("error") + " </dev/null";
-  const int status = std::system(line.c_str());
+  const std::string whole = "( " + line + " ) >" + folder.file("out") + " 2>" + folder.file("error") + " </dev/null";
+  const int status = std::system(whole.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder.file("out")), read_file(folder.file("error"))};
 }
+
+/// `pcphys ARGUMENTS`, through the shell.
+inline Ran command(const std::string& arguments) { return shell(std::string(PCPHYS_COMMAND) + " " + arguments); }
 
 struct Refused {
   const char* arguments;

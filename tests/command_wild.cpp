@@ -23,6 +23,7 @@ const Refused cases[] = {
     {"wild encounter --budget soon", 2, "soon"},
     {"wild encounter --budget nan", 2, "give seconds above 0"},
     {"wild encounter --budget inf", 2, "give seconds above 0"},
+    {"wild encounter --budget 1e300", 2, "--budget is 1e+300"},
     {"wild encounter --precision half", 2, "float, double, both"},
     {"wild encounter --backend cuda", 2, "cpu, gl"},
     {"wild encounter --lanes 3", 2, "auto, 1, 4, 8"},
@@ -30,8 +31,8 @@ const Refused cases[] = {
     {"wild encounter --threads 257", 2, "--threads is 257"},
     {"wild encounter --bits -1", 2, "--bits is -1"},
     {"wild encounter --peers havok", 2, "no peer 'havok'"},
-    {"wild encounter --seed 1 --shrink --json -", 2, "--shrink-to FILE"},
-    {"wild encounter --seed 1 --json - --csv -", 2, "--json -"},
+    {"wild encounter --seed 1 --shrink --json -", 2, "asked for by --json and by --shrink;"},
+    {"wild encounter --seed 1 --json - --csv -", 2, "--json and by --csv"},
     {"wild encounter --seed 1 --json /no/such/folder/a.json", 1, "folder that exists"},
     {"wild encounter --seed 1 --shrink-to /no/such/folder/a.cpp", 1, "folder that exists"},
 };

@@ -186,23 +186,34 @@ TEST_CASE("the cache is filled, used, and survives corruption") {
   }
   CHECK(cache.files().size() == files.size());
   int rewritten = 0;
-  for (const auto& file : files) {  // cut short, then with a flipped bit
-    const std::string whole = text_of(file);
-    std::ofstream(file, std::ios::binary) << whole.substr(0, whole.size() / 2);
-    {
-      const auto gl = parity::require_gl(Precision::f32);
-      CHECK(remember_works(*gl));
-    }
+  for (const auto& file : files) {
+    const std::string whole = text_of(file), other = text_of(file == files.front() ? files.back() : files.front());
     std::string flipped = whole;
     flipped[flipped.size() - 3] = char(flipped[flipped.size() - 3] ^ 4);
-    std::ofstream(file, std::ios::binary) << flipped;
-    {
+    for (const std::string& spoiled : {whole.substr(0, whole.size() / 2), other, flipped}) {
+      std::ofstream(file, std::ios::binary) << spoiled;
       const auto gl = parity::require_gl(Precision::f32);
       CHECK(remember_works(*gl));
     }
     rewritten += text_of(file) != flipped;  // made anew; some drivers add a time to a program
   }
   CHECK(rewritten >= 2);  // all but the probe's program, which nobody needs while its answer is whole
+}
+
+TEST_CASE("the cache survives folders in place of its files") {
+  const TemporaryCache cache;
+  CHECK(remember_works(*parity::require_gl(Precision::f32)));
+  const auto files = cache.files();
+  for (const bool empty : {true, false}) {
+    for (const auto& file : files) {
+      std::filesystem::remove_all(file);
+      std::filesystem::create_directory(file);
+      if (!empty) std::ofstream(file / "held") << "not ours";
+    }
+    CHECK(remember_works(*parity::require_gl(Precision::f32)));
+    for (const auto& file : files) CHECK(std::filesystem::is_directory(file) != empty);
+  }
+  CHECK(cache.files().size() == files.size());  // no drafts
 }
 
 TEST_CASE("a cache that cannot be written is no error") {
