@@ -66,6 +66,8 @@ class World {
   Result<Ragdoll> create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity = {});
   /// Takes the body's shapes, joints, springs and forces with it.
   Status destroy(BodyId body);
+  /// All of them, or none: where one is not there, or twice in the list, that is ErrorCode::stale_id.
+  Status destroy(std::span<const BodyId> bodies);
   Status destroy(JointId joint);
   Status destroy(SpringId spring);
 
@@ -234,6 +236,9 @@ class World {
   Status changeable(BodyId body) const;
   Status changeable(JointId joint) const;
   Status changeable(SpringId spring) const;
+
+  /// With contacts and rest as they are after what was destroyed.
+  const WorldState& settled(const char* call = __builtin_FUNCTION()) const;
 
   std::unique_ptr<WorldState> state_;
 };

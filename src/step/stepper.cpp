@@ -113,6 +113,7 @@ const StepReport& Stepper::step(World& world, double dt) {
     in.refused.error = busy(stepper_runs ? "world" : "stepper");
     return in.refused;
   }
+  s.settle_contacts();
   static const StepReport blank;
   const std::uint64_t made = in.report.step;
   in.report = blank;
@@ -143,6 +144,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   if (ok) ok = check_settings(in.settings);
   if (ok) ok = in.own.check(world.state());
   if (!ok) return ok.error();
+  (void)world.contact_count();  // without those of what was destroyed
   Schedule schedule;
   schedule.update_structure(world.state());
   Detector detector;

@@ -1,5 +1,9 @@
 // Bodies of a world: creating and destroying them, and what a host reads and writes of them.
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <unordered_set>
+#include <utility>
 
 #include "world/state.h"
 #include "world/validate.h"
@@ -101,7 +105,7 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   WorldState& s = state();
   const std::uint32_t row = std::uint32_t(s.bodies.size());
   const std::uint32_t index = s.body_ids.allocate(row);
-  s.bodies.push_back({index, def.kind, false, {}, {}});
+  s.bodies.push_back({index, def.kind, false, {}, {}, {}});
   s.tables.resize(Table::body, row + 1);
   s.set_position(row, def.pose.position);
   s.set_orientation(row, orientation);
@@ -126,27 +130,48 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   return s.body_ids.id<BodyId>(index);
 }
 
-Status World::destroy(BodyId body) {
-  if (Status ok = changeable(body); !ok) return ok;
-  WorldState& s = state();
-  if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
-  s.stir_neighbours(s.body_ids.row(body.index));
-  for (std::uint32_t row = std::uint32_t(s.joints.size()) - 1; row > 0; row--)
-    if (s.joints[row].body_a == body.index || s.joints[row].body_b == body.index) s.remove_joint(row);
-  const std::uint32_t row = s.body_ids.row(body.index), last = std::uint32_t(s.bodies.size()) - 1;
+namespace {
+void forget_apart(WorldState& s, std::uint32_t index) {
+  const auto asked = s.asked_apart.extract(index);
+  if (!asked) return;
+  for (const std::uint32_t other : asked.mapped()) {
+    s.no_collide.erase(WorldState::pair_key(index, other));
+    if (const auto of_other = s.asked_apart.find(other); of_other != s.asked_apart.end()) std::erase(of_other->second, index);
+  }
+}
+
+void destroy_body(WorldState& s, std::uint32_t row) {
+  const std::uint32_t index = s.bodies[row].index, last = std::uint32_t(s.bodies.size()) - 1;
+  std::vector<std::uint32_t> joints = std::move(s.bodies[row].joints);
+  for (std::uint32_t& joint : joints) joint = s.joint_ids.row(joint);
+  std::ranges::sort(joints, std::greater<>());
+  for (const std::uint32_t joint : joints) s.remove_joint(joint);
   if (s.bodies[row].kind == BodyKind::kinematic) s.kinematic--;
-  for (std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
-  for (std::uint32_t shape : s.bodies[row].shapes) {
+  for (const std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
+  for (const std::uint32_t shape : s.bodies[row].shapes) {
     s.shapes[shape].alive = false;
     s.shapes[shape].def.convex = {};  // the last user frees it
     s.free_shapes.push_back(shape);
   }
-  std::erase_if(s.no_collide,
-                [&](const auto& pair) { return pair.first >> 32 == body.index || (pair.first & 0xffffffffu) == body.index; });
-  s.frozen.erase(body.index);
-  s.drop_contacts(row, last);
+  forget_apart(s, index);
+  s.frozen.erase(index);
+  s.forget_rest(row);
+  if (s.contact_rows() > 1) s.drops.drop(row, last);
   s.remove_row(Table::body, s.bodies, s.body_ids, row);
-  if (s.rests) s.count_rest();
+}
+}  // namespace
+
+Status World::destroy(BodyId body) { return destroy(std::span(&body, 1)); }
+
+Status World::destroy(std::span<const BodyId> bodies) {
+  if (Status ok = changeable(); !ok) return ok;
+  WorldState& s = state();
+  std::unordered_set<std::uint32_t> seen;
+  for (const BodyId body : bodies) {
+    if (!valid(body) || (bodies.size() > 1 && !seen.insert(body.index).second)) return stale("body");
+    if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
+  }
+  for (const BodyId body : bodies) destroy_body(s, s.body_ids.row(body.index));
   return {};
 }
 
@@ -384,9 +409,17 @@ Status World::set_collide(BodyId a, BodyId b, bool collide) {
   Status ok = changeable(a);
   if (ok) ok = changeable(b);
   if (!ok) return ok;
-  const auto pair = state().no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
+  WorldState& s = state();
+  const auto pair = s.no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
+  if (pair->second.asked == collide) {
+    for (const auto& [body, other] : {std::pair(a.index, b.index), std::pair(b.index, a.index)}) {
+      std::vector<std::uint32_t>& others = s.asked_apart[body];
+      collide ? void(std::erase(others, other)) : others.push_back(other);
+      if (others.empty()) s.asked_apart.erase(body);
+    }
+  }
   pair->second.asked = !collide;
-  if (!pair->second.any()) state().no_collide.erase(pair);
+  if (!pair->second.any()) s.no_collide.erase(pair);
   state().structure_version++;
   state().stir_moving(state().body_ids.row(a.index));
   state().stir_moving(state().body_ids.row(b.index));

@@ -1,4 +1,6 @@
 // Contacts as a host sees them.
+#include <algorithm>
+
 #include "world/state.h"
 
 namespace pcphys {
@@ -9,13 +11,21 @@ std::array<std::uint32_t, 2> WorldState::ends_of(const ContactKey& key) const {
   return {b, a};
 }
 
-void WorldState::drop_contacts(std::uint32_t row, std::uint32_t last_row) {
+void WorldState::settle_contacts() {
+  if (!drops.any()) return;
+  std::uint32_t rows_before = 0;
+  for (const auto& ends : contacts.ends) rows_before = std::max({rows_before, ends[0] + 1, ends[1] + 1});
+  const std::vector<std::uint32_t> now = drops.rows_now(rows_before);
+  drops.clear();
+  const auto is_there = [](std::uint32_t row) { return row != ContactDrops::gone; };
   std::uint32_t kept = 1;
   for (std::uint32_t i = 1; i < contact_rows(); i++) {
-    auto ends = contacts.ends[i];
-    if (ends[0] == row || ends[1] == row) continue;
-    for (std::uint32_t& end : ends)
-      if (end == last_row) end = row;
+    const std::array<std::uint32_t, 2> ends{now[contacts.ends[i][0]], now[contacts.ends[i][1]]};
+    if (!is_there(ends[0]) || !is_there(ends[1])) {
+      for (const std::uint32_t row : ends)
+        if (is_there(row)) stir_moving(row);
+      continue;
+    }
     if (kept != i) tables.copy_row(Table::contact, i, kept);
     contacts.keys[kept] = contacts.keys[i];
     contacts.features[kept] = contacts.features[i];
@@ -25,10 +35,17 @@ void WorldState::drop_contacts(std::uint32_t row, std::uint32_t last_row) {
   contacts.keys.resize(kept);
   contacts.features.resize(kept);
   contacts.ends.resize(kept);
+  contacts_version++;
+}
+
+const WorldState& World::settled(const char* call) const {
+  (void)state(call);
+  state_->settle_contacts();
+  return *state_;
 }
 
 std::vector<Contact> World::contacts() const {
-  const WorldState& s = state();
+  const WorldState& s = settled();
   const Tables& t = s.tables;
   std::vector<Contact> found;
   found.reserve(s.contact_rows() - 1);

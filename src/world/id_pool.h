@@ -48,6 +48,7 @@ class IdPool {
   void set_row(std::uint32_t index, std::uint32_t row) { slots_[index].row = row; }
   bool alive(std::uint32_t index) const { return slots_[index].alive; }
   std::uint32_t generation(std::uint32_t index) const { return slots_[index].generation; }
+  void set_generation(std::uint32_t index, std::uint32_t generation) { slots_[index].generation = generation; }  // for tests
   std::uint32_t size() const { return std::uint32_t(slots_.size()); }  // indices ever used
   std::uint32_t count() const { return alive_; }
 

@@ -1,6 +1,7 @@
 // Joints, ragdolls and forces of a world.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string>
 
@@ -124,6 +125,7 @@ std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<Sp
   write_frames(s.tables, Buffer::joint_frame, row, def);
   write_drive(s.tables, row, s.joints[row]);
   if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
+  for (const BodyId body : {def.a, def.b}) s.bodies[s.body_ids.row(body.index)].joints.push_back(index);
   s.structure_version++, s.joint_changes++;
   stir_ends(s, s.joints[row]);
   return index;
@@ -200,6 +202,11 @@ void WorldState::remove_joint(std::uint32_t row) {
     const auto pair = no_collide.find(pair_key(joints[row].body_a, joints[row].body_b));
     pair->second.joints--;
     if (!pair->second.any()) no_collide.erase(pair);
+  }
+  for (const std::uint32_t body : {joints[row].body_a, joints[row].body_b}) {
+    std::vector<std::uint32_t>& of_body = bodies[body_ids.row(body)].joints;
+    const auto last = std::ranges::find(of_body.rbegin(), of_body.rend(), joints[row].index);
+    if (last != of_body.rend()) of_body.erase(std::prev(last.base()));
   }
   remove_row(Table::joint, joints, joint_ids, row);
   joint_changes++;

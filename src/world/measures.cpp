@@ -40,7 +40,7 @@ Vec3 World::angular_momentum() const {
   return sum;
 }
 
-std::size_t World::contact_count() const { return state().contact_rows() - 1; }
+std::size_t World::contact_count() const { return settled().contact_rows() - 1; }
 
 std::size_t World::memory_bytes() const {
   const WorldState& s = state();

@@ -218,7 +218,7 @@ Result<Table> WorldState::table_of(TableId id) const {
 }
 
 Result<PropertyView> World::view(std::string_view property) const {
-  const Tables& t = state().tables;
+  const Tables& t = settled().tables;
   Found f;
   if (!by_name(state(), property, f)) return unknown(property);
   const PropertyType type = f.info.type;

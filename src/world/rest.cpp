@@ -6,8 +6,9 @@ namespace pcphys {
 
 Result<bool> World::is_asleep(BodyId body) const {
   if (!valid(body)) return stale("body");
-  const std::uint32_t row = state().body_ids.row(body.index);
-  return state().asleep(row) && state().tables.get(Buffer::rest, row, rest_stirred) == 0;
+  const WorldState& s = settled();
+  const std::uint32_t row = s.body_ids.row(body.index);
+  return s.asleep(row) && s.tables.get(Buffer::rest, row, rest_stirred) == 0;
 }
 
 Status World::wake(BodyId body) {

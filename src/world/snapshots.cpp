@@ -1,109 +1,23 @@
-// The state of a world as bytes: its hash, and snapshots.
+// The state of a world as bytes, and back.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pcphys/constants.h"
-#include "world/state.h"
+#include "world/hull.h"
+#include "world/state_rows.h"
+#include "world/validate.h"
 
 namespace pcphys {
 namespace {
 
-/// FNV-1a, 64 bit. Reals are taken by their bits, with -0 as +0.
-class Hash {
- public:
-  void bytes(const void* data, std::size_t n) {
-    for (std::size_t i = 0; i < n; i++) value_ = (value_ ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
-  }
-  template <class Scalar> void reals(const std::byte* p, std::size_t n) {
-    for (std::size_t i = 0; i < n; i += sizeof(Scalar)) {
-      Scalar x;
-      std::memcpy(&x, p + i, sizeof x);
-      if (x == 0) x = 0;
-      bytes(&x, sizeof x);
-    }
-  }
-  void index(std::uint32_t i) { bytes(&i, sizeof i); }
-  std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ull;
-};
-
-/// What of a table is state, and where it stands.
-class StateRows {
- public:
-  StateRows(const WorldState& s, Table table) : tables_(s.tables), fields_(fields(s.tables, s.own, table, Role::state)) {
-    for (const Field& f : fields_) bytes_ += f.bytes;
-  }
-  /// Those in the buffer alone, or all others.
-  StateRows within(Buffer buffer, bool within = true) const {
-    StateRows part = *this;
-    std::erase_if(part.fields_, [&](const Field& f) { return (f.buffer == buffer) != within; });
-    return part;
-  }
-  std::size_t bytes() const { return bytes_; }  // of a row
-  const Tables& tables() const { return tables_; }
-  /// what(field, where it begins in the buffer)
-  template <class Do> void each(std::uint32_t row, Do&& what) const {
-    for (const Field& f : fields_) what(f, row * tables_.row_bytes(f.buffer) + f.offset);
-  }
-  void hash(Hash& hash, std::uint32_t row) const {
-    each(row, [&](const Field& f, std::size_t at) {
-      const std::byte* p = tables_.bytes(f.buffer).data() + at;
-      if (f.type == PropertyType::int32 || f.type == PropertyType::uint32)
-        hash.bytes(p, f.bytes);
-      else if (number_bytes(f.type, tables_.real_bytes()) == 4)
-        hash.reals<float>(p, f.bytes);
-      else
-        hash.reals<double>(p, f.bytes);
-    });
-  }
-
- private:
-  const Tables& tables_;
-  std::vector<Field> fields_;
-  std::size_t bytes_ = 0;
-};
-
-std::uint64_t hash_world(const WorldState& s) {
-  Hash hash;
-  const StateRows all(s, Table::body), bodies = all.within(Buffer::rest, false), rest = all.within(Buffer::rest);
-  const StateRows joints(s, Table::joint), contacts(s, Table::contact);
-  for (std::uint32_t i = 1; i < s.body_ids.size(); i++) {
-    if (!s.body_ids.alive(i)) continue;
-    hash.index(i);
-    bodies.hash(hash, s.body_ids.row(i));
-  }
-  for (std::uint32_t i = 0; s.rests && i < s.body_ids.size(); i++) {  // with sleep off there is nothing to add
-    if (!s.body_ids.alive(i) || s.never_rested(s.body_ids.row(i))) continue;
-    hash.index(i);
-    rest.hash(hash, s.body_ids.row(i));
-  }
-  for (std::uint32_t i = 0; i < s.joint_ids.size(); i++) {
-    if (!s.joint_ids.alive(i)) continue;
-    hash.index(i);
-    joints.hash(hash, s.joint_ids.row(i));
-  }
-  for (std::uint32_t row = 1; row < s.contact_rows(); row++) {
-    hash.index(s.contacts.keys[row].shape_a);
-    hash.index(s.contacts.keys[row].shape_b);
-    for (std::uint32_t f : s.contacts.features[row]) hash.index(f);
-    contacts.hash(hash, row);
-  }
-  for (const OwnTable& t : s.own.tables) {
-    if (!t.used) continue;
-    const StateRows rows(s, t.table);
-    hash.bytes(t.name.data(), t.name.size());
-    for (std::uint32_t row = 1; row < s.tables.rows(t.table); row++) rows.hash(hash, row);
-  }
-  return hash.value();
-}
-
-// ---- snapshots -----------------------------------------------------------------------------------------
-
-constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '6'};
+constexpr char magic[8] = {'p', 'c', 'p', 'h', 'y', 's', '0', '7'};
 
 class Writer {
  public:
@@ -118,20 +32,51 @@ class Writer {
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> in) : in_(in) {}
-  template <class T> bool get(T& value) { return get(&value, sizeof value); }
-  bool get(void* data, std::size_t n) {
-    if (in_.size() < n) return false;
-    if (n) std::memcpy(data, in_.data(), n);
-    in_ = in_.subspan(n);
-    return true;
+  template <class T> T get() {
+    T value;
+    std::memcpy(&value, take(sizeof value), sizeof value);
+    return value;
   }
-  bool done() const { return in_.empty(); }
+  /// The next bytes, which are there.
+  const std::byte* take(std::size_t n) {
+    const std::byte* p = in_.data();
+    in_ = in_.subspan(n);
+    return p;
+  }
+  std::size_t left() const { return in_.size(); }
 
  private:
   std::span<const std::byte> in_;
 };
 
-/// Which objects and properties of the host's own a world holds: a snapshot fits only where this agrees.
+/// Of contacts also what is no state: hosts are shown it until the next step.
+struct Layout {
+  explicit Layout(const WorldState& s) : bodies(s, Table::body), joints(s, Table::joint), contacts(s, Table::contact, true) {
+    for (const OwnTable& t : s.own.tables) {
+      if (!t.used) continue;
+      own.emplace_back(StateRows(s, t.table), s.tables.rows(t.table));
+      own_bytes += (s.tables.rows(t.table) - 1) * own.back().first.bytes();
+    }
+    fixed_bytes = head_bytes + (s.bodies.size() - 1) * (4 + bodies.bytes()) + (s.joints.size() - 1) * (4 + joints.bytes()) + 4;
+    contact_bytes = sizeof(ContactKey) + sizeof(std::array<std::uint32_t, 4>) + contacts.bytes();
+  }
+  static constexpr std::size_t head_bytes = sizeof magic + 8 + 2 * 8 + sizeof(Vec3);
+  StateRows bodies, joints, contacts;
+  std::vector<std::pair<StateRows, std::uint32_t>> own;  // of the host's own tables, and how many rows they have
+  std::size_t fixed_bytes = 0;                           // up to the number of contact rows
+  std::size_t contact_bytes = 0, own_bytes = 0;
+};
+
+void hash_shape(Hash& hash, const ShapeRecord& shape) {
+  hash.index(shape.body);
+  hash.index(std::uint32_t(shape.def.kind));
+  hash.bytes(&shape.def.local, sizeof shape.def.local);
+  if (shape.def.kind != ShapeKind::hull) return hash.bytes(&shape.def.size, sizeof shape.def.size);
+  const std::vector<Vec3>& corners = shape.def.convex.data()->vertices;
+  hash.bytes(corners.data(), corners.size() * sizeof(Vec3));
+}
+
+/// Which objects and properties of the host's own a world holds, and what stays as it is of them: a snapshot fits only where this agrees.
 std::uint64_t object_hash(const WorldState& s) {
   Hash hash;
   hash.index(std::uint32_t(s.tables.precision()));
@@ -140,8 +85,15 @@ std::uint64_t object_hash(const WorldState& s) {
       if (pool->alive(i)) {
         hash.index(i);
         hash.index(pool->generation(i));
+        if (pool == &s.body_ids) hash.index(std::uint32_t(s.bodies[pool->row(i)].kind));
       }
-  hash.index(std::uint32_t(s.shapes.size()));
+  for (std::uint32_t row = 1; row < s.joints.size(); row++)
+    for (const std::uint32_t of : {s.joints[row].index, s.joints[row].body_a, s.joints[row].body_b}) hash.index(of);
+  for (std::uint32_t i = 0; i < s.shapes.size(); i++) {
+    if (!s.shapes[i].alive) continue;
+    hash.index(i);
+    hash_shape(hash, s.shapes[i]);
+  }
   for (const OwnProperty& p : s.own.list) {
     if (!p.used || p.role != Role::state) continue;
     hash.bytes(p.name.data(), p.name.size());
@@ -167,17 +119,129 @@ void write_row(Writer& w, const StateRows& rows, std::uint32_t row) {
   rows.each(row, [&](const Field& f, std::size_t at) { w.put(rows.tables().bytes(f.buffer).data() + at, f.bytes); });
 }
 void read_row(Reader& r, WorldState& s, const StateRows& rows, std::uint32_t row) {
-  rows.each(row, [&](const Field& f, std::size_t at) { (void)r.get(s.tables.bytes(f.buffer).data() + at, f.bytes); });
+  rows.each(row, [&](const Field& f, std::size_t at) { std::memcpy(s.tables.bytes(f.buffer).data() + at, r.take(f.bytes), f.bytes); });
+}
+
+/// A row of a snapshot, to be looked at before it is taken.
+class Look {
+ public:
+  Look(const StateRows& rows, const std::byte* bytes) : rows_(rows), bytes_(bytes), real_(rows.tables().real_bytes()) {}
+
+  bool finite() const {
+    bool all = true;
+    each([&](const Field& f, const std::byte* p) {
+      const std::size_t number = number_bytes(f.type, real_);
+      for (std::size_t at = 0; at < f.bytes; at += number) all &= std::isfinite(read_number(p + at, f.type, real_));
+    });
+    return all;
+  }
+  /// Number `i` of a property of the library's.
+  double at(Buffer buffer, std::uint32_t offset) const {
+    double value = 0;
+    each([&](const Field& f, const std::byte* p) {
+      const std::size_t first = f.offset / real_;
+      if (f.buffer == buffer && offset >= first && offset < first + f.bytes / real_)
+        value = read_number(p + (offset - first) * real_, f.type, real_);
+    });
+    return value;
+  }
+
+ private:
+  template <class Do> void each(const Do& what) const {
+    const std::byte* p = bytes_;
+    rows_.each(0, [&](const Field& f, std::size_t) {
+      what(f, p);
+      p += f.bytes;
+    });
+  }
+  const StateRows& rows_;
+  const std::byte* bytes_;
+  std::size_t real_;
+};
+
+bool is_flag(double x) { return x == 0 || x == 1; }
+
+/// Whether a step could go on from it.
+bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
+  if (!body.finite()) return false;
+  const bool stands = s.bodies[row].kind == BodyKind::fixed;
+  double square = 0;
+  for (std::uint32_t c = 4; c < 8; c++) square += body.at(Buffer::pose, c) * body.at(Buffer::pose, c);
+  const double settling = body.at(Buffer::velocity_parts, place::settling), asleep = body.at(Buffer::rest, rest_asleep);
+  return std::fabs(std::sqrt(square) - 1) <= constants::unit_tolerance && settling >= 0 && settling <= constants::rounds &&
+         body.at(Buffer::rest, rest_quiet_time) >= 0 && is_flag(asleep) && is_flag(body.at(Buffer::rest, rest_stirred)) &&
+         !(stands && (asleep > 0 || body.at(Buffer::motion, 7) == frozen_phase));
+}
+
+/// Of rows that name an object each: every one once.
+bool read_indices(Reader& r, const IdPool& ids, std::size_t row_bytes, std::size_t count,
+                  const std::function<bool(std::uint32_t, const std::byte*)>& is_good) {
+  std::vector<bool> seen(ids.size());
+  for (std::size_t i = 0; i < count; i++) {
+    const auto index = r.get<std::uint32_t>();
+    if (index >= ids.size() || !ids.alive(index) || seen[index]) return false;
+    seen[index] = true;
+    if (!is_good(ids.row(index), r.take(row_bytes))) return false;
+  }
+  return true;
+}
+
+bool is_contact(const WorldState& s, const ContactKey& key, const Look& contact) {
+  if (key.shape_a >= key.shape_b || key.shape_b >= s.shapes.size() || !s.shapes[key.shape_a].alive || !s.shapes[key.shape_b].alive)
+    return false;
+  const std::uint32_t a = s.shapes[key.shape_a].body, b = s.shapes[key.shape_b].body;
+  const auto moves = [&](std::uint32_t body) { return s.bodies[s.body_ids.row(body)].kind == BodyKind::dynamic; };
+  if (a == b || !(moves(a) || moves(b))) return false;
+  const double points = contact.at(Buffer::contact, place::point_count);
+  return contact.finite() && points >= 0 && points <= 4 && points == std::floor(points);
+}
+
+/// Whether all that stands behind the head is a state of this world. Its length is right.
+bool is_content(const WorldState& s, const Layout& layout, Reader r) {
+  const auto body = [&](std::uint32_t row, const std::byte* bytes) { return row > 0 && is_state(s, row, Look(layout.bodies, bytes)); };
+  const auto joint = [&](std::uint32_t, const std::byte* bytes) { return Look(layout.joints, bytes).finite(); };
+  if (!read_indices(r, s.body_ids, layout.bodies.bytes(), s.bodies.size() - 1, body) ||
+      !read_indices(r, s.joint_ids, layout.joints.bytes(), s.joints.size() - 1, joint))
+    return false;
+  ContactKey last{};
+  for (auto rows = r.get<std::uint32_t>(); rows > 1; rows--) {
+    const auto key = r.get<ContactKey>();
+    (void)r.take(sizeof(std::array<std::uint32_t, 4>));
+    if (key <= last || !is_contact(s, key, Look(layout.contacts, r.take(layout.contacts.bytes())))) return false;
+    last = key;
+  }
+  for (const auto& [rows, count] : layout.own)
+    for (std::uint32_t row = 1; row < count; row++)
+      if (!Look(rows, r.take(rows.bytes())).finite()) return false;
+  return true;
+}
+
+void take_content(WorldState& s, const Layout& layout, Reader& r) {
+  for (std::size_t i = 1; i < s.bodies.size(); i++) read_row(r, s, layout.bodies, s.body_ids.row(r.get<std::uint32_t>()));
+  for (std::size_t i = 1; i < s.joints.size(); i++) read_row(r, s, layout.joints, s.joint_ids.row(r.get<std::uint32_t>()));
+  const auto contacts = r.get<std::uint32_t>();
+  s.tables.resize(Table::contact, contacts);
+  s.contacts.keys.resize(contacts);
+  s.contacts.ends.assign(contacts, {0, 0});
+  s.contacts.features.resize(contacts);
+  for (std::uint32_t row = 1; row < contacts; row++) {
+    s.contacts.keys[row] = r.get<ContactKey>();
+    s.contacts.features[row] = r.get<std::array<std::uint32_t, 4>>();
+    read_row(r, s, layout.contacts, row);
+  }
+  for (const auto& [rows, count] : layout.own)
+    for (std::uint32_t row = 1; row < count; row++) read_row(r, s, rows, row);
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++) s.follow_mark(row);
+  for (std::uint32_t row = 1; row < contacts; row++) s.contacts.ends[row] = s.ends_of(s.contacts.keys[row]);
 }
 
 }  // namespace
 
-std::uint64_t World::hash() const { return hash_world(state()); }
-
 std::vector<std::byte> World::snapshot() const {
-  const WorldState& s = state();
-  const StateRows bodies(s, Table::body), joints(s, Table::joint), contacts(s, Table::contact);
+  const WorldState& s = settled();
+  const Layout layout(s);
   Writer w;
+  w.out.reserve(layout.fixed_bytes + (s.contact_rows() - 1) * layout.contact_bytes + layout.own_bytes + 8);
   w.put(magic);
   w.put(object_hash(s));
   w.put(s.last_substep);
@@ -185,23 +249,20 @@ std::vector<std::byte> World::snapshot() const {
   w.put(s.gravity);
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) {
     w.put(s.bodies[row].index);
-    write_row(w, bodies, row);
+    write_row(w, layout.bodies, row);
   }
   for (std::uint32_t row = 1; row < s.joints.size(); row++) {
     w.put(s.joints[row].index);
-    write_row(w, joints, row);
+    write_row(w, layout.joints, row);
   }
   w.put(s.contact_rows());
   for (std::uint32_t row = 1; row < s.contact_rows(); row++) {
     w.put(s.contacts.keys[row]);
     w.put(s.contacts.features[row]);
-    write_row(w, contacts, row);
+    write_row(w, layout.contacts, row);
   }
-  for (const OwnTable& t : s.own.tables) {
-    if (!t.used) continue;
-    const StateRows rows(s, t.table);
-    for (std::uint32_t row = 1; row < s.tables.rows(t.table); row++) write_row(w, rows, row);
-  }
+  for (const auto& [rows, count] : layout.own)
+    for (std::uint32_t row = 1; row < count; row++) write_row(w, rows, row);
   w.put(checksum(w.out));
   return w.out;
 }
@@ -210,69 +271,34 @@ Status World::restore(std::span<const std::byte> snapshot) {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
   const Error cut{ErrorCode::bad_snapshot, "These bytes are no whole snapshot; take them from World::snapshot, unchanged."};
-  std::uint64_t sum = 0;
-  if (snapshot.size() < sizeof sum) return cut;
-  const std::size_t content = snapshot.size() - sizeof sum;
-  std::memcpy(&sum, snapshot.data() + content, sizeof sum);
-  snapshot = snapshot.first(content);
-  if (sum != checksum(snapshot)) return cut;
-  Reader r(snapshot);
-  char head[8];
-  std::uint64_t objects = 0;
-  double substep = 0, soft_substep = 0;
-  Vec3 gravity;
-  if (!r.get(head) || std::memcmp(head, magic, sizeof magic) != 0 || !r.get(objects)) return cut;
-  if (objects != object_hash(s))
+  constexpr std::size_t sum_bytes = sizeof(std::uint64_t);
+  if (snapshot.size() < Layout::head_bytes + sum_bytes) return cut;
+  const std::span<const std::byte> content = snapshot.first(snapshot.size() - sum_bytes);
+  if (Reader(snapshot.last(sum_bytes)).get<std::uint64_t>() != checksum(content)) return cut;
+  Reader r(content);
+  if (std::memcmp(r.take(sizeof magic), magic, sizeof magic) != 0) return cut;
+  if (r.get<std::uint64_t>() != object_hash(s))
     return Error{ErrorCode::bad_snapshot,
-                 "The snapshot is of a world with other objects, properties or another precision; restore it into one with the "
-                 "same bodies, joints, properties and tables."};
-  if (!r.get(substep) || !r.get(soft_substep) || !r.get(gravity)) return cut;
+                 "The snapshot is of a world with other objects, shapes, properties or another precision; restore it into one with "
+                 "the same bodies, joints, properties and tables."};
+  const auto substep = r.get<double>(), soft_substep = r.get<double>();
+  const auto gravity = r.get<Vec3>();
 
-  // the whole length is checked before anything is written, so that a cut snapshot changes nothing
-  const StateRows body_rows(s, Table::body), joint_rows(s, Table::joint), contact_rows(s, Table::contact);
-  const std::size_t fixed_part =
-      (s.bodies.size() - 1) * (4 + body_rows.bytes()) + (s.joints.size() - 1) * (4 + joint_rows.bytes());
-  std::size_t own_part = 0;
-  for (const OwnTable& t : s.own.tables)
-    if (t.used) own_part += (s.tables.rows(t.table) - 1) * StateRows(s, t.table).bytes();
-  const std::size_t offset = sizeof magic + 8 + 2 * 8 + sizeof(Vec3) + fixed_part;
-  std::uint32_t contacts = 0;
-  if (snapshot.size() < offset + 4) return cut;
-  std::memcpy(&contacts, snapshot.data() + offset, 4);
-  if (contacts < 1 ||
-      snapshot.size() != offset + 4 + (contacts - 1) * (sizeof(ContactKey) + 16 + contact_rows.bytes()) + own_part)
-    return cut;
+  // all of it is looked at before anything is written: bytes that are refused change nothing
+  const Layout layout(s);
+  if (content.size() < layout.fixed_bytes) return cut;
+  const auto contacts = Reader(content.subspan(layout.fixed_bytes - 4)).get<std::uint32_t>();
+  if (contacts < 1 || content.size() != layout.fixed_bytes + (contacts - 1) * layout.contact_bytes + layout.own_bytes) return cut;
+  const auto is_length = [](double h) { return std::isfinite(h) && h >= 0; };
+  if (!is_length(substep) || !is_length(soft_substep) || !check_finite(gravity, "gravity") || !is_content(s, layout, r))
+    return Error{ErrorCode::bad_snapshot, "These bytes hold numbers that no step leaves; take them from World::snapshot, unchanged."};
 
+  s.drops.clear();
   s.last_substep = substep;
   s.soft_substep = soft_substep;
   s.settling = constants::rounds;
   s.gravity = gravity;
-  std::uint32_t index = 0;
-  for (std::size_t i = 1; i < s.bodies.size(); i++) {
-    (void)r.get(index);
-    read_row(r, s, body_rows, s.body_ids.row(index));
-  }
-  for (std::size_t i = 1; i < s.joints.size(); i++) {
-    (void)r.get(index);
-    read_row(r, s, joint_rows, s.joint_ids.row(index));
-  }
-  (void)r.get(contacts);
-  s.tables.resize(Table::contact, contacts);
-  s.contacts.keys.resize(contacts);
-  s.contacts.ends.assign(contacts, {0, 0});
-  s.contacts.features.resize(contacts);
-  for (std::uint32_t row = 1; row < contacts; row++) {
-    (void)r.get(s.contacts.keys[row]);
-    s.contacts.ends[row] = s.ends_of(s.contacts.keys[row]);
-    (void)r.get(s.contacts.features[row]);
-    read_row(r, s, contact_rows, row);
-  }
-  for (const OwnTable& t : s.own.tables) {
-    if (!t.used) continue;
-    const StateRows rows(s, t.table);
-    for (std::uint32_t row = 1; row < s.tables.rows(t.table); row++) read_row(r, s, rows, row);
-  }
-  for (std::uint32_t row = 1; row < s.bodies.size(); row++) s.follow_mark(row);
+  take_content(s, layout, r);
   s.count_rest();
   s.tables.touch_all();
   s.contacts_version++;

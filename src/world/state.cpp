@@ -31,7 +31,7 @@ double half_kick(double drag, double h) {
 WorldState::WorldState(const WorldDef& def) : serial(++worlds_made), tables(def.precision), gravity(def.gravity) {
   // the ground: id index 0, row 0
   body_ids.allocate(0);
-  bodies.push_back({0, BodyKind::fixed, false, {}, {}});
+  bodies.push_back({});
   joints.emplace_back();
   contacts.keys.resize(1);
   contacts.ends.resize(1);
@@ -118,13 +118,11 @@ void WorldState::stir_reader(Table table, std::uint32_t row) {
   }
 }
 
-void WorldState::stir_neighbours(std::uint32_t row) {
-  if (sleepers == 0) return;
-  const auto stir_other = [&](std::uint32_t a, std::uint32_t b) {
-    if (a == row || b == row) stir_moving(a == row ? b : a);
-  };
-  for (const auto& [a, b] : contacts.ends) stir_other(a, b);
-  for (std::uint32_t i = 1; i < joints.size(); i++) stir_other(body_ids.row(joints[i].body_a), body_ids.row(joints[i].body_b));
+void WorldState::forget_rest(std::uint32_t row) {
+  const bool sleeps = tables.get(Buffer::rest, row, rest_asleep) > 0, stirs = tables.get(Buffer::rest, row, rest_stirred) > 0;
+  sleepers -= sleeps;
+  stirred -= stirs;
+  if (sleeps || stirs) rest_version++;
 }
 
 void WorldState::forget_rest() {

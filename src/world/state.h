@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "pcphys/world.h"
+#include "world/contact_drops.h"
 #include "world/id_pool.h"
 #include "world/own_properties.h"
 #include "world/tables.h"
@@ -22,6 +23,7 @@ struct BodyRecord {
   bool frozen = false;                // see World::frozen; its mass waits in WorldState::frozen
   std::vector<std::uint32_t> shapes;  // shape indices
   std::vector<std::uint32_t> forces;  // force indices, ascending: sums are taken in this order
+  std::vector<std::uint32_t> joints;  // id indices of joints and springs
 };
 struct JointRecord {
   std::uint32_t index = 0;
@@ -97,9 +99,11 @@ struct WorldState {
   std::vector<ForceRecord> forces;  // by force index
   std::uint32_t callbacks = 0;      // how many of them are callbacks
   ContactColumns contacts;
+  ContactDrops drops;  // bodies that were destroyed since
   OwnProperties own;
   std::unordered_map<std::uint32_t, MassProperties> frozen;  // by body index
   std::unordered_map<std::uint64_t, NoCollide> no_collide;   // by pair_key; only pairs with a reason
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> asked_apart;  // by body index with which others set_collide forbade it
 
   /// One of each stepper that has kernels of the host's own for this world.
   std::vector<std::weak_ptr<const char>> kernel_holds;
@@ -155,18 +159,18 @@ struct WorldState {
   void stir_all();
   /// A kernel of the host's own may read it of this body or joint, or of all bodies that of a table of one row.
   void stir_reader(Table table, std::uint32_t row);
-  /// What it touches and is joined to is to wake, since it goes.
-  void stir_neighbours(std::uint32_t row);
   /// Nobody sleeps, and nobody has rested.
   void forget_rest();
   /// The step has looked at who was stirred.
   void calm();
+  /// Of a body that goes.
+  void forget_rest(std::uint32_t row);
   /// Counts who sleeps and who is stirred, after their rows came from elsewhere.
   void count_rest();
   /// Removes a joint or spring.
   void remove_joint(std::uint32_t row);
-  /// Removes the contacts of a body and follows the row of another that took its place.
-  void drop_contacts(std::uint32_t row, std::uint32_t last_row);
+  /// Removes the contacts of bodies that were destroyed; what touched them is to wake.
+  void settle_contacts();
 
   std::uint32_t contact_rows() const { return tables.rows(Table::contact); }
   static std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a); }
