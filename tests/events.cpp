@@ -26,9 +26,9 @@ class ListHash {
     for (const ContactBegun& c : e.begun) add(1), meeting(c);
     for (const ContactEnded& c : e.ended) add(2), pair(c);
     for (const ContactHit& c : e.hits) add(3), meeting(c), add(c.speed), add(c.impulse);
-    for (const BodyId body : e.moved) add(4), add(body);
-    for (const BodyId body : e.slept) add(5), add(body);
-    for (const BodyId body : e.woken) add(6), add(body);
+    for (const BodyId id : e.moved) add(4), body(id);
+    for (const BodyId id : e.slept) add(5), body(id);
+    for (const BodyId id : e.woken) add(6), body(id);
   }
   std::uint64_t value() const { return hash_; }
 
@@ -38,7 +38,8 @@ class ListHash {
     std::memcpy(bytes, &value, sizeof value);
     for (const unsigned char byte : bytes) hash_ = (hash_ ^ byte) * 1099511628211ull;
   }
-  void pair(const TouchingPair& p) { add(p.a), add(p.b), add(p.shape_a), add(p.shape_b); }
+  void body(BodyId id) { add(id.index), add(id.generation); }
+  void pair(const TouchingPair& p) { body(p.a), body(p.b), add(p.shape_a), add(p.shape_b); }
   void meeting(const ContactBegun& c) { pair(c), add(c.normal), add(c.point); }
   std::uint64_t hash_ = 14695981039346656037ull;
 };

@@ -310,8 +310,8 @@ TEST_CASE("springs between points: ids of their own, which stale ones and those 
   CHECK(world.springs() == std::vector{spring});
   CHECK(world.joints() == std::vector{joint});
   CHECK(world.joint_count() == 1);
-  CHECK_FALSE(world.valid(JointId{spring.index, spring.generation}));
-  CHECK_FALSE(world.valid(SpringId{joint.index, joint.generation}));
+  CHECK_FALSE(world.valid(worldtest::as_in(world, JointId{spring.index, spring.generation})));
+  CHECK_FALSE(world.valid(worldtest::as_in(world, SpringId{joint.index, joint.generation})));
   CHECK(world.spring(spring)->stiffness == 10);
   must(world.set_spring(spring, 2, 20, 3));
   CHECK(world.spring(spring)->rest_length == 2);

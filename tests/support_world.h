@@ -69,6 +69,8 @@ World chains_world(Precision precision);
 World roof_world(Precision precision);
 /// Balls and boxes in one place: more colours of contacts than a word has bits, and thousands of dispatches a step.
 World crowd_world(Precision precision);
+/// The id of an object of another world, made by the same calls, in this one.
+template <class Id> Id as_in(const World& world, Id id) { return {id.index, id.generation, world.ground().world}; }
 template <class T> T must(Result<T> result) {
   if (!result) FAIL("refused: " << result.error().message);
   return std::move(*result);

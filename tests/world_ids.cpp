@@ -1,6 +1,8 @@
 // Pins: ids come from the sequence of create and destroy calls alone, smallest free index first, with a new
 // generation; every function refuses a stale id with ErrorCode::stale_id; destroying a body moves rows about
 // without anybody noticing, and takes shapes, joints, forces and exceptions from collision along.
+#include <utility>
+
 #include "support_world.h"
 #include "world/state.h"
 
@@ -33,20 +35,22 @@ void check_numbered(const World& world, BodyId id, int n) {
 
 TEST_CASE("ids: smallest free index first, and a new generation") {
   World world = empty();
-  CHECK(world.ground() == BodyId{0, 1});
+  CHECK(world.ground() == as_in(world, BodyId{0, 1}));
   std::vector<BodyId> ids;
   for (int i = 0; i < 5; i++) ids.push_back(must(world.create_body(numbered(i))));
-  for (std::uint32_t i = 0; i < 5; i++) CHECK(ids[i] == BodyId{i + 1, 1});
+  for (std::uint32_t i = 0; i < 5; i++) CHECK(ids[i] == as_in(world, BodyId{i + 1, 1}));
   for (std::size_t i : {4, 1, 3}) must(world.destroy(ids[i]));
-  CHECK(must(world.create_body(numbered(5))) == BodyId{2, 2});
-  CHECK(must(world.create_body(numbered(6))) == BodyId{4, 2});
-  CHECK(must(world.create_body(numbered(7))) == BodyId{5, 2});
-  CHECK(must(world.create_body(numbered(8))) == BodyId{6, 1});
-  CHECK(world.bodies() == std::vector<BodyId>{{1, 1}, {2, 2}, {3, 1}, {4, 2}, {5, 2}, {6, 1}});
+  CHECK(must(world.create_body(numbered(5))) == as_in(world, BodyId{2, 2}));
+  CHECK(must(world.create_body(numbered(6))) == as_in(world, BodyId{4, 2}));
+  CHECK(must(world.create_body(numbered(7))) == as_in(world, BodyId{5, 2}));
+  CHECK(must(world.create_body(numbered(8))) == as_in(world, BodyId{6, 1}));
+  const std::uint32_t here = world.ground().world;
+  CHECK(world.bodies() ==
+        std::vector<BodyId>{{1, 1, here}, {2, 2, here}, {3, 1, here}, {4, 2, here}, {5, 2, here}, {6, 1, here}});
   CHECK_FALSE(world.valid(ids[1]));
-  CHECK(world.valid(BodyId{2, 2}));
+  CHECK(world.valid(as_in(world, BodyId{2, 2})));
   CHECK_FALSE(world.valid(BodyId{}));
-  CHECK_FALSE(world.valid(BodyId{99, 1}));
+  CHECK_FALSE(world.valid(as_in(world, BodyId{99, 1})));
 }
 
 TEST_CASE("ids: what happens in between, steps included, does not matter") {
@@ -68,7 +72,9 @@ TEST_CASE("ids: what happens in between, steps included, does not matter") {
             }(),
             {}));
     }
-    return world.bodies();
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> all;
+    for (const BodyId id : world.bodies()) all.emplace_back(id.index, id.generation);
+    return all;
   };
   CHECK(sequence(false) == sequence(true));
 }
@@ -85,8 +91,8 @@ TEST_CASE("ids: a refused ragdoll leaves indices, generations and shapes as they
     must(world.set_gravity({0, -9.81, 0}));
     Stepper stepper;
     run(world, stepper, 90);
-    CHECK(made.bones.front() == BodyId{2, 1});
-    CHECK(made.joints.front() == JointId{0, 1});
+    CHECK(made.bones.front() == as_in(world, BodyId{2, 1}));
+    CHECK(made.joints.front() == as_in(world, JointId{0, 1}));
     return world.hash();
   };
   CHECK(after(false) == after(true));
@@ -99,15 +105,15 @@ TEST_CASE("ids: of joints and forces") {
   def.a = a;
   def.b = b;
   const JointId first = must(world.create_joint(def)), second = must(world.create_joint(def));
-  CHECK(first == JointId{0, 1});
-  CHECK(second == JointId{1, 1});
+  CHECK(first == as_in(world, JointId{0, 1}));
+  CHECK(second == as_in(world, JointId{1, 1}));
   must(world.destroy(first));
-  CHECK(must(world.create_joint(def)) == JointId{0, 2});
-  CHECK(world.joints() == std::vector<JointId>{{0, 2}, {1, 1}});
+  CHECK(must(world.create_joint(def)) == as_in(world, JointId{0, 2}));
+  CHECK(world.joints() == std::vector<JointId>{{0, 2, first.world}, {1, 1, first.world}});
   const ForceId f = must(world.add_force(a, Wrench{})), g = must(world.add_force(b, Wrench{}));
   CHECK(g.index == f.index + 1);
   must(world.remove(f));
-  CHECK(must(world.add_force(b, Wrench{})) == ForceId{f.index, f.generation + 1});
+  CHECK(must(world.add_force(b, Wrench{})) == as_in(world, ForceId{f.index, f.generation + 1}));
 }
 
 TEST_CASE("ids: a stale one is refused by every function") {
@@ -125,7 +131,7 @@ TEST_CASE("ids: a stale one is refused by every function") {
 
   const ErrorCode code = ErrorCode::stale_id;
   const char* words = "This id names no body of the world: it was destroyed, or never created here.";
-  for (BodyId id : {gone, BodyId{}, BodyId{77, 1}}) {
+  for (BodyId id : {gone, BodyId{}, as_in(world, BodyId{77, 1})}) {
     CHECK_REFUSED(world, world.destroy(id), code, words);
     CHECK_REFUSED(world, world.pose(id), code, words);
     CHECK_REFUSED(world, world.set_pose(id, {}), code, words);
@@ -158,14 +164,14 @@ TEST_CASE("ids: a stale one is refused by every function") {
     CHECK_REFUSED(world, world.create_joint(def), code, words);
   }
   words = "This id names no joint of the world: it was destroyed, or never created here.";
-  for (JointId id : {joint, JointId{}, JointId{77, 1}}) {
+  for (JointId id : {joint, JointId{}, as_in(world, JointId{77, 1})}) {
     CHECK_FALSE(world.valid(id));
     CHECK_REFUSED(world, world.destroy(id), code, words);
     CHECK_REFUSED(world, world.joint(id), code, words);
     CHECK_REFUSED(world, world.joint_separation(id), code, words);
   }
   words = "This id names no force of the world: it was destroyed, or never created here.";
-  for (ForceId id : {force, ForceId{}, ForceId{77, 1}}) CHECK_REFUSED(world, world.remove(id), code, words);
+  for (ForceId id : {force, ForceId{}, as_in(world, ForceId{77, 1})}) CHECK_REFUSED(world, world.remove(id), code, words);
 }
 
 TEST_CASE("destroying bodies: the others keep their data, whatever row they move to") {

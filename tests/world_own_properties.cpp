@@ -205,13 +205,13 @@ TEST_CASE("what is refused changes nothing") {
     CHECK_REFUSED(world, world.add_property<Real>(word), ErrorCode::bad_argument, "a word of C++ or GLSL");
   CHECK_REFUSED(world, world.add_property<Real>("heat", std::nan("")), ErrorCode::not_finite,
                 "The value of the property \"heat\" is nan");
-  CHECK_REFUSED(world, world.add_property<Real>("heat", 0, "K", TableId{7, 1}), ErrorCode::stale_id, "This id names no table");
+  CHECK_REFUSED(world, world.add_property<Real>("heat", 0, "K", as_in(world, TableId{7, 1})), ErrorCode::stale_id, "This id names no table");
   CHECK_REFUSED(world, world.set(fuel, ids[0], Real(HUGE_VAL)), ErrorCode::not_finite,
                 "The value of the property \"fuel\" is inf");
   CHECK_REFUSED(world, world.set(fuel, ids[0], Real(1e39)), ErrorCode::not_finite,
                 "is 1e+39; it must be finite, and no larger than 3.4");
   must(world.set(fuel, ids[0], Real(1e38)));  // kernels may make it, so the host may too
-  CHECK_REFUSED(world, world.set(fuel, BodyId{9, 1}, Real(1)), ErrorCode::stale_id, "This id names no body");
+  CHECK_REFUSED(world, world.set(fuel, as_in(world, BodyId{9, 1}), Real(1)), ErrorCode::stale_id, "This id names no body");
   CHECK_REFUSED(world, world.property<float>("fuel"), ErrorCode::wrong_type,
                 "The property \"fuel\" holds values of type real, not float32.");
   CHECK_REFUSED(world, world.property<Real>("heat"), ErrorCode::unknown_name, "There is no property \"heat\"");

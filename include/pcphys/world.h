@@ -232,10 +232,10 @@ class World {
   Status read(AnyProperty property, RowOf object, double* numbers) const;
   Status write(AnyProperty property, RowOf object, const double* numbers);
   /// Whether no step of it runs, and the object is there.
-  Status changeable() const;
-  Status changeable(BodyId body) const;
-  Status changeable(JointId joint) const;
-  Status changeable(SpringId spring) const;
+  Status changeable(const char* call = __builtin_FUNCTION()) const;
+  Status changeable(BodyId body, const char* call = __builtin_FUNCTION()) const;
+  Status changeable(JointId joint, const char* call = __builtin_FUNCTION()) const;
+  Status changeable(SpringId spring, const char* call = __builtin_FUNCTION()) const;
 
   /// With contacts and rest as they are after what was destroyed.
   const WorldState& settled(const char* call = __builtin_FUNCTION()) const;

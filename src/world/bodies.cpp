@@ -58,22 +58,22 @@ World& World::operator=(World&& other) noexcept {
   return *this;
 }
 
-Status World::changeable() const {
-  if (state().stepping) return busy("world");
+Status World::changeable(const char* call) const {
+  if (state(call).stepping) return busy("world");
   return {};
 }
-Status World::changeable(BodyId body) const {
-  if (Status ok = changeable(); !ok) return ok;
+Status World::changeable(BodyId body, const char* call) const {
+  if (Status ok = changeable(call); !ok) return ok;
   if (!valid(body)) return stale("body");
   return {};
 }
-Status World::changeable(JointId joint) const {
-  if (Status ok = changeable(); !ok) return ok;
+Status World::changeable(JointId joint, const char* call) const {
+  if (Status ok = changeable(call); !ok) return ok;
   if (!valid(joint)) return stale("joint");
   return {};
 }
-Status World::changeable(SpringId spring) const {
-  if (Status ok = changeable(); !ok) return ok;
+Status World::changeable(SpringId spring, const char* call) const {
+  if (Status ok = changeable(call); !ok) return ok;
   if (!valid(spring)) return stale("spring");
   return {};
 }
