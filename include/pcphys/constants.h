@@ -8,9 +8,10 @@ namespace pcphys::constants {
 inline constexpr double smallest_extent = 1e-5, largest_extent = 1e6;
 /// A convex hull may have so many vertices; contacts see up to so many corners of a face.
 inline constexpr unsigned largest_hull_vertices = 64, largest_hull_face = 16;
-/// Points whose smallest extent is below this share of their largest are flat: they make no hull.
+/// Points are flat, and make no hull, where it is less wide across one of its faces than this share of the distance of the
+/// two vertices that are farthest apart.
 inline constexpr double hull_flatness = 1e-4;
-/// Vertices nearer to a plane or line than this share of the hull's largest extent lie in it: triangles merge into
+/// Vertices nearer to a plane or line than this share of how far the hull's points reach lie in it: triangles merge into
 /// faces.
 inline constexpr double hull_planarity = 1e-5;
 /// Coordinates, velocities and other inputs beyond this are refused: their squares leave float32's range.
