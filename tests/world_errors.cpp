@@ -247,6 +247,27 @@ TEST_CASE("last positions need a step") {
   CHECK_REFUSED(world, world.set_orientation_last(body, {}), ErrorCode::bad_time_step, words);
 }
 
+TEST_CASE("forces far beyond what a body can follow, and gravity, leave its velocity as it reads") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World w(WorldDef{precision});
+    BodyDef def = ball({});
+    def.mass = 1e-28;
+    def.linear_drag = def.angular_drag = 1e6;
+    def.velocity = {1, 2, 3};
+    const BodyId body = must(w.create_body(def));
+    Stepper stepper;
+    run(w, stepper, 1);
+    const Vec3 velocity = must(w.velocity(body));
+    REQUIRE(finite(velocity));
+    for (int i = 0; i < 5; i++) (void)must(w.add_force(body, Wrench{{1e15, 0, 0}, {0, 1e15, 0}}));
+    CHECK(length(must(w.velocity(body)) - velocity) <= 1e-6 * length(velocity));
+    run(w, stepper, 1);
+    must(w.set_gravity({0, 1e15, 0}));
+    CHECK(finite(must(w.velocity(body))));
+    CHECK(finite(must(w.angular_velocity(body))));
+  }
+}
+
 TEST_CASE("create_joint refuses") {
   Populated p;
   const auto refused = [&](auto&& spoil, ErrorCode code, const char* words) {
