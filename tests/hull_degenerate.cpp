@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <random>
 
 #include "narrow_support.h"
 #include "pcphys/constants.h"
 #include "support_world.h"
+#include "wild/dice.h"
 
 using namespace worldtest;
 
@@ -17,29 +17,14 @@ namespace {
 
 using Points = std::vector<Vec3>;
 
-class Dice {
- public:
-  explicit Dice(unsigned seed) : random_(seed) {}
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-  /// Of a logarithm that is spread evenly.
-  double size(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-  int below(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
-  Vec3 direction() {
-    std::normal_distribution<double> normal;
-    const Vec3 d{normal(random_), normal(random_), normal(random_)};
-    return (1 / length(d)) * d;
-  }
-  Quat rotation() { return axis_angle(direction(), between(0, 6.3)); }
-  void shuffle(Points& points) { std::shuffle(points.begin(), points.end(), random_); }
-
- private:
-  std::mt19937 random_;
+struct Dice : wild::Dice {
+  explicit Dice(unsigned seed) : wild::Dice("hulls", seed) {}
 };
 
 /// Points of a body of the extents `size` about the origin: corners of its box, or points in it, on an ellipsoid, on the
 /// two sides of a plate, or of a wedge that ends in an edge.
 Points some_points(Dice& dice, Vec3 size) {
-  const int kind = dice.below(5), count = 4 + dice.below(kind == 2 ? 40 : 60);
+  const int kind = dice.one_of(5), count = 4 + dice.one_of(kind == 2 ? 40 : 60);
   Points points;
   if (kind == 0) points = narrow_test::box_corners(0.5 * size);
   for (int i = 0; kind != 0 && i < count; i++) {
@@ -49,21 +34,21 @@ Points some_points(Dice& dice, Vec3 size) {
     if (kind == 4) p.z *= 0.5 - p.x;
     points.push_back({size.x * p.x, size.y * p.y, size.z * p.z});
   }
-  for (int copies = dice.below(3) * dice.below(30); copies > 0; copies--) {
-    const Vec3 copy = points[std::size_t(dice.below(int(points.size())))];
+  for (int copies = dice.one_of(3) * dice.one_of(30); copies > 0; copies--) {
+    const Vec3 copy = points[std::size_t(dice.one_of(int(points.size())))];
     points.push_back(copy);
   }
-  dice.shuffle(points);
+  for (std::size_t i = points.size() - 1; i > 0; i--) std::swap(points[i], points[std::size_t(dice.one_of(int(i + 1)))]);
   return points;
 }
 
 /// Plates, needles, slivers and lumps, the thin ones from a tenth of their length to nothing.
 Vec3 some_extents(Dice& dice) {
-  const double thin = dice.below(12) ? dice.size(1e-10, 0.1) : 0.0, wide = dice.size(0.1, 1);
-  switch (dice.below(4)) {
+  const double thin = dice.one_of(12) ? dice.by_ratio(1e-10, 0.1) : 0.0, wide = dice.by_ratio(0.1, 1);
+  switch (dice.one_of(4)) {
     case 0: return {1, wide, thin};
     case 1: return {1, thin, thin};
-    case 2: return {1, std::max(dice.size(1e-6, 1), thin), thin};
+    case 2: return {1, std::max(dice.by_ratio(1e-6, 1), thin), thin};
     default: return {1, wide, dice.between(0.1, 1)};
   }
 }
@@ -123,10 +108,10 @@ TEST_CASE("hull: thin, small, large and distant points make a sound hull or none
   for (unsigned seed = 0; seed < 20000; seed++) {
     CAPTURE(seed);
     Dice dice(seed);
-    const double scale = dice.below(2) ? 1 : dice.size(1e-4, 1e5);
-    const double far = dice.below(2) ? 0 : dice.size(1e-3, 1e3);
+    const double scale = dice.one_of(2) ? 1 : dice.by_ratio(1e-4, 1e5);
+    const double far = dice.one_of(2) ? 0 : dice.by_ratio(1e-3, 1e3);
     const Points points = scaled(some_points(dice, some_extents(dice)), scale);
-    made_or_refused(moved(points, {far * dice.direction(), dice.rotation()}));
+    made_or_refused(moved(points, {far * dice.direction(), dice.orientation()}));
   }
 }
 
@@ -134,10 +119,12 @@ TEST_CASE("hull: points in a plane, on a line or in one place make none, however
   for (unsigned seed = 0; seed < 2000; seed++) {
     CAPTURE(seed);
     Dice dice(seed);
-    const double scale = dice.size(1e-4, 1e5), thin = dice.size(1e-12, 2e-5);
-    const Vec3 extents = seed % 3 == 0 ? Vec3{1, 1, thin} : seed % 3 == 1 ? Vec3{1, thin, thin} : Vec3{1, dice.size(1e-3, 1), 0};
+    const double scale = dice.by_ratio(1e-4, 1e5), thin = dice.by_ratio(1e-12, 2e-5);
+    const Vec3 extents = seed % 3 == 0   ? Vec3{1, 1, thin}
+                         : seed % 3 == 1 ? Vec3{1, thin, thin}
+                                         : Vec3{1, dice.by_ratio(1e-3, 1), 0};
     const Points points = scaled(some_points(dice, extents), scale);
-    CHECK_FALSE(made_or_refused(moved(points, {scale * dice.between(0, 100) * dice.direction(), dice.rotation()})));
+    CHECK_FALSE(made_or_refused(moved(points, {scale * dice.between(0, 100) * dice.direction(), dice.orientation()})));
   }
 }
 
@@ -150,7 +137,7 @@ TEST_CASE("hull: whether there is one does not depend on how the points are turn
     std::array<int, 2> answers{};
     std::optional<double> thickness;
     for (int i = 0; i < 4; i++) {
-      const auto hull = make_hull(i == 0 ? points : moved(points, {{}, dice.rotation()}));
+      const auto hull = make_hull(i == 0 ? points : moved(points, {{}, dice.orientation()}));
       answers[bool(hull)]++;
       if (hull) thickness = hull->inner_radius() / hull->radius();
     }
@@ -170,13 +157,14 @@ TEST_CASE("hull: a box makes one from the thickness on that is named, at any siz
   for (unsigned seed = 0; seed < 4000; seed++) {
     CAPTURE(seed);
     Dice dice(seed);
-    const double wide = dice.below(2) ? dice.size(0.01, 1) : 0, thin = dice.size(3e-5, 3e-4), scale = dice.size(0.5, 1e5);
+    const double wide = dice.one_of(2) ? dice.by_ratio(0.01, 1) : 0, thin = dice.by_ratio(3e-5, 3e-4),
+                 scale = dice.by_ratio(0.5, 1e5);
     const Vec3 extents{1, std::max(wide, thin), thin};
     const double share = thin / length(extents) / constants::hull_flatness;
     if (std::fabs(share - 1) < 0.02) continue;
     const Points box = narrow_test::box_corners(0.5 * scale * extents);
     CAPTURE(share);
-    const Pose pose{dice.between(0, 10) * scale * dice.direction(), dice.rotation()};
+    const Pose pose{dice.between(0, 10) * scale * dice.direction(), dice.orientation()};
     CHECK(made_or_refused(moved(box, pose)) == (share > 1));
   }
 }
@@ -186,13 +174,13 @@ TEST_CASE("hull: the corners of a box are found among points that lie in its fac
     CAPTURE(seed);
     Dice dice(seed);
     Points points = narrow_test::box_corners({0.5, 0.5, 0.5});
-    for (int i = dice.below(200); i > 0; i--) {
-      const double x = dice.below(7) / 6.0, y = dice.below(7) / 6.0;
-      points.push_back({x - 0.5, y - 0.5, dice.below(2) - 0.5});
+    for (int i = dice.one_of(200); i > 0; i--) {
+      const double x = dice.one_of(7) / 6.0, y = dice.one_of(7) / 6.0;
+      points.push_back({x - 0.5, y - 0.5, dice.one_of(2) - 0.5});
     }
-    const double noise = dice.size(1e-16, 1e-8);
+    const double noise = dice.by_ratio(1e-16, 1e-8);
     for (Vec3& p : points) p = p + noise * dice.direction();
-    const auto hull = make_hull(moved(points, {{}, seed % 2 ? dice.rotation() : Quat{}}));
+    const auto hull = make_hull(moved(points, {{}, seed % 2 ? dice.orientation() : Quat{}}));
     REQUIRE_MESSAGE(hull, hull.error().message);
     CHECK(hull->vertices().size() == 8);
   }
@@ -205,9 +193,9 @@ TEST_CASE("hull: numbers that none can be made of are refused") {
   for (unsigned seed = 0; seed < 5000; seed++) {
     CAPTURE(seed);
     Dice dice(seed);
-    const int count = dice.below(30), all = seed % 2 ? 11 : int(std::size(odd));
+    const int count = dice.one_of(30), all = seed % 2 ? 11 : int(std::size(odd));
     Points points;
-    const auto number = [&] { return odd[dice.below(all)] * (dice.below(3) ? 1 : dice.between(0.5, 1)); };
+    const auto number = [&] { return odd[dice.one_of(all)] * (dice.one_of(3) ? 1 : dice.between(0.5, 1)); };
     for (int i = 0; i < count; i++) points.push_back({number(), number(), number()});
     made_or_refused(points);
   }
