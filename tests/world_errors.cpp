@@ -132,9 +132,8 @@ TEST_CASE("create_body refuses") {
        },
        ErrorCode::degenerate_shape, "A plane is infinite"},
       {"zero density", [](BodyDef& d) { d.density = 0; }, ErrorCode::bad_mass,
-       "A density must be above zero and finite; it is 0.0"},
-      {"NaN density", [](BodyDef& d) { d.density = not_a_number; }, ErrorCode::bad_mass,
-       "A density must be above zero and finite"},
+       "A density must be above zero, between 1e-30 and 1e+30 kg/m^3; it is 0"},
+      {"NaN density", [](BodyDef& d) { d.density = not_a_number; }, ErrorCode::bad_mass, "A density must be above zero, between"},
       {"zero mass", [](BodyDef& d) { d.mass = 0; }, ErrorCode::bad_mass,
        "The mass is 0 kg; a dynamic body's must be above zero. Use BodyKind::fixed"},
       {"negative mass", [](BodyDef& d) { d.mass = -2; }, ErrorCode::bad_mass, "The mass is -2 kg"},
@@ -227,6 +226,7 @@ TEST_CASE("set functions refuse") {
   CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, infinity}), ErrorCode::not_finite, "not a number");
   CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, 0, 0, Combine(9)}), ErrorCode::bad_argument, "rule");
   CHECK_REFUSED(w, w.set_material(p.a, {0, 0, 0, 0, 0, Combine::mean, Combine(5)}), ErrorCode::bad_argument, "rule");
+  CHECK_REFUSED(w, w.set_material(p.a, {1e300, 1e300, 0}), ErrorCode::not_finite, "or larger than 1e+15");
   CHECK_REFUSED(w, w.set_drag(p.a, -1, 0), ErrorCode::bad_argument, "A drag is below zero; use 0 for none.");
   CHECK_REFUSED(w, w.set_drag(p.a, 0, not_a_number), ErrorCode::not_finite, "The angular drag of a body is nan");
   CHECK_REFUSED(w, w.add_force(p.a, Wrench{{not_a_number, 0, 0}, {}}), ErrorCode::not_finite,
@@ -245,6 +245,53 @@ TEST_CASE("last positions need a step") {
   CHECK_REFUSED(world, world.set_position_last(body, {}), ErrorCode::bad_time_step, words);
   CHECK_REFUSED(world, world.orientation_last(body), ErrorCode::bad_time_step, words);
   CHECK_REFUSED(world, world.set_orientation_last(body, {}), ErrorCode::bad_time_step, words);
+}
+
+TEST_CASE("what a velocity or an angular momentum beyond the range of numbers would be made of is refused") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World w(WorldDef{precision});
+    BodyDef def = ball({});
+    def.mass = 1e30;
+    def.moments = Vec3{1e30, 1e20, 1e30};
+    const BodyId heavy = must(w.create_body(def));
+    CHECK_REFUSED(w, w.set_angular_velocity(heavy, {0, 0, 1e15}), ErrorCode::not_finite,
+                  "The angular momentum of a body would be");
+    must(w.set_angular_velocity(heavy, {0, 0, 9e5}));
+    CHECK_REFUSED(w, w.set_angular_velocity(heavy, {0, 1e15, 0}), ErrorCode::not_finite, "up to 1e+45 kg m^2/s");
+    def.angular_velocity = {1e15, 0, 0};
+    CHECK_REFUSED(w, w.create_body(def), ErrorCode::not_finite, "The angular momentum of a body would be");
+    const BodyId light = must(w.create_body(ball({5, 0, 0})));
+    must(w.set_angular_velocity(light, {0, 1e15, 0}));
+    CHECK_REFUSED(w, w.set_mass_properties(light, {1e30, {1e30, 1e30, 1e30}}), ErrorCode::not_finite, "The angular momentum");
+    Stepper stepper;
+    run(w, stepper, 1, 1e-15);
+    const Vec3 at = must(w.pose(light)).position;
+    CHECK_REFUSED(w, w.set_position_last(light, at + Vec3{1, 0, 0}), ErrorCode::not_finite,
+                  "The velocity that a body's last position");
+    CHECK_REFUSED(w, w.set_orientation_last(light, {1, 0, 0, 0}), ErrorCode::not_finite,
+                  "The angular velocity that a body's last orientation");
+  }
+}
+
+TEST_CASE("forces far beyond what a body can follow, and gravity, leave its velocity as it reads") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World w(WorldDef{precision});
+    BodyDef def = ball({});
+    def.mass = 1e-28;
+    def.linear_drag = def.angular_drag = 1e6;
+    def.velocity = {1, 2, 3};
+    const BodyId body = must(w.create_body(def));
+    Stepper stepper;
+    run(w, stepper, 1);
+    const Vec3 velocity = must(w.velocity(body));
+    REQUIRE(finite(velocity));
+    for (int i = 0; i < 5; i++) (void)must(w.add_force(body, Wrench{{1e15, 0, 0}, {0, 1e15, 0}}));
+    CHECK(length(must(w.velocity(body)) - velocity) <= 1e-6 * length(velocity));
+    run(w, stepper, 1);
+    must(w.set_gravity({0, 1e15, 0}));
+    CHECK(finite(must(w.velocity(body))));
+    CHECK(finite(must(w.angular_velocity(body))));
+  }
 }
 
 TEST_CASE("create_joint refuses") {
@@ -276,11 +323,12 @@ TEST_CASE("create_joint refuses") {
         d.freedom = AngleFreedom::between({0, 1, 0}, {0, 0, 0});
       },
       ErrorCode::bad_joint, "An angle limit of a joint has its lower bound above its upper one");
+  refused([&](JointDef& d) { d.freedom.upper.y = not_a_number; }, ErrorCode::bad_joint, "is not a number");  // not used
   refused(
       [&](JointDef& d) {
         d.freedom = AngleFreedom::between({0, 0, not_a_number}, {0, 0, 0});
       },
-      ErrorCode::bad_joint, "or is not a number");
+      ErrorCode::bad_joint, "or an angle limit, is not a number");
 }
 
 TEST_CASE("create_ragdoll refuses, whole") {
@@ -321,6 +369,11 @@ TEST_CASE("mass_properties and make_compound refuse") {
   refused(mass_properties(ShapeDef::sphere(0), 1), ErrorCode::degenerate_shape, "The radius of a shape is 0 m");
   refused(mass_properties(ShapeDef::sphere(1), 0), ErrorCode::bad_mass, "A density must be above zero");
   refused(mass_properties(ShapeDef::sphere(1), infinity), ErrorCode::bad_mass, "A density must be above zero");
+  refused(mass_properties(ShapeDef::sphere(1), 1e300), ErrorCode::bad_mass, "between 1e-30 and 1e+30 kg/m^3");
+  refused(mass_properties(ShapeDef::sphere(1), 1e-300), ErrorCode::bad_mass, "between 1e-30 and 1e+30 kg/m^3");
+  ShapeDef odd = ShapeDef::sphere(1);
+  odd.size.z = infinity;
+  refused(mass_properties(odd, 1), ErrorCode::not_finite, "The size of a shape is (1, 0, inf)");
   refused(mass_properties(ShapeDef::plane(), 1), ErrorCode::bad_mass, "A plane has no mass: use it on fixed bodies.");
   BodyDef def;
   refused(make_compound(def), ErrorCode::degenerate_shape, "A compound needs at least one shape.");
@@ -330,4 +383,14 @@ TEST_CASE("mass_properties and make_compound refuse") {
   CHECK(def.shapes.size() == 2);
   CHECK(def.pose.position == Vec3{1, 2, 3});
   CHECK_FALSE(def.mass.has_value());
+  def = ball({1, 2, not_a_number});
+  refused(make_compound(def), ErrorCode::not_finite, "The position of a body");
+  def = ball({});
+  def.mass = 1e300;
+  refused(make_compound(def), ErrorCode::bad_mass, "A mass or moment of inertia is 1e+300");
+  def = ball({});
+  def.density = 1e30;
+  def.shapes.push_back(ShapeDef::sphere(1));
+  def.shapes[1].local.position = {1e15, 0, 0};
+  refused(make_compound(def), ErrorCode::bad_mass, "A mass or moment of inertia");
 }

@@ -130,7 +130,7 @@ TEST_CASE("cut, changed and foreign snapshots are refused, and change nothing") 
     CHECK_REFUSED(w, w.restore(changed), ErrorCode::bad_snapshot, "");
   }
   const char* foreign =
-      "The snapshot is of a world with other objects, properties or another precision; restore it into one with the same "
+      "The snapshot is of a world with other objects, shapes, properties or another precision; restore it into one with the same "
       "bodies, joints, properties and tables.";
   CHECK_REFUSED(w, w.restore(scene_world("stack", 4).world.snapshot()), ErrorCode::bad_snapshot, foreign);
   CHECK_REFUSED(w, w.restore(scene_world("stack", 3, Precision::f64).world.snapshot()), ErrorCode::bad_snapshot, foreign);

@@ -8,18 +8,22 @@ namespace pcphys::constants {
 inline constexpr double smallest_extent = 1e-5, largest_extent = 1e6;
 /// A convex hull may have so many vertices; contacts see up to so many corners of a face.
 inline constexpr unsigned largest_hull_vertices = 64, largest_hull_face = 16;
-/// Points whose smallest extent is below this share of their largest are flat: they make no hull.
+/// Points are flat, and make no hull, where it is less wide across one of its faces than this share of the distance of the
+/// two vertices that are farthest apart.
 inline constexpr double hull_flatness = 1e-4;
-/// Vertices nearer to a plane or line than this share of the hull's largest extent lie in it: triangles merge into
+/// Vertices nearer to a plane or line than this share of how far the hull's points reach lie in it: triangles merge into
 /// faces.
 inline constexpr double hull_planarity = 1e-5;
 /// Coordinates, velocities and other inputs beyond this are refused: their squares leave float32's range.
 inline constexpr double largest_input = 1e15;
 /// A body whose coordinates [m], speed [m/s] or spin [rad/s] would go beyond this within a step is frozen.
 inline constexpr double largest_state = 1e18;
-/// Masses [kg] and moments of inertia [kg m^2] outside this interval are refused: float32 must hold them, their
-/// inverses and the products of both.
+/// Masses [kg], moments of inertia [kg m^2] and densities [kg/m^3] outside this interval are refused: float32 must hold
+/// masses and moments, their inverses and the products of both.
 inline constexpr double smallest_mass = 1e-30, largest_mass = 1e30;
+/// A spin that with the largest moment of its body makes an angular momentum beyond this [kg m^2/s] is refused, in either
+/// precision: float32 must hold sums of such, whichever way the body is turned.
+inline constexpr double largest_spin_momentum = 1e36;
 /// Time steps outside this interval are refused: their inverses or what falls within them leave float32's range [s].
 inline constexpr double shortest_step = 1e-15, longest_step = 1e3;
 /// How far an orientation may be from unit length; closer ones are normalised.

@@ -48,7 +48,7 @@ World::~World() {
   if (state_ && state_->stepping) detail::misuse("A World was destroyed while a step of it runs; no callback may do that.");
 }
 World::World(World&& other) noexcept {
-  if (other.state_ && other.state_->stepping) detail::misuse("A World was moved while a step of it runs; no callback may do that.");
+  if (other.state_ && other.state().stepping) detail::misuse("A World was moved while a step of it runs; no callback may do that.");
   state_ = std::move(other.state_);
 }
 World& World::operator=(World&& other) noexcept {
@@ -215,9 +215,10 @@ Status World::set_pose(BodyId body, const Pose& pose) {
   if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
   WorldState& s = state();
   const std::uint32_t row = s.body_ids.row(body.index);
-  s.change(row);
   const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.orientation(row));
   const Vec3 w = s.angular_velocity(row);
+  if (Status ok = spins ? check_spin(mass_properties(body)->moments, w) : Status{}; !ok) return ok;
+  s.change(row);
   s.set_position(row, pose.position);
   s.set_orientation(row, q);
   if (spins) {  // the angular velocity stays, so the momentum changes
@@ -257,6 +258,7 @@ Status World::set_angular_velocity(BodyId body, Vec3 w) {
   if (state().bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
   if (!state().rotates(row) && w != Vec3{}) return no_rotation();
+  if (Status ok = check_spin(mass_properties(body)->moments, w); !ok) return ok;
   state().change(row);
   state().bring_in_phase(row);
   state().set_angular_velocity(row, w);
@@ -292,8 +294,10 @@ Status World::set_position_last(BodyId body, Vec3 position) {
   const std::uint32_t row = s.body_ids.row(body.index);
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
+  const Vec3 v = (1 / s.last_substep) * (s.pose(row).position - position);
+  if (Status ok = check_finite(v, "velocity that a body's last position stands for"); !ok) return ok;
   s.change(row);
-  s.tables.set3(Buffer::motion, row, 0, (1 / s.last_substep) * (s.pose(row).position - position));
+  s.tables.set3(Buffer::motion, row, 0, v);
   for (std::uint32_t part : {0, 8}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
   return {};
@@ -321,13 +325,17 @@ Status World::set_orientation_last(BodyId body, Quat last) {
   if (s.bodies[row].kind == BodyKind::fixed)
     return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
   if (!s.rotates(row)) return no_rotation();
-  s.change(row);
   // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
   Quat d = s.orientation(row) * conjugate(last);
   if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
   const double sine = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), angle = 2 * std::atan2(sine, d.w);
   const double rate = sine > 0 ? angle / (sine * s.last_substep) : 0;
-  s.set_angular_velocity(row, {rate * d.x, rate * d.y, rate * d.z});
+  const Vec3 w{rate * d.x, rate * d.y, rate * d.z};
+  Status ok = check_finite(w, "angular velocity that a body's last orientation stands for");
+  if (ok) ok = check_spin(mass_properties(body)->moments, w);
+  if (!ok) return ok;
+  s.change(row);
+  s.set_angular_velocity(row, w);
   for (std::uint32_t part : {4, 12}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
   return {};
@@ -349,9 +357,10 @@ Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
   const bool rotates = s.rotates(row);
   if (Status ok = check(mass, rotates); !ok) return ok;
   if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
+  const Vec3 w = s.angular_velocity(row), moments = rotates ? mass.moments : Vec3{};
+  if (Status ok = check_spin(moments, w); !ok) return ok;
   s.change(row);
-  const Vec3 w = s.angular_velocity(row);
-  s.set_mass(row, {mass.mass, rotates ? mass.moments : Vec3{}});
+  s.set_mass(row, {mass.mass, moments});
   s.structure_version++;
   s.bring_in_phase(row);
   s.set_angular_velocity(row, w);

@@ -21,7 +21,6 @@ using Polygon = std::vector<std::uint32_t>;
 struct Solid {
   std::vector<Point> vertices;
   std::vector<Polygon> faces;  // counter-clockwise seen from outside
-  std::vector<Point> normals;
 };
 
 // ---- checks of the points --------------------------------------------------------------------------------
@@ -30,22 +29,44 @@ Error flat(const std::string& what) {
   return {ErrorCode::degenerate_shape, what + "; a hull needs four points that span a volume."};
 }
 
-/// Whether the points span a volume, by their extents along their own principal axes.
-Status check_spread(std::span<const Vec3> points) {
-  Eigen::Matrix3Xd p(3, points.size());
-  for (std::size_t i = 0; i < points.size(); i++) p.col(Eigen::Index(i)) = Point(points[i].x, points[i].y, points[i].z);
-  p.colwise() -= Point(0.5 * (p.rowwise().minCoeff() + p.rowwise().maxCoeff()));
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(p * p.transpose());
-  const Eigen::Matrix3Xd along = axes.eigenvectors().transpose() * p;
-  Point extent = along.rowwise().maxCoeff() - along.rowwise().minCoeff();
-  std::sort(extent.begin(), extent.end());
-  const double least = std::max(extent[2] * constants::hull_flatness, 2 * constants::smallest_extent);
-  const std::string count = "The " + std::to_string(points.size()) + " points of a hull ";
-  if (extent[2] < least) return flat(count + "lie in one place");
-  if (extent[1] < least) return flat(count + "lie on one line");
-  if (extent[0] < least) return flat(count + "lie in one plane");
-  if (0.5 * extent[2] > constants::largest_extent)
-    return Error{ErrorCode::degenerate_shape, count + "lie more than 2e6 m apart; a shape's half extents may be up to 1e6 m."};
+Error nowhere(std::size_t points, const char* where) {
+  return flat("The " + std::to_string(points) + " points of a hull " + where);
+}
+
+/// The point that is farthest by some measure.
+template <class Measure> Point farthest(const std::vector<Point>& points, const Measure& measure) {
+  return *std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) { return measure(p) < measure(q); });
+}
+
+/// How far the points reach apart, and from a line and a plane through some that are far apart. Each is at least half of
+/// what the points are wide in some direction, and none depends on how they are turned.
+struct Reach {
+  double apart, from_line, from_plane;
+
+  explicit Reach(const std::vector<Point>& points) {
+    const Point first = points[0];
+    const Point a = farthest(points, [&](const Point& p) { return (p - first).squaredNorm(); });
+    const Point b = farthest(points, [&](const Point& p) { return (p - a).squaredNorm(); });
+    apart = (b - a).norm();
+    const Point along = (b - a).stableNormalized();
+    const auto off_line = [&](const Point& p) { return (p - a).cross(along).norm(); };
+    const Point c = farthest(points, off_line);
+    from_line = off_line(c);
+    const Point normal = along.cross(c - a).stableNormalized();
+    const auto off_plane = [&](const Point& p) { return std::fabs(normal.dot(p - a)); };
+    from_plane = off_plane(farthest(points, off_plane));
+  }
+};
+
+/// Points that reach so far apart [m] are flat where they are less wide than this [m].
+double least_width(double apart) { return std::max(apart * constants::hull_flatness, 2 * constants::smallest_extent); }
+
+/// Refuses points that are surely too flat; `check_width` looks at the others once their hull is known.
+Status check_reach(const Reach& reach, std::size_t points) {
+  const double least = least_width(reach.apart);
+  if (2 * reach.apart < least) return nowhere(points, "lie in one place");
+  if (2 * reach.from_line < least) return nowhere(points, "lie on one line");
+  if (2 * reach.from_plane < least) return nowhere(points, "lie in one plane");
   return {};
 }
 
@@ -53,7 +74,7 @@ Status check_points(std::span<const Vec3> points) {
   for (const Vec3& p : points)
     if (Status ok = check_finite(p, "position of a point of a hull"); !ok) return ok;
   if (points.size() < 4) return flat("A hull has " + std::to_string(points.size()) + (points.size() == 1 ? " point" : " points"));
-  return check_spread(points);
+  return {};
 }
 
 // ---- faces -----------------------------------------------------------------------------------------------
@@ -77,13 +98,14 @@ Polygon around(std::vector<Flat> points, double tolerance) {
   for (int pass = 0; pass < 2; pass++) {
     const std::size_t start = ring.size();
     for (const Flat& p : points) {
-      while (ring.size() > start + 1 && bulge(ring[ring.size() - 2], ring.back(), p) <= tolerance) ring.pop_back();
+      while (ring.size() > start + 1 && bulge(ring[ring.size() - 2], ring.back(), p) <= 0) ring.pop_back();
       ring.push_back(p);
     }
     ring.pop_back();  // the first of the other pass
     std::reverse(points.begin(), points.end());
   }
-  for (std::size_t i = 0; i < ring.size() && ring.size() > 2;) {  // the two ends of the chains
+  // not earlier: where many points stand on a line across the chains, rounding orders them
+  for (std::size_t i = 0; i < ring.size() && ring.size() > 2;) {
     const std::size_t n = ring.size();
     if (bulge(ring[(i + n - 1) % n], ring[i], ring[(i + 1) % n]) <= tolerance)
       ring.erase(ring.begin() + std::ptrdiff_t(i)), i = 0;
@@ -186,8 +208,8 @@ Error too_many(std::size_t points, std::size_t vertices) {
                                       "; leave some of the points out, or use several hulls."};
 }
 
-/// In coordinates of size 1 about the middle of the points.
-Result<Solid> solid_of(const std::vector<Point>& points) {
+/// In coordinates of size 1 about the middle of the points. `extent`: how far they reach apart.
+Result<Solid> solid_of(const std::vector<Point>& points, double extent) {
   std::vector<double> coordinates;
   for (const Point& p : points) coordinates.insert(coordinates.end(), p.begin(), p.end());
   const std::vector<std::uint32_t> triangles = qhull_triangles(coordinates);
@@ -197,7 +219,8 @@ Result<Solid> solid_of(const std::vector<Point>& points) {
   if (all.size() > 16 * constants::largest_hull_vertices) return too_many(points.size(), all.size());
   // points of a mesh in float lie in one plane to about 1e-7; where the tolerance makes faces that do not fit
   // together, finer ones do
-  for (double tolerance = constants::hull_planarity; tolerance > 1e-12 && !triangles.empty(); tolerance *= 0.01) {
+  for (double share = constants::hull_planarity; share > 1e-12 && !triangles.empty(); share *= 0.01) {
+    const double tolerance = share * extent;
     Polygon vertices = apart(points, all, tolerance);
     const std::vector<Polygon> faces = faces_of(points, planes_of(points, triangles, tolerance), vertices, tolerance);
     if (!closed(faces)) continue;
@@ -216,6 +239,26 @@ Result<Solid> solid_of(const std::vector<Point>& points) {
   }
   return Error{ErrorCode::degenerate_shape,
                "The points of a hull are too close together for faces between them; weld them first."};
+}
+
+/// Refuses a solid that is too flat across one of its faces, or too large, whichever way it is turned. In no direction is
+/// it much less wide than across that face. `size`: of its unit of length [m].
+Status check_width(const Solid& solid, double size, std::size_t points) {
+  double width = 1e300, apart = 0;
+  for (const Polygon& face : solid.faces) {
+    const Point normal = normal_of(solid.vertices, face), on = solid.vertices[face[0]];
+    double deepest = 0;
+    for (const Point& p : solid.vertices) deepest = std::max(deepest, normal.dot(on - p));
+    width = std::min(width, deepest);
+  }
+  for (const Point& p : solid.vertices)
+    for (const Point& q : solid.vertices) apart = std::max(apart, (p - q).norm());
+  if (!(size * width >= least_width(size * apart))) return nowhere(points, "lie in one plane");
+  if (size * apart > 2 * constants::largest_extent)
+    return Error{ErrorCode::degenerate_shape, "The " + std::to_string(points) +
+                                                  " points of a hull lie more than 2e6 m apart; a shape's half extents may "
+                                                  "be up to 1e6 m."};
+  return {};
 }
 
 // ---- the frame -------------------------------------------------------------------------------------------
@@ -269,15 +312,19 @@ Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& second) {
 
 Result<Hull> make_hull(std::span<const Vec3> points) {
   if (Status ok = check_points(points); !ok) return ok.error();
+  const std::vector<Point> given(points.begin(), points.end());
+  const Reach reach(given);
+  if (Status ok = check_reach(reach, given.size()); !ok) return ok.error();
   Eigen::AlignedBox3d box;
-  for (const Vec3& p : points) box.extend(Point(p.x, p.y, p.z));
+  for (const Point& p : given) box.extend(p);
   const Point middle = box.center();
   const double size = box.sizes().maxCoeff();
   std::vector<Point> scaled;
-  for (const Vec3& p : points) scaled.push_back((Point(p.x, p.y, p.z) - middle) / size);
-  Result<Solid> made = solid_of(scaled);
+  for (const Point& p : given) scaled.push_back((p - middle) / size);
+  Result<Solid> made = solid_of(scaled, reach.apart / size);
   if (!made) return made.error();
   Solid& solid = *made;
+  if (Status ok = check_width(solid, size, given.size()); !ok) return ok.error();
 
   const Moments m = integrate(solid);
   const Eigen::Matrix3d axes = principal_axes(m.second);

@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <numbers>
 
+#include "pcphys/constants.h"
 #include "pcphys/world.h"
 #include "world/validate.h"
 
@@ -39,8 +40,9 @@ Eigen::Matrix3d world_inertia(const MassProperties& m, const Eigen::Quaterniond&
 
 Result<MassProperties> mass_properties(const ShapeDef& shape, double density) {
   if (Status ok = check(shape); !ok) return ok.error();
-  if (!(density > 0) || !std::isfinite(density))
-    return Error{ErrorCode::bad_mass, "A density must be above zero and finite; it is " + std::to_string(density) + " kg/m^3."};
+  if (!(density >= constants::smallest_mass && density <= constants::largest_mass))
+    return Error{ErrorCode::bad_mass, "A density must be above zero, between " + number(constants::smallest_mass) + " and " +
+                                          number(constants::largest_mass) + " kg/m^3; it is " + number(density) + " kg/m^3."};
   switch (shape.kind) {
     case ShapeKind::sphere: return of_sphere(shape.size.x, density);
     case ShapeKind::capsule: return of_capsule(shape.size.x, shape.size.y, density);
@@ -54,6 +56,11 @@ Result<MassProperties> mass_properties(const ShapeDef& shape, double density) {
 
 Status make_compound(BodyDef& def) {
   if (def.shapes.empty()) return Error{ErrorCode::degenerate_shape, "A compound needs at least one shape."};
+  Quat orientation = def.pose.orientation;
+  Status ok = check_finite(def.pose.position, "position of a body");
+  if (ok) ok = check_unit(orientation, "orientation of a body");
+  if (ok && def.mass) ok = check({*def.mass, {1, 1, 1}});
+  if (!ok) return ok;
   std::vector<MassProperties> parts;
   double mass = 0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
@@ -77,6 +84,9 @@ Status make_compound(BodyDef& def) {
   if (axes.determinant() < 0) axes.col(2) = -axes.col(2);
   const Eigen::Quaterniond turn(axes);
   const double scale = def.mass ? *def.mass / mass : 1.0;
+  const MassProperties whole{scale * mass, Vec3(Eigen::Vector3d(scale * solver.eigenvalues()))};
+  if (def.kind == BodyKind::dynamic) ok = check(whole, def.rotates);
+  if (!ok) return ok;
   for (ShapeDef& shape : def.shapes) {
     const Eigen::Vector3d at = shape.local.position;
     const Eigen::Quaterniond axes_of_shape = shape.local.orientation;
@@ -85,8 +95,8 @@ Status make_compound(BodyDef& def) {
   }
   def.pose.position = transform(def.pose, Vec3(centre));
   def.pose.orientation = def.pose.orientation * Quat(turn);
-  def.mass = scale * mass;
-  def.moments = Vec3(Eigen::Vector3d(scale * solver.eigenvalues()));
+  def.mass = whole.mass;
+  def.moments = whole.moments;
   return {};
 }
 

@@ -241,14 +241,21 @@ void WorldState::change_forces(std::uint32_t row) {
 
 void WorldState::kick(std::uint32_t row, Vec3 acceleration, Vec3 torque) {
   if (bodies[row].kind != BodyKind::dynamic || tables.get(Buffer::motion, row, 7) < 0 || last_substep == 0) return;
-  const auto shift = [&](std::uint32_t offset, Vec3 change, double drag) {
-    if (change == Vec3{}) return;
-    const Vec3 by = half_kick(drag, last_substep) * change;
+  const auto shift_by = [&](Vec3 change, double drag) {
+    return change == Vec3{} ? change : half_kick(drag, last_substep) * change;
+  };
+  const Vec3 linear = shift_by(acceleration, tables.get(Buffer::force, row, 3));
+  const Vec3 angular = shift_by(torque, tables.get(Buffer::force, row, 7));
+  // more than the numbers hold: then the velocities start anew from what is read
+  if (!(length(linear) <= constants::largest_state && length(angular) <= constants::largest_spin_momentum))
+    return bring_in_phase(row);
+  const auto shift = [&](std::uint32_t offset, Vec3 by) {
+    if (by == Vec3{}) return;
     tables.set3(Buffer::motion, row, offset, tables.get3(Buffer::motion, row, offset) + by);
     tables.set3(Buffer::velocity_parts, row, offset, tables.get3(Buffer::velocity_parts, row, offset) - by);
   };
-  shift(0, acceleration, tables.get(Buffer::force, row, 3));
-  shift(4, torque, tables.get(Buffer::force, row, 7));
+  shift(0, linear);
+  shift(4, angular);
 }
 
 }  // namespace pcphys

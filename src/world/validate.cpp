@@ -1,5 +1,6 @@
 #include "world/validate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -88,6 +89,14 @@ Status check_finite(Vec3 value, const char* what) {
   return {};
 }
 
+Status check_spin(Vec3 moments, Vec3 angular_velocity) {
+  const double most = std::max({moments.x, moments.y, moments.z}) * length(angular_velocity);
+  if (most <= constants::largest_spin_momentum) return {};
+  return Error{ErrorCode::not_finite, "The angular momentum of a body would be up to " + number(most) +
+                                          " kg m^2/s; it must be no larger than " + number(constants::largest_spin_momentum) +
+                                          ". Give the body a smaller spin first, or smaller moments of inertia."};
+}
+
 Status check_unit(Quat& value, const char* what) {
   if (!finite(value))
     return Error{ErrorCode::not_finite,
@@ -114,6 +123,7 @@ Status check(const ShapeDef& shape) {
   if (ok && shape.kind == ShapeKind::box) ok = check_extent(shape.size.z, "half extent z");
   if (ok && (shape.kind == ShapeKind::capsule || shape.kind == ShapeKind::cylinder))
     ok = check_extent(shape.size.y, "half length");
+  if (ok) ok = check_finite(shape.size, "size of a shape");  // also what its kind does not use
   if (ok) ok = check_finite(shape.local.position, "local position of a shape");
   Quat q = shape.local.orientation;
   if (ok) ok = check_unit(q, "local orientation of a shape");
@@ -122,8 +132,9 @@ Status check(const ShapeDef& shape) {
 
 Status check(const Material& m) {
   for (double x : {m.static_friction, m.kinetic_friction, m.restitution, m.rolling_friction, m.torsional_friction})
-    if (!std::isfinite(x))
-      return Error{ErrorCode::not_finite, "A coefficient of friction or restitution is not a number; give finite ones."};
+    if (!sane(x))
+      return Error{ErrorCode::not_finite, "A coefficient of friction or restitution is not a number, or larger than " +
+                                              number(constants::largest_input) + "; give finite ones."};
   if (m.static_friction < 0 || m.kinetic_friction < 0)
     return Error{ErrorCode::bad_argument, "A coefficient of friction is below zero; use 0 for none."};
   if (m.rolling_friction < 0 || m.torsional_friction < 0)
@@ -204,10 +215,12 @@ Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
   if (!ok) return ok.error();
   if (def.kind != BodyKind::dynamic) return MassProperties{};
   Result<MassProperties> mass = mass_of(def);
-  if (mass) ok = check(*mass, def.rotates);
+  if (!mass) return mass;
+  ok = check(*mass, def.rotates);
   if (ok && !def.rotates && def.angular_velocity != Vec3{}) ok = no_rotation();
+  if (!def.rotates) mass->moments = {};
+  if (ok) ok = check_spin(mass->moments, def.angular_velocity);
   if (!ok) return ok.error();
-  if (mass && !def.rotates) mass->moments = {};
   return mass;
 }
 
@@ -215,6 +228,10 @@ Status check(AngleFreedom& f) {
   if (f.kind > AngleFreedom::Kind::pitch_yaw_roll)
     return Error{ErrorCode::bad_joint,
                  "A joint's freedom is of no known kind; use AngleFreedom::cone_and_twist, between, hinge or locked."};
+  for (double x : {f.cone, f.twist, f.lower.x, f.lower.y, f.lower.z, f.upper.x, f.upper.y, f.upper.z})
+    if (std::isnan(x))
+      return Error{ErrorCode::bad_joint,
+                   "The cone and twist of a joint, or an angle limit, is not a number; give angles [rad], or infinity for none."};
   if (f.kind == AngleFreedom::Kind::cone_twist) {
     if (!(f.cone >= 0) || !(f.twist >= 0))
       return Error{ErrorCode::bad_joint, "The cone and twist of a joint must be zero or above [rad]."};
@@ -222,8 +239,7 @@ Status check(AngleFreedom& f) {
     const double lower[3] = {f.lower.x, f.lower.y, f.lower.z}, upper[3] = {f.upper.x, f.upper.y, f.upper.z};
     for (int k = 0; k < 3; k++)
       if (!(lower[k] <= upper[k]))
-        return Error{ErrorCode::bad_joint,
-                     "An angle limit of a joint has its lower bound above its upper one, or is not a number."};
+        return Error{ErrorCode::bad_joint, "An angle limit of a joint has its lower bound above its upper one."};
   }
   if (!(f.restitution >= 0 && f.restitution <= 1))
     return Error{ErrorCode::bad_joint, "The restitution of a joint's limits is " + number(f.restitution) +

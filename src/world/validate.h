@@ -17,6 +17,8 @@ Error busy(const char* what);
 Error no_rotation();
 Status check_finite(double value, const char* what);
 Status check_finite(Vec3 value, const char* what);
+/// Whether a body of such moments may spin so fast, however it is turned.
+Status check_spin(Vec3 moments, Vec3 angular_velocity);
 /// Finite and of unit length within the tolerance; then normalised in place.
 Status check_unit(Quat& value, const char* what);
 Status check(const ShapeDef& shape);
