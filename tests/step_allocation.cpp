@@ -1,55 +1,16 @@
-// Pins: a warmed-up step allocates nothing. Every allocation of the program is counted here: operator new in
-// its forms, and aligned_alloc, which the tables use. A scene is run to its end, put back to its start with a
+// Pins: a warmed-up step allocates nothing. A scene is run to its end, put back to its start with a
 // snapshot, run again, and put back once more: the third run, in which nothing is larger than before, may not
 // allocate. (The second one may: putting all bodies back at once is more for the broad phase than any step was.)
-#include <cstdlib>
-#include <new>
 #include <utility>
 
 #include "pcphys/write_kernel.h"
 #include "step/backend.h"
+#include "support_memory.h"
 #include "support_world.h"
 
-namespace {
-
-bool counting = false;
-std::size_t allocations = 0;
-
-void* counted(std::size_t size, std::size_t alignment) {
-  if (counting) allocations++;
-  void* p = nullptr;
-  if (alignment <= alignof(std::max_align_t))
-    p = std::malloc(size ? size : 1);
-  else if (posix_memalign(&p, alignment, size ? size : 1) != 0)
-    p = nullptr;
-  return p;
-}
-void* counted_or_throw(std::size_t size, std::size_t alignment = 1) {
-  if (void* p = counted(size, alignment)) return p;
-  throw std::bad_alloc();
-}
-
-}  // namespace
-
-void* operator new(std::size_t n) { return counted_or_throw(n); }
-void* operator new[](std::size_t n) { return counted_or_throw(n); }
-void* operator new(std::size_t n, std::align_val_t a) { return counted_or_throw(n, std::size_t(a)); }
-void* operator new[](std::size_t n, std::align_val_t a) { return counted_or_throw(n, std::size_t(a)); }
-void* operator new(std::size_t n, const std::nothrow_t&) noexcept { return counted(n, 1); }
-void* operator new[](std::size_t n, const std::nothrow_t&) noexcept { return counted(n, 1); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
-void operator delete(void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t, std::align_val_t) noexcept { std::free(p); }
-void operator delete(void* p, const std::nothrow_t&) noexcept { std::free(p); }
-void operator delete[](void* p, const std::nothrow_t&) noexcept { std::free(p); }
-extern "C" void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept { return counted(size, alignment); }
-
 using namespace worldtest;
+using memorytest::allocations;
+using memorytest::counting;
 
 namespace {
 

@@ -1,5 +1,6 @@
 // Errors are values: a code with a name, and a sentence that tells the caller what to do.
-// No function of the library throws across its border.
+// No function of the library throws across its border: where there is no memory that is ErrorCode::buffer_full, and all is as it was; a call
+// that answers with a value, and a constructor, end the process with a sentence.
 #pragma once
 #include <memory>
 #include <string>
@@ -43,6 +44,10 @@ namespace detail {
 [[noreturn]] void no_value(const Error& error);
 [[noreturn]] void no_error();
 [[noreturn]] void moved_from(const char* what, const char* call);
+/// Of a call that answers with a value and has no memory for it.
+[[noreturn]] void no_memory_for(const char* call);
+/// An error in memory of its own; where there is none for it, the one that says so, which was made when the process began.
+std::shared_ptr<const Error> keep(Error error) noexcept;
 }  // namespace detail
 
 /// A value, or why there is none. Taking the value where there is none, or the error where there is a value, ends the process with a
@@ -91,7 +96,7 @@ template <> class [[nodiscard]] Result<void> {
  public:
   Result() = default;
   Result(Error error) {
-    if (error.code != ErrorCode::none) error_ = std::make_shared<const Error>(std::move(error));
+    if (error.code != ErrorCode::none) error_ = detail::keep(std::move(error));
   }
 
   explicit operator bool() const { return !error_; }

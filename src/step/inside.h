@@ -79,6 +79,25 @@ struct Stepper::Inside {
   Clock::time_point began;
   ContactLooks looks{detector, schedule.contacts};
 
+  bool spoiled = false;  // a step ended in the middle, for want of memory
+  void step_within_memory(World& world, double dt);
+  /// As a new stepper, but for its settings and kernels, and what it told.
+  void start_anew() {
+    runner.forget();
+    detector = Detector();
+    schedule = Schedule();
+    octaves = Octaves();
+    fourth = FourthOrder();
+    plans.clear();
+    plan = nullptr;
+    sleepers = Sleepers();
+    unrest = Unrest();
+    idle = {};
+    prepared.reset();
+    serial = scheduled_serial = 0;
+    spoiled = false;
+  }
+
   void lap(Timer timer) {
     if (!settings.timings) return;
     const auto now = Clock::now();
@@ -178,7 +197,10 @@ struct Stepper::Inside {
     }
     record_events(s);
     detector.let_go(s);
-    if (settings.sleep) let_sleep(s, dt);
+    if (settings.sleep) {
+      runner.keep(s, Buffer::rest);
+      let_sleep(s, dt);
+    }
     ForceJumps::forget(own.ordered());
     recorder.follow_sleep(settings, s);
     runner.drop();

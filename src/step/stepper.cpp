@@ -42,7 +42,11 @@ void Stepper::Inside::choose_order(FourthOrder& order, const WorldState& s, cons
   order.choose(s, trees.forest(), trees.solved(), trees.closing(), !own.ordered().empty(), settings, dt);
 }
 
-Stepper::Stepper(const StepSettings& settings) : inside_(std::make_unique<Inside>()) { inside_->settings = settings; }
+Stepper::Stepper(const StepSettings& settings) try : inside_(std::make_unique<Inside>()) {
+  inside_->settings = settings;
+} catch (...) {
+  detail::no_memory_for("Stepper");
+}
 Stepper::~Stepper() {
   if (inside_ && inside_->running) detail::misuse("A Stepper was destroyed while it makes a step; no callback may do that.");
 }
@@ -75,7 +79,7 @@ Status Stepper::changeable(const World& world, const char* call) const {
   return changeable(call);
 }
 
-Status Stepper::configure(const StepSettings& settings) {
+Status Stepper::configure(const StepSettings& settings) try {
   if (Status ok = changeable(); !ok) return ok;
   if (Status ok = check_settings(settings); !ok) return ok;
   Inside& in = inside();
@@ -84,6 +88,8 @@ Status Stepper::configure(const StepSettings& settings) {
   in.prepared.reset();
   in.idle = {};
   return {};
+} catch (...) {
+  return no_memory();
 }
 const StepSettings& Stepper::settings() const { return inside().settings; }
 
@@ -113,7 +119,6 @@ const StepReport& Stepper::step(World& world, double dt) {
     in.refused.error = busy(stepper_runs ? "world" : "stepper");
     return in.refused;
   }
-  s.settle_contacts();
   static const StepReport blank;
   const std::uint64_t made = in.report.step;
   in.report = blank;
@@ -121,13 +126,32 @@ const StepReport& Stepper::step(World& world, double dt) {
   const bool clocked = in.settings.timings;
   Clock::time_point start;
   if (clocked) start = in.began = Clock::now();
-  const Status ok = in.step(world, dt);
-  if (!ok) in.report.error = ok.error();
-  in.report.step = made + (ok ? 1 : 0);
+  in.step_within_memory(world, dt);
+  in.report.step = made + (in.report ? 1 : 0);
   in.report.bodies = std::uint32_t(world.body_count());
   in.report.joints = std::uint32_t(world.joint_count());
   if (clocked) in.report.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   return in.report;
+}
+
+/// Where there is no memory for a step the world is as it was, and what the stepper holds of it is made anew by the next.
+void Stepper::Inside::step_within_memory(World& world, double dt) {
+  WorldState& s = world.state();
+  const double last_substep = s.last_substep, soft_substep = s.soft_substep, settling = s.settling;
+  try {
+    s.settle_contacts();
+    if (spoiled) start_anew();
+    if (const Status ok = step(world, dt); !ok) report.error = ok.error();
+  } catch (...) {
+    spoiled = true;
+    undo(s);
+    s.last_substep = last_substep;
+    s.soft_substep = soft_substep;
+    s.settling = settling;
+    report = {};
+    report.error = no_memory();
+    recorder.clear();
+  }
 }
 
 StepEvents Stepper::events() const { return inside().recorder.events(); }
@@ -137,7 +161,7 @@ const StepPlan& Stepper::plan() const {
   return in.plan ? *in.plan : in.no_plan;
 }
 
-Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
+Result<StepPlan> Stepper::plan_for(const World& world, double dt) try {
   Inside& in = inside();
   Status ok = changeable();
   if (ok) ok = check_dt(dt);
@@ -170,6 +194,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) {
   StepPlan plan = make_plan(wanted, in.own.ordered());
   measure_transfers(plan, world.state(), schedule);
   return plan;
+} catch (...) {
+  return no_memory();
 }
 
 Status Stepper::add_kernel(World& world, const KernelDef& def) {
@@ -190,17 +216,28 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
     if (!ok) (void)in.own.remove(s, def.text.name);
     return ok;
   };
-  const Status ok = add();
+  const auto add_within_memory = [&]() -> Status {
+    try {
+      return add();
+    } catch (...) {
+      in.spoiled = true;
+      (void)in.own.remove(s, def.text.name);
+      return no_memory();
+    }
+  };
+  const Status ok = add_within_memory();
   if (!ok && others) in.own.put_back(*others);
   if (ok) s.stir_all();
   return ok;
 }
 
-Status Stepper::remove_kernel(World& world, std::string_view name) {
+Status Stepper::remove_kernel(World& world, std::string_view name) try {
   if (Status ok = changeable(world); !ok) return ok;
   const Status ok = inside().own.remove(world.state(), name);
   if (ok) world.state().stir_all();
   return ok;
+} catch (...) {
+  return no_memory();
 }
 
 Status Stepper::remove_kernels() {
@@ -209,22 +246,26 @@ Status Stepper::remove_kernels() {
   return {};
 }
 
-Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& parameter) {
+Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& parameter) try {
   if (Status ok = changeable(); !ok) return ok;
   OwnKernel* k = inside().own.find(kernel);
   if (!k)
     return Error{ErrorCode::unknown_name, "There is no kernel \"" + std::string(kernel) + "\"; Stepper::add_kernel adds one."};
   if (k->parameters_before.empty()) k->parameters_before = k->parameters;
   return set(*k, parameter);
+} catch (...) {
+  return no_memory();
 }
 
-std::vector<BufferUse> Stepper::memory(const World& world) const {
+std::vector<BufferUse> Stepper::memory(const World& world) const try {
   const Inside& in = inside();
   MemoryUses uses(world.state());
   uses.add_host(inside_->schedule);
   uses.add("collision", "", Place::cpu, in.detector.memory_bytes());
   in.runner.list_memory(uses);
   return uses.take();
+} catch (...) {
+  detail::no_memory_for("Stepper::memory");
 }
 
 void Stepper::set_trace(ContactTrace* trace) { inside().runner.trace(trace); }

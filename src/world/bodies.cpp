@@ -43,7 +43,10 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
 
 }  // namespace
 
-World::World(const WorldDef& def) : state_(std::make_unique<WorldState>(def)) {}
+World::World(const WorldDef& def) try : state_(std::make_unique<WorldState>(def)) {
+} catch (...) {
+  detail::no_memory_for("World");
+}
 World::~World() {
   if (state_ && state_->stepping) detail::misuse("A World was destroyed while a step of it runs; no callback may do that.");
 }
@@ -84,7 +87,7 @@ std::size_t World::body_count() const { return state().body_ids.count() - 1; }
 Precision World::precision() const { return state().tables.precision(); }
 Vec3 World::gravity() const { return state().gravity; }
 
-Status World::set_gravity(Vec3 gravity) {
+Status World::set_gravity(Vec3 gravity) try {
   if (Status ok = changeable(); !ok) return ok;
   if (Status ok = check_finite(gravity, "gravity"); !ok) return ok;
   if (gravity == state().gravity) return {};
@@ -94,18 +97,25 @@ Status World::set_gravity(Vec3 gravity) {
   }
   state().gravity = gravity;
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<BodyId> World::create_body(const BodyDef& def) {
+Result<BodyId> World::create_body(const BodyDef& def) try {
   if (Status ok = changeable(); !ok) return ok.error();
   Quat orientation;
   const Result<MassProperties> mass = check(def, orientation);
   if (!mass) return mass.error();
 
   WorldState& s = state();
-  const std::uint32_t row = std::uint32_t(s.bodies.size());
-  const std::uint32_t index = s.body_ids.allocate(row);
-  s.bodies.push_back({index, def.kind, false, {}, {}, {}});
+  s.make_room(1, 0, std::uint32_t(def.shapes.size()));
+  BodyRecord body;
+  body.kind = def.kind;
+  body.shapes.reserve(def.shapes.size());
+  // nothing needs memory from here on
+  const std::uint32_t row = std::uint32_t(s.bodies.size()), index = s.body_ids.allocate(row);
+  body.index = index;
+  s.bodies.push_back(std::move(body));
   s.tables.resize(Table::body, row + 1);
   s.set_position(row, def.pose.position);
   s.set_orientation(row, orientation);
@@ -128,6 +138,8 @@ Result<BodyId> World::create_body(const BodyDef& def) {
   s.structure_version++;
   s.stir(row);
   return s.body_ids.id<BodyId>(index);
+} catch (...) {
+  return no_memory();
 }
 
 namespace {
@@ -140,30 +152,31 @@ void forget_apart(WorldState& s, std::uint32_t index) {
   }
 }
 
-void destroy_body(WorldState& s, std::uint32_t row) {
-  const std::uint32_t index = s.bodies[row].index, last = std::uint32_t(s.bodies.size()) - 1;
-  std::vector<std::uint32_t> joints = std::move(s.bodies[row].joints);
-  for (std::uint32_t& joint : joints) joint = s.joint_ids.row(joint);
-  std::ranges::sort(joints, std::greater<>());
-  for (const std::uint32_t joint : joints) s.remove_joint(joint);
-  if (s.bodies[row].kind == BodyKind::kinematic) s.kinematic--;
-  for (const std::uint32_t force : s.bodies[row].forces) s.drop_force(force);
-  for (const std::uint32_t shape : s.bodies[row].shapes) {
-    s.shapes[shape].alive = false;
-    s.shapes[shape].def.convex = {};  // the last user frees it
-    s.free_shapes.push_back(shape);
-  }
-  forget_apart(s, index);
-  s.frozen.erase(index);
-  s.forget_rest(row);
-  if (s.contact_rows() > 1) s.drops.drop(row, last);
-  s.remove_row(Table::body, s.bodies, s.body_ids, row);
-}
 }  // namespace
+
+void WorldState::remove_body(std::uint32_t row) {
+  const std::uint32_t index = bodies[row].index, last = std::uint32_t(bodies.size()) - 1;
+  std::vector<std::uint32_t> of_body = std::move(bodies[row].joints);
+  for (std::uint32_t& joint : of_body) joint = joint_ids.row(joint);
+  std::ranges::sort(of_body, std::greater<>());
+  for (const std::uint32_t joint : of_body) remove_joint(joint);
+  if (bodies[row].kind == BodyKind::kinematic) kinematic--;
+  for (const std::uint32_t force : bodies[row].forces) drop_force(force);
+  for (const std::uint32_t shape : bodies[row].shapes) {
+    shapes[shape].alive = false;
+    shapes[shape].def.convex = {};  // the last user frees it
+    free_shapes.push_back(shape);
+  }
+  forget_apart(*this, index);
+  frozen.erase(index);
+  forget_rest(row);
+  if (contact_rows() > 1) drops.drop(row, last);
+  remove_row(Table::body, bodies, body_ids, row);
+}
 
 Status World::destroy(BodyId body) { return destroy(std::span(&body, 1)); }
 
-Status World::destroy(std::span<const BodyId> bodies) {
+Status World::destroy(std::span<const BodyId> bodies) try {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
   std::unordered_set<std::uint32_t> seen;
@@ -171,42 +184,57 @@ Status World::destroy(std::span<const BodyId> bodies) {
     if (!valid(body) || (bodies.size() > 1 && !seen.insert(body.index).second)) return stale("body");
     if (body.index == 0) return Error{ErrorCode::bad_argument, "The ground cannot be destroyed."};
   }
-  for (const BodyId body : bodies) destroy_body(s, s.body_ids.row(body.index));
+  s.drops.make_room(bodies.size());
+  for (const BodyId body : bodies) s.remove_body(s.body_ids.row(body.index));
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-std::vector<BodyId> World::bodies() const {
+std::vector<BodyId> World::bodies() const try {
   std::vector<BodyId> ids;
   for (std::uint32_t i = 1; i < state().body_ids.size(); i++)
     if (state().body_ids.alive(i)) ids.push_back(state().body_ids.id<BodyId>(i));
   return ids;
+} catch (...) {
+  detail::no_memory_for("World::bodies");
 }
 
-Result<std::uint32_t> World::row_of(BodyId body) const {
+Result<std::uint32_t> World::row_of(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().body_ids.row(body.index);
+} catch (...) {
+  return no_memory();
 }
-Result<std::uint32_t> World::row_of(JointId joint) const {
+Result<std::uint32_t> World::row_of(JointId joint) const try {
   if (!valid(joint)) return stale("joint");
   return state().joint_ids.row(joint.index);
+} catch (...) {
+  return no_memory();
 }
-Result<bool> World::frozen(BodyId body) const {
+Result<bool> World::frozen(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().bodies[state().body_ids.row(body.index)].frozen;
+} catch (...) {
+  return no_memory();
 }
-Result<BodyKind> World::kind(BodyId body) const {
+Result<BodyKind> World::kind(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().bodies[state().body_ids.row(body.index)].kind;
+} catch (...) {
+  return no_memory();
 }
 
 // ---- state ---------------------------------------------------------------------------------------------
 
-Result<Pose> World::pose(BodyId body) const {
+Result<Pose> World::pose(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().pose(state().body_ids.row(body.index));
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_pose(BodyId body, const Pose& pose) {
+Status World::set_pose(BodyId body, const Pose& pose) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (body.index == 0)
     return Error{ErrorCode::bad_argument, "The ground stays at the origin; create a fixed body for anything else."};
@@ -227,14 +255,18 @@ Status World::set_pose(BodyId body, const Pose& pose) {
   }
   s.let_settle(row);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<Vec3> World::velocity(BodyId body) const {
+Result<Vec3> World::velocity(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().velocity(state().body_ids.row(body.index));
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_velocity(BodyId body, Vec3 velocity) {
+Status World::set_velocity(BodyId body, Vec3 velocity) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(velocity, "velocity of a body"); !ok) return ok;
   const std::uint32_t row = state().body_ids.row(body.index);
@@ -244,14 +276,18 @@ Status World::set_velocity(BodyId body, Vec3 velocity) {
   state().bring_in_phase(row);
   state().tables.set3(Buffer::motion, row, 0, velocity);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<Vec3> World::angular_velocity(BodyId body) const {
+Result<Vec3> World::angular_velocity(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().angular_velocity(state().body_ids.row(body.index));
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_angular_velocity(BodyId body, Vec3 w) {
+Status World::set_angular_velocity(BodyId body, Vec3 w) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(w, "angular velocity of a body"); !ok) return ok;
   const std::uint32_t row = state().body_ids.row(body.index);
@@ -263,12 +299,16 @@ Status World::set_angular_velocity(BodyId body, Vec3 w) {
   state().bring_in_phase(row);
   state().set_angular_velocity(row, w);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<Vec3> World::angular_momentum(BodyId body) const {
+Result<Vec3> World::angular_momentum(BodyId body) const try {
   if (!valid(body)) return stale("body");
   const std::uint32_t row = state().body_ids.row(body.index);
   return state().bodies[row].kind == BodyKind::dynamic ? state().momentum_of_rotation(row) : Vec3{};
+} catch (...) {
+  return no_memory();
 }
 
 namespace {
@@ -279,14 +319,16 @@ Status need_substep(const WorldState& s) {
 }
 }  // namespace
 
-Result<Vec3> World::position_last(BodyId body) const {
+Result<Vec3> World::position_last(BodyId body) const try {
   if (!valid(body)) return stale("body");
   if (Status ok = need_substep(state()); !ok) return ok.error();
   const std::uint32_t row = state().body_ids.row(body.index);
   return state().pose(row).position - state().last_substep * state().tables.get3(Buffer::motion, row, 0);
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_position_last(BodyId body, Vec3 position) {
+Status World::set_position_last(BodyId body, Vec3 position) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = need_substep(state()); !ok) return ok;
   if (Status ok = check_finite(position, "last position of a body"); !ok) return ok;
@@ -301,9 +343,11 @@ Status World::set_position_last(BodyId body, Vec3 position) {
   for (std::uint32_t part : {0, 8}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<Quat> World::orientation_last(BodyId body) const {
+Result<Quat> World::orientation_last(BodyId body) const try {
   if (!valid(body)) return stale("body");
   if (Status ok = need_substep(state()); !ok) return ok.error();
   const std::uint32_t row = state().body_ids.row(body.index);
@@ -314,9 +358,11 @@ Result<Quat> World::orientation_last(BodyId body) const {
   const double speed = length(w);
   if (speed == 0) return q;
   return axis_angle((1 / speed) * w, -speed * state().last_substep) * q;
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_orientation_last(BodyId body, Quat last) {
+Status World::set_orientation_last(BodyId body, Quat last) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = need_substep(state()); !ok) return ok;
   if (Status ok = check_unit(last, "last orientation of a body"); !ok) return ok;
@@ -339,18 +385,22 @@ Status World::set_orientation_last(BodyId body, Quat last) {
   for (std::uint32_t part : {4, 12}) s.tables.set3(Buffer::velocity_parts, row, part, {});
   if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
 // ---- inputs --------------------------------------------------------------------------------------------
 
-Result<MassProperties> World::mass_properties(BodyId body) const {
+Result<MassProperties> World::mass_properties(BodyId body) const try {
   if (!valid(body)) return stale("body");
   const std::uint32_t row = state().body_ids.row(body.index);
   if (state().bodies[row].frozen) return state().frozen.at(body.index);
   return MassProperties{state().tables.get(Buffer::mass, row, 3), state().tables.get3(Buffer::mass, row, 0)};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
+Status World::set_mass_properties(BodyId body, const MassProperties& mass) try {
   if (Status ok = changeable(body); !ok) return ok;
   WorldState& s = state();
   const std::uint32_t row = s.body_ids.row(body.index);
@@ -365,26 +415,32 @@ Status World::set_mass_properties(BodyId body, const MassProperties& mass) {
   s.bring_in_phase(row);
   s.set_angular_velocity(row, w);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<Material> World::material(BodyId body) const {
+Result<Material> World::material(BodyId body) const try {
   if (!valid(body)) return stale("body");
   const std::uint32_t row = state().body_ids.row(body.index);
   const Tables& t = state().tables;
   const auto get = [&](std::uint32_t k) { return t.get(Buffer::material, row, k); };
   return Material{get(0), get(1), get(2), get(4), get(5), Combine(std::uint8_t(get(3))), Combine(std::uint8_t(get(6)))};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_material(BodyId body, const Material& material) {
+Status World::set_material(BodyId body, const Material& material) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check(material); !ok) return ok;
   const std::uint32_t row = state().body_ids.row(body.index);
   write_material(state().tables, row, material);
   state().stir(row);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_drag(BodyId body, double linear, double angular) {
+Status World::set_drag(BodyId body, double linear, double angular) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(linear, "linear drag of a body"); !ok) return ok;
   if (Status ok = check_finite(angular, "angular drag of a body"); !ok) return ok;
@@ -396,36 +452,41 @@ Status World::set_drag(BodyId body, double linear, double angular) {
   state().tables.set(Buffer::force, row, 7, angular);
   state().structure_version++;  // the plan leaves drag out where there is none
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<std::vector<ShapeDef>> World::shapes(BodyId body) const {
+Result<std::vector<ShapeDef>> World::shapes(BodyId body) const try {
   if (!valid(body)) return stale("body");
   std::vector<ShapeDef> defs;
   for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes) defs.push_back(state().shapes[shape].def);
   return defs;
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_filter(BodyId body, const Filter& filter) {
+Status World::set_filter(BodyId body, const Filter& filter) try {
   if (Status ok = changeable(body); !ok) return ok;
   for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes)
     state().shapes[shape].filter = state().shapes[shape].def.filter = filter;
   state().structure_version++;
   state().stir(state().body_ids.row(body.index));
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_collide(BodyId a, BodyId b, bool collide) {
+Status World::set_collide(BodyId a, BodyId b, bool collide) try {
   Status ok = changeable(a);
   if (ok) ok = changeable(b);
   if (!ok) return ok;
   WorldState& s = state();
+  for (const BodyId body : {a, b}) make_room(s.asked_apart[body.index], 2);
   const auto pair = s.no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
-  if (pair->second.asked == collide) {
-    for (const auto& [body, other] : {std::pair(a.index, b.index), std::pair(b.index, a.index)}) {
-      std::vector<std::uint32_t>& others = s.asked_apart[body];
-      collide ? void(std::erase(others, other)) : others.push_back(other);
-      if (others.empty()) s.asked_apart.erase(body);
-    }
+  for (const auto& [body, other] : {std::pair(a.index, b.index), std::pair(b.index, a.index)}) {
+    std::vector<std::uint32_t>& others = s.asked_apart[body];
+    if (pair->second.asked == collide) collide ? void(std::erase(others, other)) : others.push_back(other);
+    if (others.empty()) s.asked_apart.erase(body);
   }
   pair->second.asked = !collide;
   if (!pair->second.any()) s.no_collide.erase(pair);
@@ -433,6 +494,8 @@ Status World::set_collide(BodyId a, BodyId b, bool collide) {
   state().stir_moving(state().body_ids.row(a.index));
   state().stir_moving(state().body_ids.row(b.index));
   return {};
+} catch (...) {
+  return no_memory();
 }
 
 }  // namespace pcphys

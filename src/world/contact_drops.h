@@ -3,19 +3,41 @@
 #pragma once
 #include <cstdint>
 #include <unordered_map>
+#include <utility>
 #include <vector>
+
+#include "world/memory.h"
 
 namespace pcphys {
 
 class ContactDrops {
  public:
   bool any() const { return !dropped_.empty(); }
+  /// Memory for so many more.
+  void make_room(std::size_t more) {
+    pcphys::make_room(dropped_, more);
+    before_.reserve(before_.size() + more);
+    std::unordered_map<std::uint32_t, std::uint32_t> nodes;
+    pcphys::make_room(spare_, 2 * more);
+    while (spare_.size() < more) {
+      nodes.emplace(0, 0);
+      spare_.push_back(nodes.extract(0));
+    }
+  }
   /// The body of row `row` goes, and that of `last` takes its place.
   void drop(std::uint32_t row, std::uint32_t last) {
     dropped_.push_back(row_before(row));
     const std::uint32_t taken = row_before(last);
-    before_.erase(last);
-    if (row != last) before_[row] = taken;
+    if (auto node = before_.extract(last)) spare_.push_back(std::move(node));
+    if (row == last) return;
+    if (const auto moved = before_.find(row); moved != before_.end()) {
+      moved->second = taken;
+      return;
+    }
+    spare_.back().key() = row;
+    spare_.back().mapped() = taken;
+    before_.insert(std::move(spare_.back()));
+    spare_.pop_back();
   }
   void clear() {
     dropped_.clear();
@@ -41,6 +63,7 @@ class ContactDrops {
   }
 
   std::vector<std::uint32_t> dropped_;                       // rows of then
+  std::vector<std::unordered_map<std::uint32_t, std::uint32_t>::node_type> spare_;
   std::unordered_map<std::uint32_t, std::uint32_t> before_;  // by row of now, of bodies that were moved, their row of then
 };
 

@@ -38,13 +38,15 @@ void WorldState::settle_contacts() {
   contacts_version++;
 }
 
-const WorldState& World::settled(const char* call) const {
+const WorldState& World::settled(const char* call) const try {
   (void)state(call);
   state_->settle_contacts();
   return *state_;
+} catch (...) {
+  detail::no_memory_for(call);
 }
 
-std::vector<Contact> World::contacts() const {
+std::vector<Contact> World::contacts() const try {
   const WorldState& s = settled();
   const Tables& t = s.tables;
   std::vector<Contact> found;
@@ -60,6 +62,8 @@ std::vector<Contact> World::contacts() const {
     found.push_back(std::move(contact));
   }
   return found;
+} catch (...) {
+  detail::no_memory_for("World::contacts");
 }
 
 }  // namespace pcphys

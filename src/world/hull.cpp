@@ -310,7 +310,7 @@ Eigen::Matrix3d principal_axes(const Eigen::Matrix3d& second) {
 
 }  // namespace
 
-Result<Hull> make_hull(std::span<const Vec3> points) {
+Result<Hull> make_hull(std::span<const Vec3> points) try {
   if (Status ok = check_points(points); !ok) return ok.error();
   const std::vector<Point> given(points.begin(), points.end());
   const Reach reach(given);
@@ -349,6 +349,8 @@ Result<Hull> make_hull(std::span<const Vec3> points) {
   }
   write_table(*data);
   return Hull(std::move(data));
+} catch (...) {
+  return no_memory();
 }
 
 std::span<const Vec3> Hull::vertices() const { return data_ ? std::span<const Vec3>(data_->vertices) : std::span<const Vec3>(); }

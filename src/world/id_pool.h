@@ -6,6 +6,8 @@
 #include <functional>
 #include <vector>
 
+#include "world/memory.h"
+
 namespace pcphys {
 
 class IdPool {
@@ -17,6 +19,19 @@ class IdPool {
   static constexpr std::uint32_t last_generation = 0xffffffffu;
 
   explicit IdPool(std::uint32_t world = 1) : world_(world) {}
+  /// Memory for so many more ids, and for all to be released.
+  void make_room(std::uint32_t more) {
+    if (free_.size() < more) pcphys::make_room(slots_, more - free_.size());
+    free_.reserve(slots_.capacity());
+  }
+  /// As if the id had not been allocated; of several the last first.
+  void take_back(std::uint32_t index) {
+    if (slots_[index].alive) release(index);
+    if (--slots_[index].generation > 0) return;
+    std::erase(free_, index);
+    std::make_heap(free_.begin(), free_.end(), std::greater<>());
+    slots_.pop_back();
+  }
   std::uint32_t allocate(std::uint32_t row) {
     std::uint32_t index = 0;
     if (free_.empty()) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <new>
 #include <numbers>
 #include <string>
 
@@ -97,8 +98,16 @@ template <class AnyId> std::vector<AnyId> all_alive(const WorldState& s, bool sp
 
 bool World::valid(JointId joint) const { return is_alive(state(), joint, false); }
 bool World::valid(SpringId spring) const { return is_alive(state(), spring, true); }
-std::vector<JointId> World::joints() const { return all_alive<JointId>(state(), false); }
-std::vector<SpringId> World::springs() const { return all_alive<SpringId>(state(), true); }
+std::vector<JointId> World::joints() const try {
+  return all_alive<JointId>(state(), false);
+} catch (...) {
+  detail::no_memory_for("World::joints");
+}
+std::vector<SpringId> World::springs() const try {
+  return all_alive<SpringId>(state(), true);
+} catch (...) {
+  detail::no_memory_for("World::springs");
+}
 
 std::size_t World::joint_count() const {
   return state().joints.size() - 1 - state().springs;  // row 0 pads
@@ -118,21 +127,25 @@ Status check_ends(const World& world, BodyId a, BodyId b, const char* what) {
 }
 
 std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<SpringDef>& spring) {
+  s.make_room(0, 1, 0);
+  const auto joints_of = [&](BodyId body) -> std::vector<std::uint32_t>& { return s.bodies[s.body_ids.row(body.index)].joints; };
+  for (const BodyId body : {def.a, def.b}) make_room(joints_of(body));
+  if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
+  // nothing needs memory from here on
   const std::uint32_t row = std::uint32_t(s.joints.size()), index = s.joint_ids.allocate(row);
   s.joints.push_back({index, def.a.index, def.b.index, def, spring});
   s.springs += spring.has_value();
   s.tables.resize(Table::joint, row + 1);
   write_frames(s.tables, Buffer::joint_frame, row, def);
   write_drive(s.tables, row, s.joints[row]);
-  if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
-  for (const BodyId body : {def.a, def.b}) s.bodies[s.body_ids.row(body.index)].joints.push_back(index);
+  for (const BodyId body : {def.a, def.b}) joints_of(body).push_back(index);
   s.structure_version++, s.joint_changes++;
   stir_ends(s, s.joints[row]);
   return index;
 }
 }  // namespace
 
-Result<JointId> World::create_joint(const JointDef& given) {
+Result<JointId> World::create_joint(const JointDef& given) try {
   JointDef def = given;
   Status ok = changeable();
   if (ok) ok = check_ends(*this, def.a, def.b, "joint");
@@ -142,6 +155,8 @@ Result<JointId> World::create_joint(const JointDef& given) {
       ok = Error{ErrorCode::bad_joint, "A body that does not rotate (BodyDef::rotates) takes no joint; create one that does, or a spring."};
   if (!ok) return ok.error();
   return state().joint_ids.id<JointId>(new_row(state(), def, {}));
+} catch (...) {
+  return no_memory();
 }
 
 namespace {
@@ -159,7 +174,7 @@ double mass_of_all(const WorldState& s, std::uint32_t row) {
 }
 }  // namespace
 
-Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) {
+Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) try {
   Status ok = check_finite(point, "point of a grab");
   if (ok && (!valid(hand) || !valid(body))) ok = stale("body");
   if (!ok) return ok.error();
@@ -179,9 +194,11 @@ Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) {
   def.frame_b.position = seen_from(b);
   def.largest_force = times * g * mass_of_all(s, b);
   return create_joint(def);
+} catch (...) {
+  return no_memory();
 }
 
-Result<SpringId> World::create_spring(const SpringDef& def) {
+Result<SpringId> World::create_spring(const SpringDef& def) try {
   Status ok = changeable();
   if (ok) ok = check_ends(*this, def.a, def.b, "spring");
   if (ok) ok = check(def);
@@ -193,6 +210,8 @@ Result<SpringId> World::create_spring(const SpringDef& def) {
   ends.frame_b.position = def.anchor_b;
   ends.collide = true;
   return state().joint_ids.id<SpringId>(new_row(state(), ends, def));
+} catch (...) {
+  return no_memory();
 }
 
 void WorldState::remove_joint(std::uint32_t row) {
@@ -212,34 +231,42 @@ void WorldState::remove_joint(std::uint32_t row) {
   joint_changes++;
 }
 
-Status World::destroy(JointId joint) {
+Status World::destroy(JointId joint) try {
   if (Status ok = changeable(joint); !ok) return ok;
   state().remove_joint(state().joint_ids.row(joint.index));
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::destroy(SpringId spring) {
+Status World::destroy(SpringId spring) try {
   if (Status ok = changeable(spring); !ok) return ok;
   state().remove_joint(state().joint_ids.row(spring.index));
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_motor(JointId joint, const Motor& motor) {
+Status World::set_motor(JointId joint, const Motor& motor) try {
   if (Status ok = changeable(joint); !ok) return ok;
   if (Status ok = check(motor); !ok) return ok;
   change_drive(state(), state().joint_ids.row(joint.index), [&](JointRecord& r) { r.def.motor = motor; });
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_spring(JointId joint, const AngularSpring& given) {
+Status World::set_spring(JointId joint, const AngularSpring& given) try {
   if (Status ok = changeable(joint); !ok) return ok;
   AngularSpring spring = given;
   if (Status ok = check(spring); !ok) return ok;
   change_drive(state(), state().joint_ids.row(joint.index), [&](JointRecord& r) { r.def.spring = spring; });
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_spring(SpringId spring, double rest_length, double stiffness, double damping) {
+Status World::set_spring(SpringId spring, double rest_length, double stiffness, double damping) try {
   if (Status ok = changeable(spring); !ok) return ok;
   const std::uint32_t row = state().joint_ids.row(spring.index);
   SpringDef def = *state().joints[row].spring;
@@ -249,11 +276,15 @@ Status World::set_spring(SpringId spring, double rest_length, double stiffness, 
   if (Status ok = check(def); !ok) return ok;
   change_drive(state(), row, [&](JointRecord& r) { r.spring = def; });
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<SpringDef> World::spring(SpringId spring) const {
+Result<SpringDef> World::spring(SpringId spring) const try {
   if (!valid(spring)) return stale("spring");
   return *state().joints[state().joint_ids.row(spring.index)].spring;
+} catch (...) {
+  return no_memory();
 }
 
 double World::spring_energy() const {
@@ -275,16 +306,20 @@ double World::spring_energy() const {
   return sum;
 }
 
-Result<JointDef> World::joint(JointId joint) const {
+Result<JointDef> World::joint(JointId joint) const try {
   if (!valid(joint)) return stale("joint");
   return state().joints[state().joint_ids.row(joint.index)].def;
+} catch (...) {
+  return no_memory();
 }
 
-Result<double> World::joint_separation(JointId joint) const {
+Result<double> World::joint_separation(JointId joint) const try {
   if (!valid(joint)) return stale("joint");
   const JointRecord& r = state().joints[state().joint_ids.row(joint.index)];
   const Pose a = state().pose(state().body_ids.row(r.body_a)), b = state().pose(state().body_ids.row(r.body_b));
   return length(transform(a, r.def.frame_a.position) - transform(b, r.def.frame_b.position));
+} catch (...) {
+  return no_memory();
 }
 
 namespace {
@@ -326,35 +361,72 @@ Status check(const RagdollDef& def, const Pose& frame, Vec3 velocity) {
 }
 }  // namespace
 
-Result<Ragdoll> World::create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity) {
+namespace {
+/// All of it was looked at before.
+void add_bones(World& world, const RagdollDef& def, const Pose& frame, Vec3 velocity, Ragdoll& made) {
+  const auto count = std::uint32_t(def.bones.size());
+  world.state().make_room(count, count, count);
+  world.state().drops.make_room(count);
+  made.bones.reserve(count);
+  made.joints.reserve(count);
+  const auto check_memory = [](ErrorCode code) {
+    if (code == ErrorCode::buffer_full) throw std::bad_alloc();
+  };
+  for (const BoneDef& bone : def.bones) {
+    const Result<BodyId> body = world.create_body(bone_body(def, bone, frame, velocity));
+    if (!body) check_memory(body.error().code);
+    made.bones.push_back(*body);
+    if (made.bones.size() == 1) continue;
+    JointDef joint = bone_joint(def, bone);
+    joint.a = made.bones[std::size_t(bone.parent)];
+    joint.b = *body;
+    const Result<JointId> joined = world.create_joint(joint);
+    if (!joined) check_memory(joined.error().code);
+    made.joints.push_back(*joined);
+  }
+}
+
+/// As if they had never been made.
+void take_back(WorldState& s, const Ragdoll& made) {
+  for (auto joint = made.joints.rbegin(); joint != made.joints.rend(); ++joint) {
+    s.remove_joint(s.joint_ids.row(joint->index));
+    s.joint_ids.take_back(joint->index);
+  }
+  for (auto bone = made.bones.rbegin(); bone != made.bones.rend(); ++bone) {
+    s.remove_body(s.body_ids.row(bone->index));
+    s.body_ids.take_back(bone->index);
+  }
+}
+}  // namespace
+
+Result<Ragdoll> World::create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity) try {
   Pose frame = pose;
   Status ok = changeable();
   if (ok) ok = check_unit(frame.orientation, "orientation of a ragdoll");
   if (ok) ok = check(def, frame, velocity);  // all of it before anything is made: a refused call uses up no id
   if (!ok) return ok.error();
   Ragdoll made;
-  for (const BoneDef& bone : def.bones) {
-    Result<BodyId> id = create_body(bone_body(def, bone, frame, velocity));
-    if (!id) return id.error();
-    made.bones.push_back(*id);
-    if (made.bones.size() == 1) continue;
-    JointDef joint = bone_joint(def, bone);
-    joint.a = made.bones[bone.parent];
-    joint.b = *id;
-    Result<JointId> joint_id = create_joint(joint);
-    if (!joint_id) return joint_id.error();
-    made.joints.push_back(*joint_id);
+  try {
+    add_bones(*this, def, frame, velocity, made);
+  } catch (...) {
+    take_back(state(), made);
+    throw;
   }
   return made;
+} catch (...) {
+  return no_memory();
 }
 
 // ---- forces --------------------------------------------------------------------------------------------
 
 namespace {
 ForceId new_force(WorldState& s, ForceRecord record) {
+  const std::uint32_t row = s.body_ids.row(record.body);
+  s.force_ids.make_room(1);
+  make_room(s.forces);
+  make_room(s.bodies[row].forces);
   const std::uint32_t index = s.force_ids.allocate(0);
   if (index == s.forces.size()) s.forces.emplace_back();
-  const std::uint32_t row = s.body_ids.row(record.body);
   s.change(row);
   if (record.callback) s.callbacks++;
   if (record.callback) s.bring_in_phase(row);  // what it will answer is not known yet
@@ -366,20 +438,24 @@ ForceId new_force(WorldState& s, ForceRecord record) {
 }
 }  // namespace
 
-Result<ForceId> World::add_force(BodyId body, const Wrench& wrench) {
+Result<ForceId> World::add_force(BodyId body, const Wrench& wrench) try {
   if (Status ok = changeable(body); !ok) return ok.error();
   if (Status ok = check_finite(wrench.force, "force on a body"); !ok) return ok.error();
   if (Status ok = check_finite(wrench.torque, "torque on a body"); !ok) return ok.error();
   return new_force(state(), {body.index, wrench, {}});
+} catch (...) {
+  return no_memory();
 }
 
-Result<ForceId> World::add_force(BodyId body, ForceCallback callback) {
+Result<ForceId> World::add_force(BodyId body, ForceCallback callback) try {
   if (Status ok = changeable(body); !ok) return ok.error();
   if (!callback) return Error{ErrorCode::bad_argument, "The force callback is empty; pass a function."};
   return new_force(state(), {body.index, {}, std::move(callback)});
+} catch (...) {
+  return no_memory();
 }
 
-Status World::remove(ForceId force) {
+Status World::remove(ForceId force) try {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
   if (!s.force_ids.valid(force)) return stale("force");
@@ -389,6 +465,8 @@ Status World::remove(ForceId force) {
   s.drop_force(force.index);
   s.change_forces(row);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
 }  // namespace pcphys

@@ -38,7 +38,7 @@ Eigen::Matrix3d world_inertia(const MassProperties& m, const Eigen::Quaterniond&
 
 }  // namespace
 
-Result<MassProperties> mass_properties(const ShapeDef& shape, double density) {
+Result<MassProperties> mass_properties(const ShapeDef& shape, double density) try {
   if (Status ok = check(shape); !ok) return ok.error();
   if (!(density >= constants::smallest_mass && density <= constants::largest_mass))
     return Error{ErrorCode::bad_mass, "A density must be above zero, between " + number(constants::smallest_mass) + " and " +
@@ -52,9 +52,11 @@ Result<MassProperties> mass_properties(const ShapeDef& shape, double density) {
     case ShapeKind::plane: break;
   }
   return Error{ErrorCode::bad_mass, "A plane has no mass: use it on fixed bodies."};
+} catch (...) {
+  return no_memory();
 }
 
-Status make_compound(BodyDef& def) {
+Status make_compound(BodyDef& def) try {
   if (def.shapes.empty()) return Error{ErrorCode::degenerate_shape, "A compound needs at least one shape."};
   Quat orientation = def.pose.orientation;
   Status ok = check_finite(def.pose.position, "position of a body");
@@ -98,6 +100,8 @@ Status make_compound(BodyDef& def) {
   def.mass = whole.mass;
   def.moments = whole.moments;
   return {};
+} catch (...) {
+  return no_memory();
 }
 
 }  // namespace pcphys

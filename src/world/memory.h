@@ -1,13 +1,20 @@
 // Bytes aligned for SIMD, kept when they shrink: growing is the only time a warmed-up step allocates.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <new>
 #include <utility>
+#include <vector>
 
 namespace pcphys {
+
+/// Room for so many more, which then come without a need for memory; it grows by doubling.
+template <class T> void make_room(std::vector<T>& values, std::size_t more = 1) {
+  if (values.capacity() - values.size() < more) values.reserve(std::max(2 * values.size(), values.size() + more));
+}
 
 class AlignedBytes {
  public:
@@ -18,9 +25,13 @@ class AlignedBytes {
   std::size_t size() const { return size_; }
   std::size_t capacity() const { return capacity_; }
 
+  /// So that `resize` up to that size needs no memory.
+  void reserve(std::size_t size) {
+    if (size > capacity_) reallocate(size + size / 2);
+  }
   /// Keeps what there is; new bytes are zero.
   void resize(std::size_t size) {
-    if (size > capacity_) reallocate(size + size / 2);
+    reserve(size);
     if (size > size_) std::memset(data_.get() + size_, 0, size - size_);
     size_ = size;
   }

@@ -217,7 +217,7 @@ Result<Table> WorldState::table_of(TableId id) const {
   return own.tables[k].table;
 }
 
-Result<PropertyView> World::view(std::string_view property) const {
+Result<PropertyView> World::view(std::string_view property) const try {
   const Tables& t = settled().tables;
   Found f;
   if (!by_name(state(), property, f)) return unknown(property);
@@ -228,10 +228,12 @@ Result<PropertyView> World::view(std::string_view property) const {
                       components(type),
                       number_bytes(type, t.real_bytes()) == 4 ? Precision::f32 : Precision::f64,
                       type};
+} catch (...) {
+  return no_memory();
 }
 
 Result<World::AnyProperty> World::add_property(std::string_view name, PropertyType type, const double* initial,
-                                               std::string_view unit, TableId table, Role role) {
+                                               std::string_view unit, TableId table, Role role) try {
   WorldState& s = state();
   Status ok = changeable();
   if (ok) ok = check_name(name, "property");
@@ -245,12 +247,16 @@ Result<World::AnyProperty> World::add_property(std::string_view name, PropertyTy
   std::array<std::byte, 12 * 8> row{};
   for (std::uint32_t c = 0; c < components(type); c++)
     write_number(row.data() + c * number_bytes(type, real), type, real, initial[c]);
-  const Buffer buffer = s.tables.add(*of, std::span(row).first(own_row_bytes(type, real)));
-  const std::uint32_t k = s.own.add({std::string(name), std::string(unit), type, role, *of, buffer});
+  OwnProperty added{std::string(name), std::string(unit), type, role, *of, {}};
+  make_room(s.own.list);
+  added.buffer = s.tables.add(*of, std::span(row).first(own_row_bytes(type, real)));
+  const std::uint32_t k = s.own.add(std::move(added));
   return AnyProperty{std::uint32_t(pcphys::properties().size()) + k, s.own.list[k].generation, s.id_world()};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::remove_property(std::string_view name) {
+Status World::remove_property(std::string_view name) try {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
   Found f;
@@ -262,9 +268,11 @@ Status World::remove_property(std::string_view name) {
   s.removals++;
   s.own.list[f.id.index - pcphys::properties().size()].used = false;
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<World::AnyProperty> World::find_property(std::string_view name, PropertyType type) const {
+Result<World::AnyProperty> World::find_property(std::string_view name, PropertyType type) const try {
   Found f;
   if (!by_name(state(), name, f)) return unknown(name);
   if (f.info.type != type)
@@ -272,9 +280,11 @@ Result<World::AnyProperty> World::find_property(std::string_view name, PropertyT
                                             std::string(pcphys::name(f.info.type)) + ", not " + std::string(pcphys::name(type)) +
                                             "."};
   return AnyProperty{f.id.index, f.id.generation, f.id.world};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::read(AnyProperty property, RowOf object, double* numbers) const {
+Status World::read(AnyProperty property, RowOf object, double* numbers) const try {
   const WorldState& s = state();
   Found f;
   if (!by_id(s, property, f)) return stale("property");
@@ -285,9 +295,11 @@ Status World::read(AnyProperty property, RowOf object, double* numbers) const {
   for (std::uint32_t c = 0; c < components(f.info.type); c++)
     numbers[c] = read_number(p + c * number_bytes(f.info.type, real), f.info.type, real);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Status World::write(AnyProperty property, RowOf object, const double* numbers) {
+Status World::write(AnyProperty property, RowOf object, const double* numbers) try {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
   Found f;
@@ -311,12 +323,16 @@ Status World::write(AnyProperty property, RowOf object, const double* numbers) {
   s.tables.touch(f.buffer);
   if (changed) s.stir_reader(f.table, *row);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-std::vector<PropertyInfo> World::properties() const {
+std::vector<PropertyInfo> World::properties() const try {
   std::vector<PropertyInfo> all;
   each_property(state(), [&](const Found& f) { all.push_back(f.info); });
   return all;
+} catch (...) {
+  detail::no_memory_for("World::properties");
 }
 
 namespace {
@@ -335,7 +351,6 @@ Status resize_own(WorldState& s, const OwnTable& table, std::uint32_t rows) {
   try {
     s.tables.resize(table.table, rows + 1);
   } catch (const std::bad_alloc&) {
-    s.tables.resize(table.table, before);
     return Error{ErrorCode::buffer_full, "There is no memory for " + std::to_string(rows) + " rows of the table \"" + table.name +
                                              "\"; it has " + std::to_string(before - 1) + " as before."};
   }
@@ -344,7 +359,7 @@ Status resize_own(WorldState& s, const OwnTable& table, std::uint32_t rows) {
 }
 }  // namespace
 
-Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) {
+Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) try {
   if (Status ok = changeable(); !ok) return ok.error();
   WorldState& s = state();
   if (Status ok = check_name(name, "table"); !ok) return ok.error();
@@ -355,11 +370,17 @@ Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) {
   if (there) return taken(name, "table", "");
   std::uint32_t k = 0;
   while (k < s.own.tables.size() && s.own.tables[k].used) k++;
+  OwnTable added{std::string(name), {}, 1, true};
+  make_room(s.own.tables);
+  added.table = s.tables.add_table();
   if (k == s.own.tables.size()) s.own.tables.emplace_back();
   OwnTable& t = s.own.tables[k];
-  t = {std::string(name), s.tables.add_table(), t.generation + 1, true};
-  s.tables.resize(t.table, rows + 1);
+  added.generation = t.generation + 1;
+  t = std::move(added);
+  s.tables.resize(t.table, rows + 1);  // which has no columns yet
   return TableId{own_tables_from + k, t.generation, s.id_world()};
+} catch (...) {
+  return no_memory();
 }
 
 namespace {
@@ -372,20 +393,24 @@ Result<OwnTable*> own_table(WorldState& s, TableId id, const char* what) {
 }
 }  // namespace
 
-Status World::resize(TableId table, std::uint32_t rows) {
+Status World::resize(TableId table, std::uint32_t rows) try {
   if (Status ok = changeable(); !ok) return ok;
   const Result<OwnTable*> found = own_table(state(), table, "resized");
   if (!found) return found.error();
   return resize_own(state(), **found, rows);
+} catch (...) {
+  return no_memory();
 }
 
-Result<std::uint32_t> World::rows(TableId table) const {
+Result<std::uint32_t> World::rows(TableId table) const try {
   const Result<Table> found = state().table_of(table);
   if (!found) return found.error();
   return state().tables.rows(*found) - 1;
+} catch (...) {
+  return no_memory();
 }
 
-Status World::remove(TableId table) {
+Status World::remove(TableId table) try {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
   const Result<OwnTable*> found = own_table(s, table, "removed");
@@ -396,6 +421,8 @@ Status World::remove(TableId table) {
   s.removals++;
   (*found)->used = false;
   return {};
+} catch (...) {
+  return no_memory();
 }
 
 }  // namespace pcphys

@@ -4,30 +4,38 @@
 
 namespace pcphys {
 
-Result<bool> World::is_asleep(BodyId body) const {
+Result<bool> World::is_asleep(BodyId body) const try {
   if (!valid(body)) return stale("body");
   const WorldState& s = settled();
   const std::uint32_t row = s.body_ids.row(body.index);
   return s.asleep(row) && s.tables.get(Buffer::rest, row, rest_stirred) == 0;
+} catch (...) {
+  return no_memory();
 }
 
-Status World::wake(BodyId body) {
+Status World::wake(BodyId body) try {
   if (Status ok = changeable(body); !ok) return ok;
   state().stir(state().body_ids.row(body.index));
   return {};
+} catch (...) {
+  return no_memory();
 }
 
-Result<bool> World::can_sleep(BodyId body) const {
+Result<bool> World::can_sleep(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().tables.get(Buffer::rest, state().body_ids.row(body.index), rest_can_sleep) > 0;
+} catch (...) {
+  return no_memory();
 }
 
-Status World::set_can_sleep(BodyId body, bool can_sleep) {
+Status World::set_can_sleep(BodyId body, bool can_sleep) try {
   if (Status ok = changeable(body); !ok) return ok;
   const std::uint32_t row = state().body_ids.row(body.index);
   state().tables.set(Buffer::rest, row, rest_can_sleep, can_sleep);
   state().stir_moving(row);
   return {};
+} catch (...) {
+  return no_memory();
 }
 
 }  // namespace pcphys

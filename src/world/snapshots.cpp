@@ -209,6 +209,16 @@ bool is_content(const WorldState& s, const Layout& layout, Reader r) {
   return true;
 }
 
+/// Memory for contacts, and for any of the bodies to be frozen: nothing needs more while a snapshot is taken.
+void make_room_for(WorldState& s, std::uint32_t contacts) {
+  s.tables.reserve(Table::contact, contacts);
+  s.contacts.keys.reserve(contacts);
+  s.contacts.ends.reserve(contacts);
+  s.contacts.features.reserve(contacts);
+  for (std::uint32_t row = 1; row < s.bodies.size(); row++)
+    if (s.bodies[row].kind != BodyKind::fixed) s.frozen.try_emplace(s.bodies[row].index);
+}
+
 void take_content(WorldState& s, const Layout& layout, Reader& r) {
   for (std::size_t i = 1; i < s.bodies.size(); i++) read_row(r, s, layout.bodies, s.body_ids.row(r.get<std::uint32_t>()));
   for (std::size_t i = 1; i < s.joints.size(); i++) read_row(r, s, layout.joints, s.joint_ids.row(r.get<std::uint32_t>()));
@@ -225,12 +235,13 @@ void take_content(WorldState& s, const Layout& layout, Reader& r) {
   for (const auto& [rows, count] : layout.own)
     for (std::uint32_t row = 1; row < count; row++) read_row(r, s, rows, row);
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) s.follow_mark(row);
+  std::erase_if(s.frozen, [&](const auto& f) { return !s.bodies[s.body_ids.row(f.first)].frozen; });
   for (std::uint32_t row = 1; row < contacts; row++) s.contacts.ends[row] = s.ends_of(s.contacts.keys[row]);
 }
 
 }  // namespace
 
-std::vector<std::byte> World::snapshot() const {
+std::vector<std::byte> World::snapshot() const try {
   const WorldState& s = settled();
   const Layout layout(s);
   Writer w;
@@ -258,9 +269,11 @@ std::vector<std::byte> World::snapshot() const {
     for (std::uint32_t row = 1; row < count; row++) write_row(w, rows, row);
   w.put(checksum(w.out));
   return w.out;
+} catch (...) {
+  detail::no_memory_for("World::snapshot");
 }
 
-Status World::restore(std::span<const std::byte> snapshot) {
+Status World::restore(std::span<const std::byte> snapshot) try {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
   const Error cut{ErrorCode::bad_snapshot, "These bytes are no whole snapshot; take them from World::snapshot, unchanged."};
@@ -286,6 +299,7 @@ Status World::restore(std::span<const std::byte> snapshot) {
   if (!is_length(substep) || !is_length(soft_substep) || !check_finite(gravity, "gravity") || !is_content(s, layout, r))
     return Error{ErrorCode::bad_snapshot, "These bytes hold numbers that no step leaves; take them from World::snapshot, unchanged."};
 
+  make_room_for(s, contacts);
   s.drops.clear();
   s.last_substep = substep;
   s.soft_substep = soft_substep;
@@ -296,6 +310,8 @@ Status World::restore(std::span<const std::byte> snapshot) {
   s.tables.touch_all();
   s.contacts_version++;
   return {};
+} catch (...) {
+  return no_memory();
 }
 
 }  // namespace pcphys

@@ -180,11 +180,23 @@ int middle_axis(Vec3 i) {
   return 3 - smallest - largest;
 }
 
+void WorldState::make_room(std::uint32_t more_bodies, std::uint32_t more_joints, std::uint32_t more_shapes) {
+  body_ids.make_room(more_bodies);
+  pcphys::make_room(bodies, more_bodies);
+  tables.reserve(Table::body, std::uint32_t(bodies.size()) + more_bodies);
+  joint_ids.make_room(more_joints);
+  pcphys::make_room(joints, more_joints);
+  tables.reserve(Table::joint, std::uint32_t(joints.size()) + more_joints);
+  pcphys::make_room(shapes, more_shapes);
+  free_shapes.reserve(shapes.capacity());
+  tables.reserve(Table::shape, std::uint32_t(shapes.size()) + more_shapes + 1);
+}
+
 void WorldState::freeze(std::uint32_t row) {
   BodyRecord& body = bodies[row];
   if (body.frozen) return;
-  body.frozen = true;
   frozen[body.index] = {tables.get(Buffer::mass, row, 3), tables.get3(Buffer::mass, row, 0)};
+  body.frozen = true;
   for (const Buffer buffer : {Buffer::motion, Buffer::velocity_parts, Buffer::mass, Buffer::inertia, Buffer::delta})
     for (std::uint32_t i = 0; i < reals_of(buffer); i++) tables.set(buffer, row, i, 0);
   tables.set(Buffer::motion, row, 7, frozen_phase);

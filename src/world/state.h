@@ -167,6 +167,10 @@ struct WorldState {
   void forget_rest(std::uint32_t row);
   /// Counts who sleeps and who is stirred, after their rows came from elsewhere.
   void count_rest();
+  /// Memory for objects that are to come, and for all that there are to go.
+  void make_room(std::uint32_t bodies, std::uint32_t joints, std::uint32_t shapes);
+  /// Removes a body, with all that hangs on it; `drops` has room for it.
+  void remove_body(std::uint32_t row);
   /// Removes a joint or spring.
   void remove_joint(std::uint32_t row);
   /// Removes the contacts of bodies that were destroyed; what touched them is to wake.

@@ -40,7 +40,14 @@ void Tables::fill(Column& column, std::uint32_t before, std::uint32_t rows) {
   column.version++;
 }
 
+void Tables::reserve(Table table, std::uint32_t rows) {
+  for (Column& column : columns_)
+    if (column.used && column.table == table && (column.made || (rows > 1 && !column.on_demand)))
+      column.bytes.reserve(rows * column.row_bytes);
+}
+
 void Tables::resize(Table table, std::uint32_t rows) {
+  reserve(table, rows);
   const std::uint32_t before = std::exchange(rows_[std::size_t(table)], rows);
   layout_++;
   for (std::size_t k = 0; k < columns_.size(); k++) {
@@ -68,8 +75,9 @@ void Tables::make_current(Buffer buffer) {
 
 AlignedBytes& Tables::place_of(Buffer buffer) {
   Column& column = columns_[index(buffer)];
-  if (!std::exchange(column.made, true)) {
+  if (!column.made) {
     fill(column, 0, rows(column.table));
+    column.made = true;
     layout_++;
   }
   return column.bytes;
@@ -102,16 +110,15 @@ Buffer Tables::add(Table table, std::span<const std::byte> initial) {
   std::size_t k = table_buffer_count;
   while (k < columns_.size() && columns_[k].used) k++;
   if (k == columns_.size()) columns_.emplace_back();
-  Column& column = columns_[k];
-  const std::uint64_t version = column.version;  // goes on: a device may still hold what stood here before
-  column = {};
+  Column column;
+  column.version = columns_[k].version;  // goes on: a device may still hold what stood here before
   column.used = column.made = true;
   column.table = table;
   column.row_bytes = initial.size();
   column.initial.resize(initial.size());
   std::memcpy(column.initial.data(), initial.data(), initial.size());
-  column.version = version;
   fill(column, 0, rows(table));
+  columns_[k] = std::move(column);
   layout_++;
   return own_buffer(k - table_buffer_count);
 }

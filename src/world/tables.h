@@ -38,7 +38,9 @@ class Tables {
   std::size_t row_bytes(Buffer buffer) const { return columns_[index(buffer)].row_bytes; }
   Table table_of(Buffer buffer) const { return columns_[index(buffer)].table; }
 
-  /// New rows hold every property's initial value.
+  /// So that `resize` up to so many rows needs no memory.
+  void reserve(Table table, std::uint32_t rows);
+  /// New rows hold every property's initial value. Where there is no memory for them, nothing changes.
   void resize(Table table, std::uint32_t rows);
   void copy_row(Table table, std::uint32_t from, std::uint32_t to);
 

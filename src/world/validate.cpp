@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "pcphys/constants.h"
 #include "pcphys/world.h"
@@ -63,6 +65,25 @@ Error stale(const char* what) {
   return {ErrorCode::stale_id,
           std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
 }
+
+Error no_memory() { return {ErrorCode::buffer_full, "Out of memory."}; }  // so short that it stands in the string itself
+
+namespace detail {
+namespace {
+const std::shared_ptr<const Error> kept_no_memory = std::make_shared<const Error>(no_memory());
+}
+std::shared_ptr<const Error> keep(Error error) noexcept {
+  try {
+    return std::make_shared<const Error>(std::move(error));
+  } catch (...) {
+    return kept_no_memory;
+  }
+}
+void no_memory_for(const char* call) {
+  std::fprintf(stderr, "pcphys: There is no memory for what %s answers.\n", call);
+  std::abort();
+}
+}  // namespace detail
 
 Error busy(const char* what) {
   return {ErrorCode::busy, std::string("A step of this ") + what +

@@ -11,6 +11,8 @@ namespace pcphys {
 std::string number(double x);
 /// Of an id that names nothing; `what` is "body", "joint", "force".
 Error stale(const char* what);
+/// There is no memory for what was asked, and all is as it was. (Made without any.)
+Error no_memory();
 /// `what` is "world" or "stepper".
 Error busy(const char* what);
 /// Of an angular velocity for a body of BodyDef::rotates = false.
