@@ -73,7 +73,7 @@ int refusals(Host& host, const Act& act) {
 std::vector<std::pair<const char*, Act>> acts() {
   const auto step = [](Host& h) { return h.stepper.step(h.world, frame).error.code; };
   return {
-      {"create_body", [](Host& h) { return code(h.world.create_body(ball({0, 3, 0}))); }},
+      {"create_body", [def = ball({0, 3, 0})](Host& h) { return code(h.world.create_body(def)); }},
       {"step", step},
       {"create_joint", [](Host& h) { return code(h.world.create_joint(pin(h.balls[4], {}, h.balls[5], {-0.9, 0, 0}))); }},
       {"create_spring",
@@ -86,7 +86,7 @@ std::vector<std::pair<const char*, Act>> acts() {
        }},
       {"step", step},
       {"grab", [](Host& h) { return code(h.world.grab(h.hand, h.balls[2], {1.8, 0.45, 0})); }},
-      {"create_ragdoll", [](Host& h) { return code(h.world.create_ragdoll(RagdollDef::human(), {{3, 1, 0}, {}})); }},
+      {"create_ragdoll", [human = RagdollDef::human()](Host& h) { return code(h.world.create_ragdoll(human, {{3, 1, 0}, {}})); }},
       {"step", step},
       {"set_collide", [](Host& h) { return code(h.world.set_collide(h.balls[2], h.balls[3], false)); }},
       {"set_pose", [](Host& h) { return code(h.world.set_pose(h.balls[5], {{5, 2, 0}, {}})); }},
@@ -120,7 +120,7 @@ TEST_CASE("out of memory: each call is refused or made whole") {
     Host scarce(sleep), rich(sleep);
     int sum = 0;
     for (const auto& [name, act] : acts()) {
-      CAPTURE(name);
+      CAPTURE(std::string(name));
       sum += refusals(scarce, act);
       REQUIRE(act(rich) == ErrorCode::none);
       REQUIRE(scarce.world.hash() == rich.world.hash());

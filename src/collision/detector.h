@@ -78,10 +78,12 @@ class Detector {
   /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points
   /// see it [m].
   std::span<const Vec3> origins() const { return origins_; }
-  /// After the step, which was made: contacts that came apart in it have no points.
+  /// After the step: contacts that came apart in it have no points.
   void let_go(WorldState& state);
   /// Takes that back, once, when the step could not be made.
   void put_back(WorldState& state);
+  /// The step was made: there is nothing to take back.
+  void drop() { replaced_ = false; }
   /// After the step: whether some body went further than it was looked for, so far that it could be past what stands.
   /// `before`: the poses that the step began with. `find_pairs` looks as far for them as they went, until
   /// `forget_strays`.

@@ -107,7 +107,6 @@ void Detector::let_go(WorldState& s) {
   for (const std::uint32_t row : gone_)
     if (!standings_[row].acts) s.tables.set(Buffer::contact, row, 3, 0);
   gone_.clear();
-  replaced_ = false;
 }
 
 template Way Detector::way_of(const Substep<float>&, std::uint32_t);

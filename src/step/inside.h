@@ -204,6 +204,7 @@ struct Stepper::Inside {
     ForceJumps::forget(own.ordered());
     recorder.follow_sleep(settings, s);
     runner.drop();
+    detector.drop();
     return ok;
   }
 

@@ -14,10 +14,10 @@ class Rollback {
     if (copies_.size() <= std::size_t(buffer)) copies_.resize(std::size_t(buffer) + 1);
     Copy& copy = copies_[std::size_t(buffer)];
     if (copy.kept) return;
-    copy.kept = true;
     const AlignedBytes& now = tables.bytes(buffer);
     copy.bytes.resize(now.size());
     std::memcpy(copy.bytes.data(), now.data(), now.size());
+    copy.kept = true;  // there may have been no memory for it
   }
 
   /// What was kept in this step, or null.
