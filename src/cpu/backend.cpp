@@ -1,6 +1,7 @@
 // The CPU backend: kernels run in place on the world's tables, in the lane count that was chosen.
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -71,6 +72,9 @@ class CpuBackend final : public Backend {
   Status reserve(Buffer buffer, std::size_t slots) override {
     AlignedBytes& rows = scratch_[std::size_t(buffer)];
     rows.resize(slots * schema(buffer).reals * (kernels_.f64 ? 8 : 4));
+#ifndef NDEBUG
+    std::memset(rows.data(), 0xff, rows.size());  // not numbers: what a step leaves here means nothing to the next
+#endif
     buffers_[std::size_t(buffer)] = rows.data();
     return {};
   }

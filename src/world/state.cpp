@@ -108,6 +108,7 @@ void WorldState::stir_all() {
 }
 
 void WorldState::stir_reader(Table table, std::uint32_t row) {
+  if (std::ranges::all_of(kernel_holds, [](const auto& hold) { return hold.expired(); })) return;  // nobody reads it
   if (table == Table::body) {
     stir(row);
   } else if (table == Table::joint) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace pcphys {
@@ -168,13 +170,21 @@ double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const
   assert(row < rows(columns_[index(buffer)].table));
   return read<1>(*this, buffer, row, offset)[0];
 }
+namespace {
+/// Steps on the CPU take numbers below the normal ones for zero, and devices may hand them on: they are zero from the start.
+template <class Scalar> Scalar normal(double value) {
+  const Scalar x = Scalar(value);
+  return std::fabs(x) < std::numeric_limits<Scalar>::min() ? Scalar(0) : x;
+}
+}  // namespace
+
 void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
   assert(row < rows(columns_[index(buffer)].table));
   const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
   if (precision_ == Precision::f32)
-    data<float>(buffer)[i] = float(value);
+    data<float>(buffer)[i] = normal<float>(value);
   else
-    data<double>(buffer)[i] = value;
+    data<double>(buffer)[i] = normal<double>(value);
   touch(buffer);
 }
 Vec3 Tables::get3(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {

@@ -306,7 +306,7 @@ Call save_or_restore(Choices& c) {
 
 Call step(Choices& c) {
   const std::uint32_t kind = c.below(24);
-  double dt = kind < 18 ? 1.0 / 60 : kind < 22 ? c.by_ratio(1.0 / 500, 1.0 / 20) : c.by_ratio(1e-6, 1e-2);
+  double dt = kind < 18 ? 1.0 / 60 : kind < 22 ? c.by_ratio(1.0 / 500, 1.0 / 20) : c.by_ratio(1e-12, 1e-2);
   if (c.below(60) == 1) dt = c.odd();
   return {"step", [=](Host& h) { return h.step(dt); }, true};
 }
