@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "glcompute/egl_devices.h"
+#include "step/processor_state.h"
 
 namespace pcphys {
 namespace {
@@ -140,6 +141,8 @@ Result<std::unique_ptr<GlContext>> GlContext::open(int device) {
 
 Result<std::unique_ptr<GlContext>> GlContext::open_display(void* display, int device) {
   const std::string cure = " Install a driver with OpenGL 4.3 (Debian, Ubuntu: apt-get install libgl1-mesa-dri libegl-mesa0).";
+  // drivers that compute on the processor do so on threads that begin in the state of the one that opens the display
+  const FlushSubnormals flush;
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
     return unavailable(device < 0 ? "No EGL display could be opened." + cure
                                   : "EGL device " + std::to_string(device) + " could not be opened." + cure);

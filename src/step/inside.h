@@ -58,6 +58,7 @@ struct Stepper::Inside {
   std::uint64_t scheduled_serial = 0, scheduled = 0;  // the world and structure that `schedule` is of
   std::uint64_t scheduled_rest = 0;                   // and who slept in it
   bool other = false;                                 // than those of the last step
+  bool undone = false;                                // a try of a step, with what it wrote of joints
   bool regrouped = false;                             // islands may be others than after it
   Sleepers sleepers;
   Unrest unrest;
@@ -229,18 +230,26 @@ struct Stepper::Inside {
     idle = {s, plans.find(nothing, own.ordered()), settings.substeps, report.islands_asleep};
   }
 
+  /// What stands for several joints, whose own impulses are none.
+  void write_solved(WorldState& s) {
+    undone = false;
+    if (s.joints.size() == 1) return;  // not even the rows that pad need be there
+    runner.keep(s, Buffer::joint_impulse);
+    schedule.trees.solved().write(s);
+    write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+  }
+
   void update_structure(WorldState& s) {
-    if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) return;
+    if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) {
+      if (undone) write_solved(s);
+      return;
+    }
     scheduled_serial = s.serial;
     scheduled = s.structure_version;
     scheduled_rest = s.rest_version;
     other = true;
     schedule.update_structure(s);
-    if (s.joints.size() > 1) {  // else not even the rows that pad need be there
-      runner.keep(s, Buffer::joint_impulse);
-      schedule.trees.solved().write(s);
-      write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
-    }
+    write_solved(s);
     octaves.update_structure(s, schedule.trees.solved(), schedule.trees.closing(), schedule.trees.parallel());
     fourth.forget();
   }
@@ -395,6 +404,7 @@ struct Stepper::Inside {
 
   /// The world as it was: what the step wrote into its tables goes back, and the contacts are the last step's again.
   void undo(WorldState& s) {
+    undone = true;
     runner.undo(s);
     s.count_rest();
     detector.put_back(s);

@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <vector>
 
 #include "world/state.h"
 
 namespace pcphys {
 
-/// FNV-1a, 64 bit. Reals are taken by their bits, with -0 as +0.
+/// FNV-1a, 64 bit. Reals are taken by their bits, with -0 as +0 and what is no number as one.
 class Hash {
  public:
   void bytes(const void* data, std::size_t n) {
@@ -22,6 +23,7 @@ class Hash {
       Scalar x;
       std::memcpy(&x, p + i, sizeof x);
       if (x == 0) x = 0;
+      if (x != x) x = std::numeric_limits<Scalar>::quiet_NaN();
       bytes(&x, sizeof x);
     }
   }
