@@ -219,6 +219,8 @@ class World {
     if (!state_) detail::moved_from("World", call);
     return *state_;
   }
+  /// The same with contacts and rest as they are after what was destroyed.
+  const WorldState& settled(const char* call = __builtin_FUNCTION()) const;
 
  private:
   using AnyProperty = Id<struct AnyPropertyTag>;
@@ -236,9 +238,6 @@ class World {
   Status changeable(BodyId body, const char* call = __builtin_FUNCTION()) const;
   Status changeable(JointId joint, const char* call = __builtin_FUNCTION()) const;
   Status changeable(SpringId spring, const char* call = __builtin_FUNCTION()) const;
-
-  /// With contacts and rest as they are after what was destroyed.
-  const WorldState& settled(const char* call = __builtin_FUNCTION()) const;
 
   std::unique_ptr<WorldState> state_;
 };

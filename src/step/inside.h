@@ -83,21 +83,7 @@ struct Stepper::Inside {
   bool spoiled = false;  // a step ended in the middle, for want of memory
   void step_within_memory(World& world, double dt);
   /// As a new stepper, but for its settings and kernels, and what it told.
-  void start_anew() {
-    runner.forget();
-    detector = Detector();
-    schedule = Schedule();
-    octaves = Octaves();
-    fourth = FourthOrder();
-    plans.clear();
-    plan = nullptr;
-    sleepers = Sleepers();
-    unrest = Unrest();
-    idle = {};
-    prepared.reset();
-    serial = scheduled_serial = 0;
-    spoiled = false;
-  }
+  void start_anew();
 
   void lap(Timer timer) {
     if (!settings.timings) return;
@@ -231,28 +217,8 @@ struct Stepper::Inside {
   }
 
   /// What stands for several joints, whose own impulses are none.
-  void write_solved(WorldState& s) {
-    undone = false;
-    if (s.joints.size() == 1) return;  // not even the rows that pad need be there
-    runner.keep(s, Buffer::joint_impulse);
-    schedule.trees.solved().write(s);
-    write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
-  }
-
-  void update_structure(WorldState& s) {
-    if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) {
-      if (undone) write_solved(s);
-      return;
-    }
-    scheduled_serial = s.serial;
-    scheduled = s.structure_version;
-    scheduled_rest = s.rest_version;
-    other = true;
-    schedule.update_structure(s);
-    write_solved(s);
-    octaves.update_structure(s, schedule.trees.solved(), schedule.trees.closing(), schedule.trees.parallel());
-    fourth.forget();
-  }
+  void write_solved(WorldState& s);
+  void update_structure(WorldState& s);
 
   void update_contacts(const WorldState& s) {
     schedule.update_contacts(s);

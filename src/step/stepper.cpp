@@ -89,7 +89,7 @@ Status Stepper::configure(const StepSettings& settings) try {
   in.idle = {};
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 const StepSettings& Stepper::settings() const { return inside().settings; }
 
@@ -134,6 +134,45 @@ const StepReport& Stepper::step(World& world, double dt) {
   return in.report;
 }
 
+void Stepper::Inside::start_anew() {
+  runner.forget();
+  detector = Detector();
+  schedule = Schedule();
+  octaves = Octaves();
+  fourth = FourthOrder();
+  plans.clear();
+  plan = nullptr;
+  sleepers = Sleepers();
+  unrest = Unrest();
+  idle = {};
+  prepared.reset();
+  serial = scheduled_serial = 0;
+  spoiled = false;
+}
+
+void Stepper::Inside::write_solved(WorldState& s) {
+  undone = false;
+  if (s.joints.size() == 1) return;  // not even the rows that pad need be there
+  runner.keep(s, Buffer::joint_impulse);
+  schedule.trees.solved().write(s);
+  write_pivots(s, schedule.trees.solved(), schedule.trees.pivots());
+}
+
+void Stepper::Inside::update_structure(WorldState& s) {
+  if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) {
+    if (undone) write_solved(s);
+    return;
+  }
+  scheduled_serial = s.serial;
+  scheduled = s.structure_version;
+  scheduled_rest = s.rest_version;
+  other = true;
+  schedule.update_structure(s);
+  write_solved(s);
+  octaves.update_structure(s, schedule.trees.solved(), schedule.trees.closing(), schedule.trees.parallel());
+  fourth.forget();
+}
+
 /// Where there is no memory for a step the world is as it was, and what the stepper holds of it is made anew by the next.
 void Stepper::Inside::step_within_memory(World& world, double dt) {
   WorldState& s = world.state();
@@ -149,7 +188,7 @@ void Stepper::Inside::step_within_memory(World& world, double dt) {
     s.soft_substep = soft_substep;
     s.settling = settling;
     report = {};
-    report.error = no_memory();
+    report.error = caught();
     recorder.clear();
   }
 }
@@ -168,9 +207,8 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) try {
   if (ok) ok = check_settings(in.settings);
   if (ok) ok = in.own.check(world.state());
   if (!ok) return ok.error();
-  (void)world.contact_count();  // without those of what was destroyed
   Schedule schedule;
-  schedule.update_structure(world.state());
+  schedule.update_structure(world.settled());
   Detector detector;
   if (ok = detector.find_pairs(world.state(), dt, in.detection()); !ok) return ok.error();
   PlanSignature wanted = signature(in.settings, world.state(), schedule);
@@ -195,7 +233,7 @@ Result<StepPlan> Stepper::plan_for(const World& world, double dt) try {
   measure_transfers(plan, world.state(), schedule);
   return plan;
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status Stepper::add_kernel(World& world, const KernelDef& def) {
@@ -221,8 +259,9 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
       return add();
     } catch (...) {
       in.spoiled = true;
+      const Error error = caught();
       (void)in.own.remove(s, def.text.name);
-      return no_memory();
+      return error;
     }
   };
   const Status ok = add_within_memory();
@@ -237,7 +276,7 @@ Status Stepper::remove_kernel(World& world, std::string_view name) try {
   if (ok) world.state().stir_all();
   return ok;
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status Stepper::remove_kernels() {
@@ -254,7 +293,7 @@ Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& pa
   if (k->parameters_before.empty()) k->parameters_before = k->parameters;
   return set(*k, parameter);
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 std::vector<BufferUse> Stepper::memory(const World& world) const try {

@@ -1,4 +1,4 @@
-// Bodies of a world: creating and destroying them, and what a host reads and writes of them.
+// Bodies of a world: creating and destroying them.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,16 +10,6 @@
 
 namespace pcphys {
 namespace {
-
-void write_material(Tables& t, std::uint32_t row, const Material& m) {
-  t.set(Buffer::material, row, 0, m.static_friction);
-  t.set(Buffer::material, row, 1, m.kinetic_friction);
-  t.set(Buffer::material, row, 2, m.restitution);
-  t.set(Buffer::material, row, 3, double(m.friction_rule));
-  t.set(Buffer::material, row, 4, m.rolling_friction);
-  t.set(Buffer::material, row, 5, m.torsional_friction);
-  t.set(Buffer::material, row, 6, double(m.restitution_rule));
-}
 
 std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) {
   std::uint32_t index;
@@ -98,7 +88,7 @@ Status World::set_gravity(Vec3 gravity) try {
   state().gravity = gravity;
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Result<BodyId> World::create_body(const BodyDef& def) try {
@@ -139,7 +129,7 @@ Result<BodyId> World::create_body(const BodyDef& def) try {
   s.stir(row);
   return s.body_ids.id<BodyId>(index);
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 namespace {
@@ -188,7 +178,7 @@ Status World::destroy(std::span<const BodyId> bodies) try {
   for (const BodyId body : bodies) s.remove_body(s.body_ids.row(body.index));
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 std::vector<BodyId> World::bodies() const try {
@@ -204,298 +194,25 @@ Result<std::uint32_t> World::row_of(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().body_ids.row(body.index);
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 Result<std::uint32_t> World::row_of(JointId joint) const try {
   if (!valid(joint)) return stale("joint");
   return state().joint_ids.row(joint.index);
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 Result<bool> World::frozen(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().bodies[state().body_ids.row(body.index)].frozen;
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 Result<BodyKind> World::kind(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().bodies[state().body_ids.row(body.index)].kind;
 } catch (...) {
-  return no_memory();
-}
-
-// ---- state ---------------------------------------------------------------------------------------------
-
-Result<Pose> World::pose(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  return state().pose(state().body_ids.row(body.index));
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_pose(BodyId body, const Pose& pose) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  if (body.index == 0)
-    return Error{ErrorCode::bad_argument, "The ground stays at the origin; create a fixed body for anything else."};
-  Quat q = pose.orientation;
-  if (Status ok = check_finite(pose.position, "position of a body"); !ok) return ok;
-  if (Status ok = check_unit(q, "orientation of a body"); !ok) return ok;
-  WorldState& s = state();
-  const std::uint32_t row = s.body_ids.row(body.index);
-  const bool spins = s.bodies[row].kind == BodyKind::dynamic && !(q == s.orientation(row));
-  const Vec3 w = s.angular_velocity(row);
-  if (Status ok = spins ? check_spin(mass_properties(body)->moments, w) : Status{}; !ok) return ok;
-  s.change(row);
-  s.set_position(row, pose.position);
-  s.set_orientation(row, q);
-  if (spins) {  // the angular velocity stays, so the momentum changes
-    s.bring_in_phase(row);
-    s.set_angular_velocity(row, w);
-  }
-  s.let_settle(row);
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Result<Vec3> World::velocity(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  return state().velocity(state().body_ids.row(body.index));
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_velocity(BodyId body, Vec3 velocity) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  if (Status ok = check_finite(velocity, "velocity of a body"); !ok) return ok;
-  const std::uint32_t row = state().body_ids.row(body.index);
-  if (state().bodies[row].kind == BodyKind::fixed)
-    return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
-  state().change(row);
-  state().bring_in_phase(row);
-  state().tables.set3(Buffer::motion, row, 0, velocity);
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Result<Vec3> World::angular_velocity(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  return state().angular_velocity(state().body_ids.row(body.index));
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_angular_velocity(BodyId body, Vec3 w) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  if (Status ok = check_finite(w, "angular velocity of a body"); !ok) return ok;
-  const std::uint32_t row = state().body_ids.row(body.index);
-  if (state().bodies[row].kind == BodyKind::fixed)
-    return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
-  if (!state().rotates(row) && w != Vec3{}) return no_rotation();
-  if (Status ok = check_spin(mass_properties(body)->moments, w); !ok) return ok;
-  state().change(row);
-  state().bring_in_phase(row);
-  state().set_angular_velocity(row, w);
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Result<Vec3> World::angular_momentum(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  const std::uint32_t row = state().body_ids.row(body.index);
-  return state().bodies[row].kind == BodyKind::dynamic ? state().momentum_of_rotation(row) : Vec3{};
-} catch (...) {
-  return no_memory();
-}
-
-namespace {
-Status need_substep(const WorldState& s) {
-  if (s.last_substep > 0) return {};
-  return Error{ErrorCode::bad_time_step,
-               "Last positions are one sub-step ago, and no step has been made yet; set a velocity instead."};
-}
-}  // namespace
-
-Result<Vec3> World::position_last(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  if (Status ok = need_substep(state()); !ok) return ok.error();
-  const std::uint32_t row = state().body_ids.row(body.index);
-  return state().pose(row).position - state().last_substep * state().tables.get3(Buffer::motion, row, 0);
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_position_last(BodyId body, Vec3 position) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  if (Status ok = need_substep(state()); !ok) return ok;
-  if (Status ok = check_finite(position, "last position of a body"); !ok) return ok;
-  WorldState& s = state();
-  const std::uint32_t row = s.body_ids.row(body.index);
-  if (s.bodies[row].kind == BodyKind::fixed)
-    return Error{ErrorCode::bad_argument, "A fixed body has no last position; make it kinematic to move it."};
-  const Vec3 v = (1 / s.last_substep) * (s.pose(row).position - position);
-  if (Status ok = check_finite(v, "velocity that a body's last position stands for"); !ok) return ok;
-  s.change(row);
-  s.tables.set3(Buffer::motion, row, 0, v);
-  for (std::uint32_t part : {0, 8}) s.tables.set3(Buffer::velocity_parts, row, part, {});
-  if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Result<Quat> World::orientation_last(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  if (Status ok = need_substep(state()); !ok) return ok.error();
-  const std::uint32_t row = state().body_ids.row(body.index);
-  const Quat q = state().orientation(row);
-  const Vec3 pi = rotate(conjugate(q), state().tables.get3(Buffer::motion, row, 4)),
-             i = state().tables.get3(Buffer::mass, row, 4);
-  const Vec3 w = rotate(q, {i.x * pi.x, i.y * pi.y, i.z * pi.z});
-  const double speed = length(w);
-  if (speed == 0) return q;
-  return axis_angle((1 / speed) * w, -speed * state().last_substep) * q;
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_orientation_last(BodyId body, Quat last) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  if (Status ok = need_substep(state()); !ok) return ok;
-  if (Status ok = check_unit(last, "last orientation of a body"); !ok) return ok;
-  WorldState& s = state();
-  const std::uint32_t row = s.body_ids.row(body.index);
-  if (s.bodies[row].kind == BodyKind::fixed)
-    return Error{ErrorCode::bad_argument, "A fixed body has no last orientation; make it kinematic to turn it."};
-  if (!s.rotates(row)) return no_rotation();
-  // 2 log of the world difference, taken on the near side of the double cover (errata iii.4 of the method)
-  Quat d = s.orientation(row) * conjugate(last);
-  if (d.w < 0) d = {-d.x, -d.y, -d.z, -d.w};
-  const double sine = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), angle = 2 * std::atan2(sine, d.w);
-  const double rate = sine > 0 ? angle / (sine * s.last_substep) : 0;
-  const Vec3 w{rate * d.x, rate * d.y, rate * d.z};
-  Status ok = check_finite(w, "angular velocity that a body's last orientation stands for");
-  if (ok) ok = check_spin(mass_properties(body)->moments, w);
-  if (!ok) return ok;
-  s.change(row);
-  s.set_angular_velocity(row, w);
-  for (std::uint32_t part : {4, 12}) s.tables.set3(Buffer::velocity_parts, row, part, {});
-  if (s.tables.get(Buffer::motion, row, 7) < 0) s.tables.set(Buffer::motion, row, 7, 0);
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-// ---- inputs --------------------------------------------------------------------------------------------
-
-Result<MassProperties> World::mass_properties(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  const std::uint32_t row = state().body_ids.row(body.index);
-  if (state().bodies[row].frozen) return state().frozen.at(body.index);
-  return MassProperties{state().tables.get(Buffer::mass, row, 3), state().tables.get3(Buffer::mass, row, 0)};
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_mass_properties(BodyId body, const MassProperties& mass) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  WorldState& s = state();
-  const std::uint32_t row = s.body_ids.row(body.index);
-  const bool rotates = s.rotates(row);
-  if (Status ok = check(mass, rotates); !ok) return ok;
-  if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
-  const Vec3 w = s.angular_velocity(row), moments = rotates ? mass.moments : Vec3{};
-  if (Status ok = check_spin(moments, w); !ok) return ok;
-  s.change(row);
-  s.set_mass(row, {mass.mass, moments});
-  s.structure_version++;
-  s.bring_in_phase(row);
-  s.set_angular_velocity(row, w);
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Result<Material> World::material(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  const std::uint32_t row = state().body_ids.row(body.index);
-  const Tables& t = state().tables;
-  const auto get = [&](std::uint32_t k) { return t.get(Buffer::material, row, k); };
-  return Material{get(0), get(1), get(2), get(4), get(5), Combine(std::uint8_t(get(3))), Combine(std::uint8_t(get(6)))};
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_material(BodyId body, const Material& material) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  if (Status ok = check(material); !ok) return ok;
-  const std::uint32_t row = state().body_ids.row(body.index);
-  write_material(state().tables, row, material);
-  state().stir(row);
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_drag(BodyId body, double linear, double angular) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  if (Status ok = check_finite(linear, "linear drag of a body"); !ok) return ok;
-  if (Status ok = check_finite(angular, "angular drag of a body"); !ok) return ok;
-  if (linear < 0 || angular < 0) return Error{ErrorCode::bad_argument, "A drag is below zero; use 0 for none."};
-  const std::uint32_t row = state().body_ids.row(body.index);
-  state().change(row);
-  state().bring_in_phase(row);
-  state().tables.set(Buffer::force, row, 3, linear);
-  state().tables.set(Buffer::force, row, 7, angular);
-  state().structure_version++;  // the plan leaves drag out where there is none
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Result<std::vector<ShapeDef>> World::shapes(BodyId body) const try {
-  if (!valid(body)) return stale("body");
-  std::vector<ShapeDef> defs;
-  for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes) defs.push_back(state().shapes[shape].def);
-  return defs;
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_filter(BodyId body, const Filter& filter) try {
-  if (Status ok = changeable(body); !ok) return ok;
-  for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes)
-    state().shapes[shape].filter = state().shapes[shape].def.filter = filter;
-  state().structure_version++;
-  state().stir(state().body_ids.row(body.index));
-  return {};
-} catch (...) {
-  return no_memory();
-}
-
-Status World::set_collide(BodyId a, BodyId b, bool collide) try {
-  Status ok = changeable(a);
-  if (ok) ok = changeable(b);
-  if (!ok) return ok;
-  WorldState& s = state();
-  for (const BodyId body : {a, b}) make_room(s.asked_apart[body.index], 2);
-  const auto pair = s.no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
-  for (const auto& [body, other] : {std::pair(a.index, b.index), std::pair(b.index, a.index)}) {
-    std::vector<std::uint32_t>& others = s.asked_apart[body];
-    if (pair->second.asked == collide) collide ? void(std::erase(others, other)) : others.push_back(other);
-    if (others.empty()) s.asked_apart.erase(body);
-  }
-  pair->second.asked = !collide;
-  if (!pair->second.any()) s.no_collide.erase(pair);
-  state().structure_version++;
-  state().stir_moving(state().body_ids.row(a.index));
-  state().stir_moving(state().body_ids.row(b.index));
-  return {};
-} catch (...) {
-  return no_memory();
+  return caught();
 }
 
 }  // namespace pcphys

@@ -350,7 +350,7 @@ Result<Hull> make_hull(std::span<const Vec3> points) try {
   write_table(*data);
   return Hull(std::move(data));
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 std::span<const Vec3> Hull::vertices() const { return data_ ? std::span<const Vec3>(data_->vertices) : std::span<const Vec3>(); }

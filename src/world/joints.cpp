@@ -1,8 +1,7 @@
-// Joints, ragdolls and forces of a world.
+// Joints and springs of a world.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <new>
 #include <numbers>
 #include <string>
 
@@ -156,7 +155,7 @@ Result<JointId> World::create_joint(const JointDef& given) try {
   if (!ok) return ok.error();
   return state().joint_ids.id<JointId>(new_row(state(), def, {}));
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 namespace {
@@ -195,7 +194,7 @@ Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) try {
   def.largest_force = times * g * mass_of_all(s, b);
   return create_joint(def);
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Result<SpringId> World::create_spring(const SpringDef& def) try {
@@ -211,7 +210,7 @@ Result<SpringId> World::create_spring(const SpringDef& def) try {
   ends.collide = true;
   return state().joint_ids.id<SpringId>(new_row(state(), ends, def));
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 void WorldState::remove_joint(std::uint32_t row) {
@@ -236,7 +235,7 @@ Status World::destroy(JointId joint) try {
   state().remove_joint(state().joint_ids.row(joint.index));
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::destroy(SpringId spring) try {
@@ -244,7 +243,7 @@ Status World::destroy(SpringId spring) try {
   state().remove_joint(state().joint_ids.row(spring.index));
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::set_motor(JointId joint, const Motor& motor) try {
@@ -253,7 +252,7 @@ Status World::set_motor(JointId joint, const Motor& motor) try {
   change_drive(state(), state().joint_ids.row(joint.index), [&](JointRecord& r) { r.def.motor = motor; });
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::set_spring(JointId joint, const AngularSpring& given) try {
@@ -263,7 +262,7 @@ Status World::set_spring(JointId joint, const AngularSpring& given) try {
   change_drive(state(), state().joint_ids.row(joint.index), [&](JointRecord& r) { r.def.spring = spring; });
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::set_spring(SpringId spring, double rest_length, double stiffness, double damping) try {
@@ -277,14 +276,14 @@ Status World::set_spring(SpringId spring, double rest_length, double stiffness, 
   change_drive(state(), row, [&](JointRecord& r) { r.spring = def; });
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Result<SpringDef> World::spring(SpringId spring) const try {
   if (!valid(spring)) return stale("spring");
   return *state().joints[state().joint_ids.row(spring.index)].spring;
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 double World::spring_energy() const {
@@ -310,7 +309,7 @@ Result<JointDef> World::joint(JointId joint) const try {
   if (!valid(joint)) return stale("joint");
   return state().joints[state().joint_ids.row(joint.index)].def;
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Result<double> World::joint_separation(JointId joint) const try {
@@ -319,154 +318,7 @@ Result<double> World::joint_separation(JointId joint) const try {
   const Pose a = state().pose(state().body_ids.row(r.body_a)), b = state().pose(state().body_ids.row(r.body_b));
   return length(transform(a, r.def.frame_a.position) - transform(b, r.def.frame_b.position));
 } catch (...) {
-  return no_memory();
-}
-
-namespace {
-BodyDef bone_body(const RagdollDef& def, const BoneDef& bone, const Pose& frame, Vec3 velocity) {
-  BodyDef body;
-  body.pose = {transform(frame, bone.pose.position), frame.orientation * bone.pose.orientation};
-  body.velocity = velocity;
-  body.shapes = {bone.shape};
-  body.density = def.density;
-  body.material = def.material;
-  return body;
-}
-
-/// Without its bodies.
-JointDef bone_joint(const RagdollDef& def, const BoneDef& bone) {
-  const Pose &parent = def.bones[bone.parent].pose, &child = bone.pose;
-  JointDef joint;
-  joint.frame_a = {rotate(conjugate(parent.orientation), bone.joint - parent.position),
-                   conjugate(parent.orientation) * bone.joint_axes};
-  joint.frame_b = {rotate(conjugate(child.orientation), bone.joint - child.position),
-                   conjugate(child.orientation) * bone.joint_axes};
-  joint.freedom = bone.freedom;
-  joint.spring.damping = bone.damping;
-  return joint;
-}
-
-Status check(const RagdollDef& def, const Pose& frame, Vec3 velocity) {
-  for (std::size_t i = 0; i < def.bones.size(); i++) {
-    const BoneDef& bone = def.bones[i];
-    if (i > 0 && (bone.parent < 0 || std::size_t(bone.parent) >= i))
-      return Error{ErrorCode::bad_joint, "Bone " + std::to_string(i) + " of a ragdoll must have a parent that stands before it."};
-    Quat orientation;
-    if (const auto mass = check(bone_body(def, bone, frame, velocity), orientation); !mass) return mass.error();
-    if (i == 0) continue;
-    JointDef joint = bone_joint(def, bone);
-    if (Status ok = check(joint); !ok) return ok;
-  }
-  return {};
-}
-}  // namespace
-
-namespace {
-/// All of it was looked at before.
-void add_bones(World& world, const RagdollDef& def, const Pose& frame, Vec3 velocity, Ragdoll& made) {
-  const auto count = std::uint32_t(def.bones.size());
-  world.state().make_room(count, count, count);
-  world.state().drops.make_room(count);
-  made.bones.reserve(count);
-  made.joints.reserve(count);
-  const auto check_memory = [](ErrorCode code) {
-    if (code == ErrorCode::buffer_full) throw std::bad_alloc();
-  };
-  for (const BoneDef& bone : def.bones) {
-    const Result<BodyId> body = world.create_body(bone_body(def, bone, frame, velocity));
-    if (!body) check_memory(body.error().code);
-    made.bones.push_back(*body);
-    if (made.bones.size() == 1) continue;
-    JointDef joint = bone_joint(def, bone);
-    joint.a = made.bones[std::size_t(bone.parent)];
-    joint.b = *body;
-    const Result<JointId> joined = world.create_joint(joint);
-    if (!joined) check_memory(joined.error().code);
-    made.joints.push_back(*joined);
-  }
-}
-
-/// As if they had never been made.
-void take_back(WorldState& s, const Ragdoll& made) {
-  for (auto joint = made.joints.rbegin(); joint != made.joints.rend(); ++joint) {
-    s.remove_joint(s.joint_ids.row(joint->index));
-    s.joint_ids.take_back(joint->index);
-  }
-  for (auto bone = made.bones.rbegin(); bone != made.bones.rend(); ++bone) {
-    s.remove_body(s.body_ids.row(bone->index));
-    s.body_ids.take_back(bone->index);
-  }
-}
-}  // namespace
-
-Result<Ragdoll> World::create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity) try {
-  Pose frame = pose;
-  Status ok = changeable();
-  if (ok) ok = check_unit(frame.orientation, "orientation of a ragdoll");
-  if (ok) ok = check(def, frame, velocity);  // all of it before anything is made: a refused call uses up no id
-  if (!ok) return ok.error();
-  Ragdoll made;
-  try {
-    add_bones(*this, def, frame, velocity, made);
-  } catch (...) {
-    take_back(state(), made);
-    throw;
-  }
-  return made;
-} catch (...) {
-  return no_memory();
-}
-
-// ---- forces --------------------------------------------------------------------------------------------
-
-namespace {
-ForceId new_force(WorldState& s, ForceRecord record) {
-  const std::uint32_t row = s.body_ids.row(record.body);
-  s.force_ids.make_room(1);
-  make_room(s.forces);
-  make_room(s.bodies[row].forces);
-  const std::uint32_t index = s.force_ids.allocate(0);
-  if (index == s.forces.size()) s.forces.emplace_back();
-  s.change(row);
-  if (record.callback) s.callbacks++;
-  if (record.callback) s.bring_in_phase(row);  // what it will answer is not known yet
-  s.forces[index] = std::move(record);
-  std::vector<std::uint32_t>& own = s.bodies[row].forces;
-  own.insert(std::ranges::lower_bound(own, index), index);
-  s.change_forces(row);
-  return s.force_ids.id<ForceId>(index);
-}
-}  // namespace
-
-Result<ForceId> World::add_force(BodyId body, const Wrench& wrench) try {
-  if (Status ok = changeable(body); !ok) return ok.error();
-  if (Status ok = check_finite(wrench.force, "force on a body"); !ok) return ok.error();
-  if (Status ok = check_finite(wrench.torque, "torque on a body"); !ok) return ok.error();
-  return new_force(state(), {body.index, wrench, {}});
-} catch (...) {
-  return no_memory();
-}
-
-Result<ForceId> World::add_force(BodyId body, ForceCallback callback) try {
-  if (Status ok = changeable(body); !ok) return ok.error();
-  if (!callback) return Error{ErrorCode::bad_argument, "The force callback is empty; pass a function."};
-  return new_force(state(), {body.index, {}, std::move(callback)});
-} catch (...) {
-  return no_memory();
-}
-
-Status World::remove(ForceId force) try {
-  if (Status ok = changeable(); !ok) return ok;
-  WorldState& s = state();
-  if (!s.force_ids.valid(force)) return stale("force");
-  const std::uint32_t row = s.body_ids.row(s.forces[force.index].body);
-  s.change(row);
-  std::erase(s.bodies[row].forces, force.index);
-  s.drop_force(force.index);
-  s.change_forces(row);
-  return {};
-} catch (...) {
-  return no_memory();
+  return caught();
 }
 
 }  // namespace pcphys

@@ -53,7 +53,7 @@ Result<MassProperties> mass_properties(const ShapeDef& shape, double density) tr
   }
   return Error{ErrorCode::bad_mass, "A plane has no mass: use it on fixed bodies."};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status make_compound(BodyDef& def) try {
@@ -101,7 +101,7 @@ Status make_compound(BodyDef& def) try {
   def.moments = whole.moments;
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 }  // namespace pcphys

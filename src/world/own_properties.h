@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pcphys/result.h"
 #include "world/tables.h"
 
 namespace pcphys {
@@ -41,6 +42,11 @@ struct OwnProperties {
   std::vector<OwnTable> tables;   // table k has the id own_tables_from + k
 };
 inline constexpr std::uint32_t own_tables_from = 2;  // after bodies and joints
+
+/// Of a property, table or kernel: names stand in the text of kernels, in C++ and GLSL.
+Status check_name(std::string_view name, const char* what);
+/// That there is such a name already; `by`: whose, or nothing.
+Error taken(std::string_view name, const char* what, std::string_view by);
 
 /// Where a property's numbers stand in a row, the library's or the host's own.
 struct Field {

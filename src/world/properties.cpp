@@ -132,7 +132,8 @@ constexpr std::string_view reserved_words[] = {"Mask",        "Mat3",         "Q
                                                "while",       "writeonly",    "xor",
                                                "xor_eq"};
 
-/// Names stand in the text of kernels, in C++ and GLSL.
+}  // namespace
+
 Status check_name(std::string_view name, const char* what) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   bool fits = !name.empty() && letter(name[0]) && name.find("__") == name.npos && name.size() <= 64;
@@ -158,6 +159,8 @@ Error taken(std::string_view name, const char* what, std::string_view by) {
   return {ErrorCode::name_taken,
           "There is a " + std::string(what) + " " + quoted(name) + " already" + std::string(by) + "; choose another name."};
 }
+
+namespace {
 
 /// Of a property of the host's own: whatever its type can hold.
 Status check_numbers(PropertyType type, const double* numbers, std::string_view name, std::size_t real_bytes) {
@@ -229,7 +232,7 @@ Result<PropertyView> World::view(std::string_view property) const try {
                       number_bytes(type, t.real_bytes()) == 4 ? Precision::f32 : Precision::f64,
                       type};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Result<World::AnyProperty> World::add_property(std::string_view name, PropertyType type, const double* initial,
@@ -253,7 +256,7 @@ Result<World::AnyProperty> World::add_property(std::string_view name, PropertyTy
   const std::uint32_t k = s.own.add(std::move(added));
   return AnyProperty{std::uint32_t(pcphys::properties().size()) + k, s.own.list[k].generation, s.id_world()};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::remove_property(std::string_view name) try {
@@ -269,7 +272,7 @@ Status World::remove_property(std::string_view name) try {
   s.own.list[f.id.index - pcphys::properties().size()].used = false;
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Result<World::AnyProperty> World::find_property(std::string_view name, PropertyType type) const try {
@@ -281,7 +284,7 @@ Result<World::AnyProperty> World::find_property(std::string_view name, PropertyT
                                             "."};
   return AnyProperty{f.id.index, f.id.generation, f.id.world};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::read(AnyProperty property, RowOf object, double* numbers) const try {
@@ -296,7 +299,7 @@ Status World::read(AnyProperty property, RowOf object, double* numbers) const tr
     numbers[c] = read_number(p + c * number_bytes(f.info.type, real), f.info.type, real);
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::write(AnyProperty property, RowOf object, const double* numbers) try {
@@ -324,7 +327,7 @@ Status World::write(AnyProperty property, RowOf object, const double* numbers) t
   if (changed) s.stir_reader(f.table, *row);
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 std::vector<PropertyInfo> World::properties() const try {
@@ -333,96 +336,6 @@ std::vector<PropertyInfo> World::properties() const try {
   return all;
 } catch (...) {
   detail::no_memory_for("World::properties");
-}
-
-namespace {
-constexpr std::uint32_t most_rows = 1u << 28;
-
-Status check_rows(std::string_view table, std::uint32_t rows) {
-  if (rows <= most_rows) return {};
-  return Error{ErrorCode::bad_argument, "The table \"" + std::string(table) + "\" cannot have " + std::to_string(rows) +
-                                            " rows; give no more than " + std::to_string(most_rows) + "."};
-}
-
-/// With the rows as before where there is no memory for more.
-Status resize_own(WorldState& s, const OwnTable& table, std::uint32_t rows) {
-  if (Status ok = check_rows(table.name, rows); !ok) return ok;
-  const std::uint32_t before = s.tables.rows(table.table);
-  try {
-    s.tables.resize(table.table, rows + 1);
-  } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::buffer_full, "There is no memory for " + std::to_string(rows) + " rows of the table \"" + table.name +
-                                             "\"; it has " + std::to_string(before - 1) + " as before."};
-  }
-  if (before == 2 && rows != 1) s.removals++;  // kernels may read or total its one row
-  return {};
-}
-}  // namespace
-
-Result<TableId> World::add_table(std::string_view name, std::uint32_t rows) try {
-  if (Status ok = changeable(); !ok) return ok.error();
-  WorldState& s = state();
-  if (Status ok = check_name(name, "table"); !ok) return ok.error();
-  if (Status ok = check_rows(name, rows); !ok) return ok.error();
-  bool there = false;
-  for (std::size_t t = 0; t < table_count; t++) there |= pcphys::name(Table(t)) == name;
-  for (const OwnTable& t : s.own.tables) there |= t.used && t.name == name;
-  if (there) return taken(name, "table", "");
-  std::uint32_t k = 0;
-  while (k < s.own.tables.size() && s.own.tables[k].used) k++;
-  OwnTable added{std::string(name), {}, 1, true};
-  make_room(s.own.tables);
-  added.table = s.tables.add_table();
-  if (k == s.own.tables.size()) s.own.tables.emplace_back();
-  OwnTable& t = s.own.tables[k];
-  added.generation = t.generation + 1;
-  t = std::move(added);
-  s.tables.resize(t.table, rows + 1);  // which has no columns yet
-  return TableId{own_tables_from + k, t.generation, s.id_world()};
-} catch (...) {
-  return no_memory();
-}
-
-namespace {
-Result<OwnTable*> own_table(WorldState& s, TableId id, const char* what) {
-  if (id == body_table || id == joint_table)
-    return Error{ErrorCode::bad_argument, std::string("Only a table of the host's own can be ") + what +
-                                              "; bodies and joints come and go by create_* and destroy."};
-  if (const Result<Table> found = s.table_of(id); !found) return found.error();
-  return &s.own.tables[id.index - own_tables_from];
-}
-}  // namespace
-
-Status World::resize(TableId table, std::uint32_t rows) try {
-  if (Status ok = changeable(); !ok) return ok;
-  const Result<OwnTable*> found = own_table(state(), table, "resized");
-  if (!found) return found.error();
-  return resize_own(state(), **found, rows);
-} catch (...) {
-  return no_memory();
-}
-
-Result<std::uint32_t> World::rows(TableId table) const try {
-  const Result<Table> found = state().table_of(table);
-  if (!found) return found.error();
-  return state().tables.rows(*found) - 1;
-} catch (...) {
-  return no_memory();
-}
-
-Status World::remove(TableId table) try {
-  if (Status ok = changeable(); !ok) return ok;
-  WorldState& s = state();
-  const Result<OwnTable*> found = own_table(s, table, "removed");
-  if (!found) return found.error();
-  for (OwnProperty& p : s.own.list)
-    if (p.used && p.table == (*found)->table) p.used = false;
-  s.tables.remove_table((*found)->table);
-  s.removals++;
-  (*found)->used = false;
-  return {};
-} catch (...) {
-  return no_memory();
 }
 
 }  // namespace pcphys

@@ -10,7 +10,7 @@ Result<bool> World::is_asleep(BodyId body) const try {
   const std::uint32_t row = s.body_ids.row(body.index);
   return s.asleep(row) && s.tables.get(Buffer::rest, row, rest_stirred) == 0;
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::wake(BodyId body) try {
@@ -18,14 +18,14 @@ Status World::wake(BodyId body) try {
   state().stir(state().body_ids.row(body.index));
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Result<bool> World::can_sleep(BodyId body) const try {
   if (!valid(body)) return stale("body");
   return state().tables.get(Buffer::rest, state().body_ids.row(body.index), rest_can_sleep) > 0;
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 Status World::set_can_sleep(BodyId body, bool can_sleep) try {
@@ -35,7 +35,7 @@ Status World::set_can_sleep(BodyId body, bool can_sleep) try {
   state().stir_moving(row);
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 }  // namespace pcphys

@@ -311,7 +311,7 @@ Status World::restore(std::span<const std::byte> snapshot) try {
   s.contacts_version++;
   return {};
 } catch (...) {
-  return no_memory();
+  return caught();
 }
 
 }  // namespace pcphys

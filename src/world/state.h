@@ -71,6 +71,8 @@ struct NoCollide {
 /// What a joint holds, into joint_frame or joint_solved.
 void write_frames(Tables& tables, Buffer buffer, std::uint32_t row, const JointDef& def);
 
+void write_material(Tables& tables, std::uint32_t row, const Material& material);
+
 /// Of three moments neither the smallest nor the largest; of equal ones any.
 int middle_axis(Vec3 moments);
 

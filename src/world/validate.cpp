@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <memory>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -67,6 +70,17 @@ Error stale(const char* what) {
 }
 
 Error no_memory() { return {ErrorCode::buffer_full, "Out of memory."}; }  // so short that it stands in the string itself
+
+Error caught() {
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  } catch (const std::exception& e) {
+    detail::misuse((std::string("A fault of the library, which should be reported: ") + e.what()).c_str());
+  }
+  return no_memory();
+}
 
 namespace detail {
 namespace {
