@@ -142,6 +142,8 @@ PC_FN void pc_net_add(PC_IO Slot a, Slot b, uint sums, Vec3 ra, Vec3 rb, Vec3 im
   pc_st3_net(PC_PASS b, sums, pc_add(pc_ld3_net(PC_PASS b, sums), impulse));
   pc_st3_net(PC_PASS b, sums + 3u, pc_add(pc_ld3_net(PC_PASS b, sums + 3u), pc_cross(rb, impulse)));
 }
+// So much further along a way, and not at all where the share is zero: the way of a net that is done may be no number.
+PC_FN Vec3 pc_net_further(Vec3 from, Vec3 way, Real share) { return pc_select3(pc_nonzero(share), pc_madd(from, way, share), from); }
 PC_FN void pc_net_clear(PC_IO Slot m, Net n, uint sums) {
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);

@@ -31,8 +31,8 @@ PC_FN Real pc_net_square(PC_IO Slot m, Net n, Real step) {
   Real square = PC_REAL(0.0);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 lack = pc_madd(pc_ld3_net(PC_PASS s, NET_LACK), pc_ld3_net(PC_PASS s, NET_IMAGE), -step);
-    pc_st3_net(PC_PASS s, NET_FOUND, pc_madd(pc_ld3_net(PC_PASS s, NET_FOUND), pc_ld3_net(PC_PASS s, NET_WAY), step));
+    Vec3 lack = pc_net_further(pc_ld3_net(PC_PASS s, NET_LACK), pc_ld3_net(PC_PASS s, NET_IMAGE), -step);
+    pc_st3_net(PC_PASS s, NET_FOUND, pc_net_further(pc_ld3_net(PC_PASS s, NET_FOUND), pc_ld3_net(PC_PASS s, NET_WAY), step));
     pc_st3_net(PC_PASS s, NET_LACK, lack);
     precise Real sum = square + pc_dot(lack, pc_sym_mul(pc_lds_net(PC_PASS s, NET_BLOCK), lack));
     square = sum;

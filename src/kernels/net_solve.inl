@@ -80,7 +80,7 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
   precise Real free = (PC_LD(net_rows, a, NET_MASS) + PC_LD(net_rows, b, NET_MASS)) * h;
   precise Real felt = across * free;
   Real root = pc_select(felt > PC_REAL(1e-3), pc_sqrt(across), zero);
-  Vec3 impulse = pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), taken);
+  Vec3 impulse = pc_net_further(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), taken);
   Vec3 lack = pc_sub(pc_scale(n, wanted), impulse);
   Real lack_along = pc_dot(axis, lack);
   Vec3 lack_across = pc_madd(lack, axis, -lack_along);
@@ -131,11 +131,11 @@ PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share) {
   pc_net_clear(PC_PASS m, n, NET_PUSH);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 impulse = pc_madd(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), share);
+    Vec3 impulse = pc_net_further(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), share);
     Vec3 ra = pc_ld3_net(PC_PASS s, NET_ARM_A);
     Vec3 rb = pc_ld3_net(PC_PASS s, NET_ARM_B);
-    Vec3 arm_a = pc_madd(ra, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM), ra), share);
-    Vec3 arm_b = pc_madd(rb, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM + 3u), rb), share);
+    Vec3 arm_a = pc_net_further(ra, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM), ra), share);
+    Vec3 arm_b = pc_net_further(rb, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM + 3u), rb), share);
     Slot a = pc_net_end(PC_PASS m, n, k, 0u);
     pc_net_add(PC_PASS a, pc_net_end(PC_PASS m, n, k, 1u), NET_PUSH, arm_a, arm_b, impulse);
   }
@@ -149,10 +149,10 @@ PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
     Vec3 aim_a = pc_ld3_net(PC_PASS s, NET_AIM);
     Vec3 aim_b = pc_ld3_net(PC_PASS s, NET_AIM + 3u);
     Vec3 impulse = pc_ld3_net(PC_PASS s, NET_IMPULSE);
-    Vec3 taken = pc_madd(impulse, pc_ld3_net(PC_PASS s, NET_FOUND), share);
+    Vec3 taken = pc_net_further(impulse, pc_ld3_net(PC_PASS s, NET_FOUND), share);
     pc_st3_net(PC_PASS s, NET_IMPULSE, pc_select3(takes, taken, impulse));
-    pc_st3_net(PC_PASS s, NET_ARM_A, pc_select3(takes, pc_madd(ra, pc_sub(aim_a, ra), share), ra));
-    pc_st3_net(PC_PASS s, NET_ARM_B, pc_select3(takes, pc_madd(rb, pc_sub(aim_b, rb), share), rb));
+    pc_st3_net(PC_PASS s, NET_ARM_A, pc_select3(takes, pc_net_further(ra, pc_sub(aim_a, ra), share), ra));
+    pc_st3_net(PC_PASS s, NET_ARM_B, pc_select3(takes, pc_net_further(rb, pc_sub(aim_b, rb), share), rb));
     pc_st3_net(PC_PASS s, NET_AIM, pc_select3(takes, pc_ld3_net(PC_PASS s, NET_MID), aim_a));
     pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_select3(takes, pc_ld3_net(PC_PASS s, NET_MID + 3u), aim_b));
   }
