@@ -13,7 +13,7 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_tu
     push = pc_add(push, p); precise Vec3 all = turn + pc_ld3_tree(PC_PASS n, TREE_CHANGE) + pc_cross(r, p); turn = all;
   }
   PC_MEET;
-  Vec3 centre = pc_ld3_tree(PC_PASS root, TREE_CENTRE); Vec3 drift = pc_scale(push, PC_LD(tree_rows, root, TREE_ALL));
+  Vec3 centre = pc_ld3_tree(PC_PASS root, TREE_CENTRE); Vec3 drift = pc_select3(free, pc_scale(push, PC_LD(tree_rows, root, TREE_ALL)), pc_zero3());
   Vec3 excess = pc_sym_mul(pc_lds_tree(PC_PASS root, TREE_RIGID), pc_sub(turn, pc_cross(centre, push))); Vec3 w = pc_select3(free, excess, pc_zero3());
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre);
