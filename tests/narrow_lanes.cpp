@@ -176,7 +176,7 @@ TEST_CASE("narrow: parallel capsules, and capsules that lie on boxes, keep their
 TEST_CASE("narrow: few pairs, and pairs of kinds without lanes, are left") {
   PairLanes<float> lanes;
   Marks marks;
-  lanes.begin(200, 4);
+  lanes.begin(200);
   marks.clear(200);
   AlignedBytes rows;
   rows.resize(2 * round_reals * sizeof(float));

@@ -114,7 +114,7 @@ template <class Scalar> struct Detector::Meeting {
   }
   /// How far the two may have come against each other since they were looked at, at most [m].
   double moved() const {
-    const Moved then = c.looked > 0 ? d.looked_[row] : Moved{};
+    const Moved& then = d.later_[c.later].moved;
     return distance(now.apart, then.apart) + distance(now.turned_a, then.turned_a) * lever(pa) +
            distance(now.turned_b, then.turned_b) * lever(pb);
   }
@@ -182,7 +182,7 @@ template <class Scalar> struct Detector::Meeting {
     look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * goes);
     Manifold<Scalar> m;
     look_at(a, there, m);
-    d.looked_[row] = now;
+    d.later_[c.later].moved = now;
     c.looked = d.went(row_a) + d.went(row_b);
     c.touches = false;
     c.gap = double(look);
@@ -257,7 +257,7 @@ template <class Scalar> struct Detector::Meeting {
     out[place::impact_time] = Scalar(impact);
     out[place::found_anew] = 1;
     const auto on_the_way = [&](int k) { return t * (double(ta.v[k]) + share * (double(tb.v[k]) - double(ta.v[k]))); };
-    d.origins_[row] = bodies.poses().position(row_a) + Vec3{on_the_way(0), on_the_way(1), on_the_way(2)};
+    d.later_[c.later].origin = bodies.poses().position(row_a) + Vec3{on_the_way(0), on_the_way(1), on_the_way(2)};
   }
 };
 

@@ -182,7 +182,7 @@ std::size_t Detector::memory_bytes() const {
   const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
   std::size_t sum =
       of(proxies_, tight_, margins_, reach_, twists_, odd_, moving_, bodies_, went_, near_, hints_, next_hints_, standing_,
-         standings_, looked_, origins_, levers_, ways_, sent_, renewed_, struck_, unseen_, times_struck_, on_standing_, inner_,
+         standings_, later_, starts_, levers_, ways_, sent_, renewed_, struck_, unseen_, times_struck_, on_standing_, inner_,
          beside_, touching_, looks_, alone_, soonest_, gone_, next_.keys, next_.ends, next_.features);
   sum += of(scratch_f_.shapes, scratch_f_.kinds, scratch_f_.manifolds, scratch_d_.shapes, scratch_d_.kinds, scratch_d_.manifolds);
   for (const AlignedBytes* bytes :

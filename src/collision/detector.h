@@ -75,9 +75,11 @@ class Detector {
   /// and of impacts that may act, since their bodies were struck after they were looked for last.
   std::span<const std::uint32_t> renewed() const { return renewed_; }
   std::span<const std::uint32_t> struck() const { return unseen_; }
-  /// By contact, after the step: where the first body's centre was when its rows were found, as the contact's points
-  /// see it [m].
-  std::span<const Vec3> origins() const { return origins_; }
+  /// Of a contact, after the step: where the first body's centre was when its rows were found, as its points see it [m].
+  Vec3 origin(std::uint32_t contact) const {
+    const Standing& c = standings_[contact];
+    return c.later > 0 ? later_[c.later].origin : starts_[c.rows[0]];
+  }
   /// After the step: contacts that came apart in it have no points.
   void let_go(WorldState& state);
   /// Takes that back, once, when the step could not be made.
@@ -170,19 +172,21 @@ class Detector {
   /// The pairs whose tight boxes overlap into `near_`, and of these those that are looked at.
   void list_near();
   void leave_out_sleepers();
+  /// Manifolds wait for their contacts by so many pairs at a time: in `batch_`, part of `near_`.
+  static constexpr std::size_t most_in_batch = 4096;
   /// Finds the manifolds of pairs that go in lanes, and marks all pairs that may have one.
   template <class Scalar> void sort_out(const Options& options, Scratch<Scalar>& scratch);
-  /// Calls does(i) for the pairs that may have a manifold.
+  /// Calls does(place) for the places in the batch of pairs that may have a manifold.
   template <class Does> void each_candidate(const Does& does) {
     if (round_)
       marks_.each(does);
     else
-      for (const std::uint32_t i : near_) does(i);
+      for (std::uint32_t place = 0; place < batch_.size(); place++) does(place);
   }
   /// Finds the manifolds of those that do not go in lanes, in their order.
   template <class Scalar> void find_manifolds(const WorldState& state, const Options& options, Scratch<Scalar>& scratch);
-  /// The manifold of a pair, `found` of which had none in lanes. False where no contact comes of it.
-  template <class Scalar> bool touches(Scratch<Scalar>& scratch, std::uint32_t pair, std::size_t& found, Touch<Scalar>& touch);
+  /// The manifold of a place in the batch, `found` of which had none in lanes. False where no contact comes of it.
+  template <class Scalar> bool touches(Scratch<Scalar>& scratch, std::uint32_t place, std::size_t& found, Touch<Scalar>& touch);
   template <class Scalar>
   Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
                  Touch<Scalar>& touch) const;
@@ -229,6 +233,12 @@ class Detector {
   template <class Scalar> void mark_struck(const Substep<Scalar>& look);
   template <class Scalar> void find_unseen(const Substep<Scalar>& look, bool first);
   float went(std::uint32_t body) const { return ways_[body].went; }
+  /// Before a look, which may go beside others.
+  void make_record(Standing& contact) {
+    if (contact.later > 0) return;
+    contact.later = std::uint32_t(later_.size());
+    later_.push_back({{}, starts_[contact.rows[0]]});
+  }
 
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   std::uint64_t joint_changes_ = 0;
@@ -252,8 +262,8 @@ class Detector {
   double dt_ = 0, fall_ = 0;           // the step [s], and how far gravity moves what rests in it, with a margin [m]
   double listed_margin_ = -1;          // contact_margin that the columns are for; below 0: there are none
   std::vector<Standing> standings_;    // of contacts, by row
-  std::vector<Moved> looked_;          // and how their bodies had moved when they were looked at, where that was within the step
-  std::vector<Vec3> origins_;          // see there
+  std::vector<Later> later_;           // of contacts that were looked at within the step; the first of none
+  std::vector<Vec3> starts_;           // of bodies: where their centres were when the step began [m]
   std::vector<float> levers_;          // of bodies: how far a turn of one radian moves any point of their shapes, at most [m]
   std::vector<Way> ways_;              // of bodies
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
@@ -279,7 +289,8 @@ class Detector {
   bool draws_ = false;                // some are
   PairCache pairs_;
   std::vector<std::uint32_t> near_;  // numbers of pairs
-  Marks marks_;                      // of those that may have a manifold; where some shape is round
+  std::span<const std::uint32_t> batch_;
+  Marks marks_;                      // places in the batch of those that may have a manifold; where some shape is round
   bool round_ = false;               // some shape is: its pairs go in lanes
   std::vector<std::uint32_t> hints_, next_hints_;
   bool hinted_ = false;  // some hint is not 0

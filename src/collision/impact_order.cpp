@@ -70,6 +70,7 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     c.waits = false;
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
+    make_record(c);
     Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
     if (!m.find_from(from)) continue;
     renewed_.push_back(at);

@@ -50,7 +50,7 @@ bool reaches_beyond(const ShapeView<Scalar>& shape, const Scalar* point, const S
 /// A point of a contact on what stands, seen from the body's centre as it is now. What meets later in the sub-step has
 /// its points where they then are.
 template <class Scalar> void Detector::point_of(const Meeting<Scalar>& x, std::uint32_t point, Scalar* at) const {
-  const Vec3 moved = origins_[x.row] - x.bodies.poses().position(x.row_a);
+  const Vec3 moved = origin(x.row) - x.bodies.poses().position(x.row_a);
   const Scalar* const p = x.out + 4 + 4 * point;
   const Scalar open = x.out[place::impact_time] > 0 ? Scalar(0) : p[3],
                since[3] = {Scalar(moved.x), Scalar(moved.y), Scalar(moved.z)};

@@ -40,28 +40,28 @@ void Detector::leave_out_sleepers() {
 
 template <class Scalar> void Detector::sort_out(const Options& options, Scratch<Scalar>& scratch) {
   PairLanes<Scalar>& lanes = scratch.lanes;
-  lanes.begin(pairs_.pairs().size(), near_.size());
-  marks_.clear(pairs_.pairs().size());
+  lanes.begin(batch_.size());
+  marks_.clear(batch_.size());
   const Kind<Scalar>* kinds = scratch.kinds.data();
   const Pair* pairs = pairs_.pairs().data();
   const bool native = options.narrow == NarrowPhase::native;
-  for (const std::uint32_t i : near_) {
-    auto [a, b] = pairs[i];
+  for (std::uint32_t place = 0; place < batch_.size(); place++) {
+    auto [a, b] = pairs[batch_[place]];
     if (!kinds[a].responds) std::swap(a, b);  // as in_order
     const Kind<Scalar>&x = kinds[a], &y = kinds[b];
     const PairKind kind = pair_kind(x.kind, y.kind);
     if (native && kind != PairKind::other)
-      lanes.add(kind, i, a, b, std::min(x.margin, y.margin) + Scalar(x.reach + y.reach));
+      lanes.add(kind, place, a, b, std::min(x.margin, y.margin) + Scalar(x.reach + y.reach));
     else
-      lanes.leave(i), marks_.set(i);
+      lanes.leave(place), marks_.set(place);
   }
   lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.rows.data()), marks_);
 }
 
 template <class Scalar> void Detector::find_manifolds(const WorldState& s, const Options& options, Scratch<Scalar>& scratch) {
   alone_.clear();
-  each_candidate([&](std::uint32_t i) {
-    if (!round_ || !scratch.lanes.manifold(i)) alone_.push_back(i);
+  each_candidate([&](std::uint32_t place) {
+    if (!round_ || !scratch.lanes.manifold(place)) alone_.push_back(batch_[place]);
   });
   scratch.manifolds.resize(alone_.size());
   options.share(alone_.size(), [&](std::uint32_t begin, std::uint32_t end) {
@@ -75,12 +75,12 @@ template <class Scalar> void Detector::find_manifolds(const WorldState& s, const
 }
 
 template <class Scalar>
-bool Detector::touches(Scratch<Scalar>& scratch, std::uint32_t pair, std::size_t& found, Touch<Scalar>& touch) {
-  const Pair shapes = in_order(pair);
+bool Detector::touches(Scratch<Scalar>& scratch, std::uint32_t place, std::size_t& found, Touch<Scalar>& touch) {
+  const Pair shapes = in_order(batch_[place]);
   const Proxy &a = proxies_[shapes.a], &b = proxies_[shapes.b];
   touch.rows[0] = a.body, touch.rows[1] = b.body;
   touch.impact = a.jointed || b.jointed ? -1 : 0;
-  touch.manifold = round_ ? scratch.lanes.manifold(pair) : nullptr;
+  touch.manifold = round_ ? scratch.lanes.manifold(place) : nullptr;
   if (!touch.manifold) touch.manifold = &scratch.manifolds[found++];
   return touch.manifold->count > 0;
 }
@@ -159,7 +159,6 @@ void Detector::drop_distant(ContactColumns& contacts, AlignedBytes& table, std::
       contacts.ends[kept] = contacts.ends[row];
       contacts.features[kept] = contacts.features[row];
       standings_[kept] = standings_[row];
-      origins_[kept] = origins_[row];
       std::copy_n(table.data() + row * row_bytes, row_bytes, table.data() + kept * row_bytes);
     }
     kept++;
@@ -168,7 +167,6 @@ void Detector::drop_distant(ContactColumns& contacts, AlignedBytes& table, std::
   contacts.ends.resize(kept);
   contacts.features.resize(kept);
   standings_.resize(kept);
-  origins_.resize(kept);
 }
 
 template <class Scalar>
@@ -184,7 +182,7 @@ void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t
   const std::byte* contacts = s.tables.bytes(Buffer::contact).data();
   std::copy(contacts + first * bytes, contacts + last * bytes, scratch.contacts.data() + row * bytes);
   standings_.resize(row + last - first);
-  for (std::size_t i = first; i < last; i++) origins_.push_back(BodyReader<Scalar>(s.tables).position(s.contacts.ends[i][0]));
+  for (std::size_t i = row; i < standings_.size(); i++) std::ranges::copy(next_.ends[i], standings_[i].rows);
   found.kept += last - first;
   for (; first < last; first++)
     found.kept_points += std::uint32_t(s.tables.data<Scalar>(Buffer::contact)[first * reals_of(Buffer::contact) + 3]);
@@ -201,7 +199,6 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   next_.ends.resize(1);
   next_.features.resize(1);
   standings_.resize(1);
-  origins_.resize(1);
   for (std::vector<std::uint32_t>& rows : anew_) rows.clear();
   distant_.clear();
   std::uint32_t old = 1;
@@ -209,8 +206,6 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   found = {};
   found.pairs = std::uint32_t(near_.size());
   leave_out_sleepers();
-  if (round_) sort_out(options, scratch);
-  find_manifolds(s, options, scratch);
   std::size_t of_alone = 0;
   const BodyReader<Scalar> bodies(s.tables);
   Touch<Scalar> touch;
@@ -226,8 +221,9 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
       while (!ends() && !stays(s.contacts.ends[kept])) kept++;
     }
   };
-  const auto add = [&](std::uint32_t i) {
-    if (!touches(scratch, i, of_alone, touch)) return;
+  const auto add = [&](std::uint32_t place) {
+    if (!touches(scratch, place, of_alone, touch)) return;
+    const std::uint32_t i = batch_[place];
     const auto [a, b] = pairs[i];
     const auto [row_a, row_b] = touch.rows;
     Manifold<Scalar>& manifold = *touch.manifold;
@@ -252,7 +248,6 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     standings_[row] = standing;
     if (!standing.touches && standing.gap > margin(a, b) + double(standing.thick))
       distant_.push_back(distant(std::uint32_t(row), standing, to_vec3(manifold.normal)));
-    origins_.push_back(bodies.position(row_a));
     write_contact(manifold, of_a, of_b, out, features.data());
     out[place::impact_time] = Scalar(touch.impact);
     bodies.shift(row_a, row_b, out + place::apart);
@@ -265,12 +260,20 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
     found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
     found.impacts |= touch.impact >= 0;
   };
-  each_candidate(add);
+  for (std::size_t first = 0; first < near_.size(); first += most_in_batch) {
+    batch_ = std::span(near_).subspan(first, std::min(most_in_batch, near_.size() - first));
+    of_alone = 0;
+    if (round_) sort_out(options, scratch);
+    find_manifolds(s, options, scratch);
+    each_candidate(add);
+  }
   keep_until(nullptr);
   found.points += found.kept_points;
   drop_distant(next_, scratch.contacts, reals * sizeof(Scalar));
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
-  looked_.resize(next_.keys.size());
+  later_.resize(1);
+  starts_.resize(s.bodies.size());
+  for (std::uint32_t row = 0; row < starts_.size(); row++) starts_[row] = bodies.position(row);
   found.placed = s.settling > 0 && some_settles(s, next_.ends);
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
   scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));

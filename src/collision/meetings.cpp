@@ -60,17 +60,19 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
   for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
     const std::uint32_t row = look.contacts[at];
     if (row == 0) continue;
-    const Standing& c = standings_[row];
+    Standing& c = standings_[row];
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     const float moved = a.went + b.went + c.looked, from_others = c.jointed ? sent(c.rows[0]) + sent(c.rows[1]) : 0.0f;
     const float goes = std::max(a.goes + b.goes, from_others);
     const bool rests = c.touches && !c.struck && goes <= float(constants::quick_share) * c.thick &&
                        moved <= float(constants::contact_share) * c.thick;
     const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
-    if (rests || far)
+    if (rests || far) {
       stands_on(at, look.first);
-    else
-      looks_.push_back({at, from_others, c.acts});
+      continue;
+    }
+    make_record(c);
+    looks_.push_back({at, from_others, c.acts});
   }
   const auto look_at = [&](std::uint32_t begin, std::uint32_t end) {
     for (const Look& l : std::span(looks_).subspan(begin, end - begin))

@@ -1,4 +1,4 @@
-// Pairs of the narrow phase that go in lanes, gathered by kind, and their manifolds, found by the number of the pair.
+// Pairs of the narrow phase that go in lanes, gathered by kind, and their manifolds, found by the pair's place in its batch.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -39,15 +39,21 @@ template <class Scalar> class PairLanes {
   /// Fewer than these of a kind are not worth whole lanes.
   static constexpr std::uint32_t few = 3;
 
-  /// Room for `near` of `pairs` pairs; none are listed.
-  void begin(std::size_t pairs, std::size_t near) {
+  /// Room for so many pairs; none are listed.
+  void begin(std::size_t pairs) {
     if (slots_.size() < pairs) slots_.resize(pairs);
     for (List& list : lists_) {
       list.count = 0;
-      if (list.pairs.size() >= near + padding) continue;
-      for (auto* column : {&list.pairs, &list.a, &list.b}) column->resize(near + padding);
-      list.margins.resize((near + padding) * sizeof(Scalar));
+      if (list.pairs.size() >= pairs + padding) continue;
+      for (auto* column : {&list.pairs, &list.a, &list.b}) column->resize(pairs + padding);
+      list.margins.resize((pairs + padding) * sizeof(Scalar));
     }
+  }
+  std::size_t memory_bytes() const {
+    const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
+    std::size_t sum = of(manifolds_, places_, slots_);
+    for (const List& list : lists_) sum += of(list.pairs, list.a, list.b) + list.margins.capacity();
+    return sum;
   }
   /// a, b: rows, in the order of the contact's bodies. A kind in lanes.
   void add(PairKind kind, std::uint32_t pair, std::uint32_t a, std::uint32_t b, Scalar margin) {

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "pcphys/math.h"
+
 namespace pcphys {
 
 struct Standing {
@@ -12,6 +14,7 @@ struct Standing {
   float thick = 0;                   // see Detector::thickness [m]
   float looked = 0;                  // how far its shapes had moved by then in this step, together, at most [m]
   std::uint32_t hint = 0;            // of the narrow phase
+  std::uint32_t later = 0;           // its record of looks within the step, if any
   bool touches = false;              // its shapes did, when they were looked at last
   bool acts = false;                 // its rows do
   bool struck = false;               // as an impact: nothing of it lasts
@@ -24,6 +27,13 @@ struct Standing {
 /// The motion of a contact's bodies since the step began (buffer `delta`): b's displacement against a's, and how each turned.
 struct Moved {
   std::array<double, 3> apart{}, turned_a{}, turned_b{};
+};
+
+/// Of a contact that was looked at within the step: how its bodies had moved by then, and where the first body's centre was when the rows
+/// were found, as the contact's points see it [m].
+struct Later {
+  Moved moved;
+  Vec3 origin;
 };
 
 /// Bounds of what a body's motion does to its shapes: how far it has brought any point of them since the step began, and how far it may

@@ -62,7 +62,7 @@ template <class Scalar> Vec3 mean_point(const Scalar* touch, const Scalar* found
 }
 
 template <class Scalar> Vec3 meeting_point(const WorldState& s, std::uint32_t contact, const EventRecorder::Before& before) {
-  return before.origins[contact] +
+  return before.detector.origin(contact) +
          mean_point(row_of<Scalar>(s, Buffer::touch, contact), row_of<Scalar>(s, Buffer::contact, contact));
 }
 

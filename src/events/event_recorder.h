@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "collision/detector.h"
 #include "pcphys/events.h"
 #include "pcphys/step.h"
 #include "world/state.h"
@@ -17,8 +18,8 @@ class EventRecorder {
   static bool wanted(const StepSettings& s) { return of_contacts(s) || s.body_events; }
 
   struct Before {
-    const AlignedBytes* poses;      // as the step began with them; null where it left them alone
-    std::span<const Vec3> origins;  // Detector::origins
+    const AlignedBytes* poses;  // as the step began with them; null where it left them alone
+    const Detector& detector;   // that found the contacts
   };
   /// Before a step, which may fail. Who touches is remembered.
   void clear() { begun_.clear(), ended_.clear(), hits_.clear(), moved_.clear(), slept_.clear(), woken_.clear(); }

@@ -198,7 +198,7 @@ struct Stepper::Inside {
   void record_events(const WorldState& s) {
     if (!EventRecorder::wanted(settings)) return;
     const AlignedBytes* poses = plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
-    recorder.record(settings, s, {poses, detector.origins()}, schedule.moving_bodies());
+    recorder.record(settings, s, {poses, detector}, schedule.moving_bodies());
   }
 
   /// The step was made: what is at rest may fall asleep.
