@@ -137,9 +137,12 @@ class Stepper {
   const StepPlan& plan() const;
   Result<StepPlan> plan_for(const World& world, double dt);
 
-  /// What the buffers of this world, the host's own properties among them, and of its last step take, those that take any, with the
-  /// device's copies.
+  /// What this world and the stepper take, with the device's copies: buffers, the host's own properties among them, and by parts of the
+  /// step what stands in none ("objects" are the world's). Nothing of it is named twice; World::memory_bytes is part of it.
   std::vector<BufferUse> memory(const World& world) const;
+  /// Gives back all memory, and the devices. The next step makes again what it needs, and takes as long as a new stepper's; what comes
+  /// of it is the same.
+  Status shrink();
 
   /// For tests and `pcphys wild`: told what contacts do in each sub-step (src/step/contact_trace.h), where all stages are on the CPU;
   /// null: nobody is.

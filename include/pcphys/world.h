@@ -163,7 +163,10 @@ class World {
   Result<PropertyView> view(std::string_view property) const;
   Result<std::uint32_t> row_of(BodyId body) const;
   Result<std::uint32_t> row_of(JointId joint) const;
+  /// What its tables and objects take.
   std::size_t memory_bytes() const;
+  /// Gives back memory that none of its objects needs, such as that of many which were destroyed; what comes of steps is the same.
+  Status shrink();
 
   /// A property of the host's own, of bodies, of joints (and springs), or of a table of its own: T is Real, float, double,
   /// std::int32_t, std::uint32_t, Vec3, Vec4, Quat, Mat3 or SymMat3. Every row, present and to come, starts with `initial`.

@@ -179,16 +179,12 @@ void Detector::rebuild(const WorldState& s) {
 }
 
 std::size_t Detector::memory_bytes() const {
-  const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
-  std::size_t sum =
-      of(proxies_, tight_, margins_, reach_, twists_, odd_, moving_, bodies_, went_, near_, hints_, next_hints_, standing_,
-         standings_, later_, starts_, levers_, ways_, sent_, renewed_, struck_, unseen_, times_struck_, on_standing_, inner_,
-         beside_, touching_, looks_, alone_, soonest_, gone_, next_.keys, next_.ends, next_.features);
-  sum += of(scratch_f_.shapes, scratch_f_.kinds, scratch_f_.manifolds, scratch_d_.shapes, scratch_d_.kinds, scratch_d_.manifolds);
-  for (const AlignedBytes* bytes :
-       {&columns_, &rows_, &scratch_f_.rows, &scratch_f_.contacts, &scratch_d_.rows, &scratch_d_.contacts})
-    sum += bytes->capacity();
-  return sum + pairs_.memory_bytes();
+  const std::size_t of_shapes = bytes_of(proxies_, standing_, tight_, margins_, reach_, columns_, rows_, odd_, *filter_);
+  const std::size_t of_bodies = bytes_of(parts_, touched_, twists_, rounded_, moving_, bodies_, starts_, levers_, ways_, sent_, touching_,
+                                         times_struck_, soonest_, sent_elsewhere_, went_, trees_, fastest_, drawn_);
+  const std::size_t of_contacts = bytes_of(standings_, later_, renewed_, struck_, unseen_, on_standing_, inner_, beside_, looks_, anew_,
+                                           distant_, gone_, next_);
+  return of_shapes + of_bodies + of_contacts + bytes_of(pairs_, near_, marks_, hints_, next_hints_, alone_, scratch_f_, scratch_d_);
 }
 
 void Detector::follow_rest(const WorldState& s) {

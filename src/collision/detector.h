@@ -95,7 +95,6 @@ class Detector {
   std::span<const std::uint32_t> touched() const { return touched_; }
   /// Whether two shapes of the world could ever touch.
   bool possible() const { return possible_; }
-  /// Of boxes, pairs and contacts, about.
   std::size_t memory_bytes() const;
   /// Whether some body has restitution, any friction, rolling or torsional friction.
   static bool may_bounce(const WorldState& state) { return some_material(state, {2}); }
@@ -133,6 +132,8 @@ class Detector {
     PairLanes<Scalar> lanes;
     std::vector<Manifold<Scalar>> manifolds;  // of pairs that do not go in lanes
     AlignedBytes contacts;                    // the table of the next step
+
+    std::size_t memory_bytes() const { return bytes_of(shapes, rows, kinds, lanes, manifolds, contacts); }
   };
 
   /// A pair of which a contact comes.

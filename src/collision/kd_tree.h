@@ -15,6 +15,7 @@
 
 #include "collision/aabb.h"
 #include "collision/box_block.h"
+#include "world/memory.h"
 
 namespace pcphys {
 
@@ -57,6 +58,9 @@ class KdTree {
   /// The number of pairs with at least one `mobile` object that overlap, moved or not. Groups of objects that
   /// all overlap each other are counted by multiplication, so that billions are counted in a moment.
   std::uint64_t count_pairs() const;
+  std::size_t memory_bytes() const {
+    return bytes_of(blocks_, bounds_, bounded_, large_, refused_, codes_, codes_scratch_, wide_codes_, wide_scratch_);
+  }
 
  private:
   struct WideCode {

@@ -7,6 +7,7 @@
 
 #include "collision/kd_tree.h"
 #include "pcphys/result.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -27,6 +28,9 @@ class Neighbours {
   std::vector<std::uint32_t> first,
       rows;  // of a row the neighbours rows[first[row]] to rows[first[row + 1]], in the order of ids
   std::uint64_t version = 0;
+  std::size_t memory_bytes() const {
+    return bytes_of(first, rows, then_, margin_, needed_, mobile_, pairs_, boxes_, active_, starts_, by_other_, flags_);
+  }
 
  private:
   struct Pair {

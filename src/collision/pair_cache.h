@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "collision/kd_tree.h"
+#include "world/memory.h"
 
 namespace pcphys {
 
@@ -67,10 +68,9 @@ class PairCache {
   std::span<const std::uint32_t> moved() const { return moved_; }
   const Aabb& fat_box(std::uint32_t proxy) const { return fat_[proxy]; }
   const KdTree& tree() const { return tree_; }
-  /// But for the tree's.
   std::size_t memory_bytes() const {
-    const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
-    return of(fat_, fat_before_, state_, moved_, active_, previous_, next_previous_, pairs_, next_pairs_, found_, found_scratch_);
+    return bytes_of(tree_, fat_, fat_before_, state_, moved_, active_, previous_, next_previous_, pairs_, next_pairs_, found_,
+                    found_scratch_);
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -28,6 +29,7 @@ class PairFilter {
     if (x.last_barred - x.first_barred < near) return !(x.barred >> place & 1);
     return !state_->no_collide.contains(WorldState::pair_key(x.body, y.body));
   }
+  std::size_t memory_bytes() const { return bytes_of(sides_, before_); }
 
  private:
   struct Bars {

@@ -29,6 +29,7 @@ class Marks {
       for (std::uint64_t left = words_[w]; left != 0; left &= left - 1)
         act(std::uint32_t(w * 64) + std::uint32_t(__builtin_ctzll(left)));
   }
+  std::size_t memory_bytes() const { return bytes_of(words_); }
 
  private:
   std::vector<std::uint64_t> words_;
@@ -49,12 +50,7 @@ template <class Scalar> class PairLanes {
       list.margins.resize((pairs + padding) * sizeof(Scalar));
     }
   }
-  std::size_t memory_bytes() const {
-    const auto of = [](const auto&... columns) { return (std::size_t{0} + ... + (columns.capacity() * sizeof(*columns.data()))); };
-    std::size_t sum = of(manifolds_, places_, slots_);
-    for (const List& list : lists_) sum += of(list.pairs, list.a, list.b) + list.margins.capacity();
-    return sum;
-  }
+  std::size_t memory_bytes() const { return bytes_of(lists_, manifolds_, places_, slots_); }
   /// a, b: rows, in the order of the contact's bodies. A kind in lanes.
   void add(PairKind kind, std::uint32_t pair, std::uint32_t a, std::uint32_t b, Scalar margin) {
     List& list = lists_[std::size_t(kind)];
@@ -99,6 +95,7 @@ template <class Scalar> class PairLanes {
     AlignedBytes margins;
     std::uint32_t count = 0;
 
+    std::size_t memory_bytes() const { return bytes_of(pairs, a, b, margins); }
     void pad() {
       for (std::uint32_t i = count; i < count + padding; i++) a[i] = a[0], b[i] = b[0];
     }

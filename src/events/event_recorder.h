@@ -7,6 +7,7 @@
 #include "collision/detector.h"
 #include "pcphys/events.h"
 #include "pcphys/step.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -31,6 +32,9 @@ class EventRecorder {
   void keep_poses(const WorldState& state);
   const AlignedBytes* kept_poses() const { return &poses_; }
   StepEvents events() const { return {begun_, ended_, hits_, moved_, slept_, woken_}; }
+  std::size_t memory_bytes() const {
+    return bytes_of(touching_, next_, poses_, begun_, ended_, hits_, moved_, slept_, woken_, asleep_, next_asleep_);
+  }
 
  private:
   struct Touching {

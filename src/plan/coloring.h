@@ -15,6 +15,7 @@
 
 #include "plan/octave_of.h"
 #include "step/backend.h"
+#include "world/memory.h"
 
 namespace pcphys {
 
@@ -57,6 +58,9 @@ class Colouring {
   std::span<const std::uint32_t> offsets() const { return offsets_; }  // colours() + 1 into list()
   std::span<const std::uint32_t> list() const { return list_; }
   std::span<const std::uint32_t> colour_of() const { return colour_of_; }
+  std::size_t memory_bytes() const {
+    return bytes_of(offsets_, list_, colour_of_, order_, order_scratch_, taken_, next_above_, cursor_, by_kind_);
+  }
 
  private:
   static constexpr std::uint32_t mask_colours = 64;
@@ -84,6 +88,7 @@ struct Slots {
   std::vector<Range> ranges;         // blocks of each colour, by octave
 
   std::uint32_t blocks() const { return ranges.empty() ? 0 : ranges.back().end; }
+  std::size_t memory_bytes() const { return bytes_of(ends, order, ranges); }
 };
 
 /// `ends[2i]`, `ends[2i + 1]`: body rows of constraint i; `rows[i]`: its row. Constraints of the leading group of

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "plan/wanted.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -20,6 +21,7 @@ class Columns {
   /// Adds what sub-steps of `h` need, up to `highest_octave`: a function of the present state, whatever was measured before.
   void want(const WorldState& state, const TreeNodes& trees, double h, std::uint8_t highest_octave, Islands& islands,
             std::vector<Wanted>& wanted);
+  std::size_t memory_bytes() const { return bytes_of(bodies_, columns_, column_of_); }
 
  private:
   struct Body {

@@ -11,6 +11,7 @@
 
 #include "plan/octave_of.h"
 #include "step/backend.h"
+#include "world/memory.h"
 
 namespace pcphys {
 
@@ -42,6 +43,9 @@ class Forest {
   bool has_loop(std::size_t tree) const { return nodes_[first_[tree]].parent == 1; }
   /// Rows of the joints that stand in no tree, ascending.
   std::span<const std::uint32_t> closing() const { return closing_; }
+  std::size_t memory_bytes() const {
+    return bytes_of(links_, begin_, links_of_, reached_, used_, masses_, trees_, nodes_, first_, closing_);
+  }
 
  private:
   /// All trees that hang on something fixed.
@@ -70,6 +74,7 @@ struct TreeBlocks {
   std::vector<std::uint32_t> ends;     // ends[(node * 2 + side) * width + lane]: body row, joint row
   std::vector<std::uint32_t> order;    // order[node * width + lane]: 1 + the node's place in the forest; 0 pads
   std::vector<Range> ranges;           // blocks of each octave
+  std::size_t memory_bytes() const { return bytes_of(blocks, parents, ends, order, ranges); }
 
   std::uint32_t count() const { return ranges.empty() ? 0 : ranges.back().end; }
 };
@@ -88,6 +93,7 @@ class TreeShapes {
   }
   /// How many there are of the shape of which there are most.
   std::uint32_t most_alike() const;
+  std::size_t memory_bytes() const { return bytes_of(trees_, begin_); }
 
  private:
   std::vector<std::uint32_t> trees_, begin_{0};

@@ -9,6 +9,7 @@
 #include "pcphys/step.h"
 #include "plan/forest.h"
 #include "plan/solved_joints.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -34,6 +35,7 @@ class FourthOrder {
   std::uint32_t reasons() const { return reasons_; }
   /// As Octaves::used, of octave 0, where `moving` bodies move.
   std::uint32_t classes(std::uint32_t moving) const;
+  std::size_t memory_bytes() const { return bytes_of(tree_of_, why_not_, pins_, first_pin_, touched_, chosen_); }
 
  private:
   /// A pin, how much a force on it turns its two bodies (the larger |r| / trace of the inertia) [1/(kg m)], and the mass that

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "world/memory.h"
 #include "world/state.h"
 #include "world/union_find.h"
 
@@ -30,6 +31,7 @@ class Islands {
   std::uint32_t root(std::uint32_t body) const { return rows_.root(body); }
   /// How many bodies the island of that root has.
   std::uint32_t size(std::uint32_t root) const { return size_[root]; }
+  std::size_t memory_bytes() const { return bytes_of(rows_, size_); }
 
  private:
   bool built_ = false;

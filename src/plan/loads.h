@@ -8,6 +8,7 @@
 #include "pcphys/step.h"
 #include "plan/solved_joints.h"
 #include "plan/wanted.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -21,6 +22,7 @@ class Loads {
   void forget_contacts() { uneven_.clear(); }
   /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could rest on lighter bodies.
   void want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) const;
+  std::size_t memory_bytes() const { return bytes_of(uneven_); }
 
  private:
   struct Uneven {

@@ -8,6 +8,7 @@
 #include "pcphys/step.h"
 #include "plan/solved_joints.h"
 #include "plan/wanted.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -19,6 +20,7 @@ class Loops {
   void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling, std::span<const char> parallel);
   /// Adds what sub-steps of `h` need, up to `highest` octaves, for the tension that impulses of sub-steps of `impulse_h` were of.
   void want(const WorldState& state, double impulse_h, double h, std::uint8_t highest, std::vector<Wanted>& wanted) const;
+  std::size_t memory_bytes() const { return bytes_of(loops_); }
 
  private:
   struct Loop {

@@ -7,6 +7,7 @@
 
 #include "plan/octave_of.h"
 #include "step/backend.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -15,6 +16,7 @@ struct Net {
   std::vector<std::uint32_t> bodies;   // rows, in the order of their ids: those that move and those that do not
   std::vector<std::uint32_t> springs;  // joint rows, in the order of their ids
   std::vector<std::uint32_t> links;    // of each spring the places in `bodies` of a and of b
+  std::size_t memory_bytes() const { return bytes_of(bodies, springs, links); }
   std::uint32_t moving = 0;            // row of a body that moves
 };
 
@@ -22,6 +24,7 @@ struct Net {
 struct NetBlocks {
   std::vector<std::uint32_t> list;
   std::vector<Range> ranges;  // of blocks, by octave
+  std::size_t memory_bytes() const { return bytes_of(list, ranges); }
   std::uint32_t slots = 0;    // of one lane
 };
 
@@ -36,6 +39,7 @@ class Nets {
   /// How many nets of one shape there are, of the shape of which there are most.
   std::uint32_t most_alike() const { return most_alike_; }
   void pack(std::uint32_t width, OctaveOf of, NetBlocks& out) const;
+  std::size_t memory_bytes() const { return bytes_of(nets_, shapes_, held_); }
 
  private:
   void add(const WorldState& state, std::span<const std::uint32_t> springs);

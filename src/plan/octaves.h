@@ -11,6 +11,7 @@
 #include "plan/loads.h"
 #include "plan/loops.h"
 #include "plan/pulls.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -55,6 +56,9 @@ class Octaves {
   std::uint32_t limited() const { return limited_; }
   /// How many are of fourth order.
   std::uint32_t fourth_order() const { return fourth_order_; }
+  std::size_t memory_bytes() const {
+    return bytes_of(loads_, loops_, columns_, pulls_, islands_, wanted_, again_, of_bodies_, before_, limits_);
+  }
 
  private:
   void assign(const WorldState& state, bool together);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plan/wanted.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -17,6 +18,7 @@ class Pulls {
   /// move by more than constants::largest_give of their size, or turn by so many radians, in a sub-step of `h` [s], up to
   /// `highest_octave`. Free where the host gave none.
   void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted);
+  std::size_t memory_bytes() const { return bytes_of(pulled_); }
 
  private:
   std::vector<Wanted> pulled_;  // by body row

@@ -7,6 +7,7 @@
 
 #include "pcphys/step.h"
 #include "plan/islands.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -72,6 +73,7 @@ class Sleepers {
     restless_ = restless;
     together_ = together;
   }
+  std::size_t memory_bytes() const { return bytes_of(islands_, awake_); }
 
  private:
   void build(const WorldState& state);

@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -24,6 +25,7 @@ class SolvedJoints {
   bool stands_back(std::uint32_t row) const { return stands_back_[row]; }
   /// Hands them to the kernels: the buffer joint_solved. What joints that stand back last did is forgotten.
   void write(WorldState& state) const;
+  std::size_t memory_bytes() const { return bytes_of(merged_, stands_back_); }
 
  private:
   std::unordered_map<std::uint32_t, JointDef> merged_;  // by row

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "plan/forest.h"
+#include "world/memory.h"
 
 namespace pcphys {
 
@@ -34,6 +35,7 @@ class TreeNodes {
   std::uint32_t root(std::uint32_t node) const { return root_[node]; }
   /// Levels between a node and its root.
   std::uint32_t level(std::uint32_t node) const { return level_[node]; }
+  std::size_t memory_bytes() const { return bytes_of(node_, unit_, parent_, root_, level_, large_); }
 
  private:
   std::vector<std::uint32_t> node_, unit_, parent_, root_, level_;

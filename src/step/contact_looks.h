@@ -8,6 +8,7 @@
 #include "collision/detector.h"
 #include "step/runner.h"
 #include "step/schedule.h"
+#include "world/memory.h"
 
 namespace pcphys {
 
@@ -36,6 +37,7 @@ class ContactLooks final : public Collider {
   }
   std::span<const Range> renewed_blocks() const override { return renewed_; }
   std::span<const Range> struck_blocks() const override { return struck_; }
+  std::size_t memory_bytes() const { return bytes_of(rows_, blocks_, some_, renewed_, struck_); }
 
  private:
   void list_blocks() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "step/backend.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -30,6 +31,7 @@ class IslandLists {
   std::span<const Range> rows() const { return std::span(ranges_).last(1); }
   /// Counts the changes of `ends`.
   std::uint64_t version() const { return version_; }
+  std::size_t memory_bytes() const { return bytes_of(ends_, labels_); }
 
  private:
   bool listed_ = false, known_ = false;

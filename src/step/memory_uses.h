@@ -25,7 +25,7 @@ class MemoryUses {
     for (const OwnProperty& p : state_.own.list)
       if (p.used) add_one(p.buffer);
   }
-  /// The host's tables, and the lists of a schedule.
+  /// The world's tables and objects, and a schedule with its lists.
   void add_host(Schedule& schedule);
   /// Nothing where there is none.
   void add(std::string_view name, std::string_view table, Place place, std::size_t bytes) {

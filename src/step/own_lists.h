@@ -9,6 +9,7 @@
 #include "plan/octave_of.h"
 #include "plan/own_kernels.h"
 #include "step/backend.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -38,6 +39,9 @@ class OwnLists {
   std::vector<std::uint32_t> body_joints;
   std::uint64_t version = 0;
   Neighbours near;
+  std::size_t memory_bytes() const {
+    return bytes_of(bodies, moving, joints, joined, body_joints, near, by_id_, joined_ranges_);
+  }
 
  private:
   struct Joined {

@@ -102,6 +102,11 @@ void Runner::forget() {
   for (Device& d : devices_) d.copies.clear();
 }
 
+void Runner::let_go() {
+  devices_ = {};
+  rollback_ = Rollback();
+}
+
 bool Runner::keeps(Buffer buffer) const {
   if (is_own(buffer)) return true;
   const bool lasts = holds(buffer, Role::state) || holds(buffer, Role::input);

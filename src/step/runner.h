@@ -71,6 +71,8 @@ class Runner final : Keeper {
   void unbind() { bound_ = {}; }
   /// What the devices hold is not the data of the world that comes.
   void forget();
+  /// Of the devices too. After `forget`, and before `prepare`.
+  void let_go();
   /// What backends and copies of this step's buffers take.
   void list_memory(MemoryUses& uses) const;
   std::string device(Place place) const;

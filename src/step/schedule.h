@@ -14,6 +14,7 @@
 #include "step/backend.h"
 #include "step/island_lists.h"
 #include "step/own_lists.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -65,6 +66,9 @@ class ColouredSlots {
   const std::vector<std::uint32_t>& order() const { return slots_.order; }
   /// Counts the changes of `ends` and `order`.
   std::uint64_t version() const { return version_; }
+  std::size_t memory_bytes() const {
+    return bytes_of(colouring_, slots_, bodies_, units_, priorities_, ends_, rows_, paths_, kinds_, works_, octaves_);
+  }
 
  private:
   Colouring colouring_;
@@ -123,6 +127,9 @@ class TreeSlots {
   std::span<const Range> ranges(unsigned octave) const { return std::span(blocks_.ranges).subspan(octave, 1); }
   TreeBlocks& lists() { return blocks_; }
   std::uint64_t version() const { return version_; }
+  std::size_t memory_bytes() const {
+    return bytes_of(solved_, forest_, nodes_, loop_nodes_, parallel_, closing_, pivots_, shapes_, blocks_, octaves_);
+  }
 
  private:
   SolvedJoints solved_;
@@ -161,6 +168,7 @@ class NetSlots {
   std::span<const Range> ranges(unsigned octave) const { return std::span(blocks_.ranges).subspan(octave, 1); }
   std::vector<std::uint32_t>& list() { return blocks_.list; }
   std::uint64_t version() const { return version_; }
+  std::size_t memory_bytes() const { return bytes_of(nets_, blocks_, octaves_); }
 
  private:
   Nets nets_;
@@ -203,6 +211,9 @@ class Schedule {
   IslandLists islands;  // of a device that finds them
 
   static constexpr std::uint32_t padding = 32;  // the widest backend
+  std::size_t memory_bytes() const {
+    return bytes_of(bodies, joints, contacts, trees, nets, own, islands, joint_ends_, rows_, octaves_, body_ranges_);
+  }
 
  private:
   std::vector<std::array<std::uint32_t, 2>> joint_ends_;

@@ -300,11 +300,23 @@ std::vector<BufferUse> Stepper::memory(const World& world) const try {
   const Inside& in = inside();
   MemoryUses uses(world.state());
   uses.add_host(inside_->schedule);
-  uses.add("collision", "", Place::cpu, in.detector.memory_bytes());
+  uses.add("collision", "", Place::cpu, in.detector.memory_bytes() + in.looks.memory_bytes());
+  uses.add("islands", "", Place::cpu, bytes_of(in.octaves, in.fourth, in.sleepers, in.unrest));
+  uses.add("events", "", Place::cpu, in.recorder.memory_bytes());
   in.runner.list_memory(uses);
   return uses.take();
 } catch (...) {
   detail::no_memory_for("Stepper::memory");
+}
+
+Status Stepper::shrink() try {
+  if (Status ok = changeable(); !ok) return ok;
+  Inside& in = inside();
+  in.start_anew();
+  in.runner.let_go();
+  return {};
+} catch (...) {
+  return caught();
 }
 
 void Stepper::set_trace(ContactTrace* trace) { inside().runner.trace(trace); }

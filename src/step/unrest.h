@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "step/runner.h"
+#include "world/memory.h"
 #include "world/state.h"
 
 namespace pcphys {
@@ -24,6 +25,7 @@ class Unrest {
   std::span<const char> rows() const { return rows_; }
   /// Those of them that sleep are to wake.
   void stir_sleepers(WorldState& state) const;
+  std::size_t memory_bytes() const { return bytes_of(behind_, rows_); }
 
  private:
   /// Whether the host has given a kernel another parameter since the last step: nobody is at rest.

@@ -18,6 +18,7 @@ std::uint32_t new_shape(WorldState& s, std::uint32_t body, const ShapeDef& def) 
     s.shapes.emplace_back();
     s.tables.resize(Table::shape, index + 2);
   } else {
+    std::ranges::pop_heap(s.free_shapes, std::greater<>());
     index = s.free_shapes.back();
     s.free_shapes.pop_back();
   }
@@ -156,6 +157,7 @@ void WorldState::remove_body(std::uint32_t row) {
     shapes[shape].alive = false;
     shapes[shape].def.convex = {};  // the last user frees it
     free_shapes.push_back(shape);
+    std::ranges::push_heap(free_shapes, std::greater<>());
   }
   forget_apart(*this, index);
   frozen.erase(index);

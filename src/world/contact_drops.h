@@ -44,6 +44,9 @@ class ContactDrops {
     before_.clear();
   }
 
+  /// Where there are none.
+  void shrink() { *this = ContactDrops(); }
+
   static constexpr std::uint32_t gone = 0xffffffffu;
   /// By the row that a body had when contacts were found its row of now, or `gone`.
   std::vector<std::uint32_t> rows_now(std::uint32_t rows_before) const {
@@ -55,6 +58,7 @@ class ContactDrops {
       if (row < rows_before) now[row] = gone;
     return now;
   }
+  std::size_t memory_bytes() const { return bytes_of(dropped_, spare_, before_) + spare_.size() * allocated(2 * sizeof(void*)); }
 
  private:
   std::uint32_t row_before(std::uint32_t row) const {

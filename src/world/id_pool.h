@@ -66,6 +66,11 @@ class IdPool {
   void set_generation(std::uint32_t index, std::uint32_t generation) { slots_[index].generation = generation; }  // for tests
   std::uint32_t size() const { return std::uint32_t(slots_.size()); }  // indices ever used
   std::uint32_t count() const { return alive_; }
+  void shrink() {
+    slots_.shrink_to_fit();
+    free_.shrink_to_fit();
+  }
+  std::size_t memory_bytes() const { return bytes_of(slots_, free_); }
 
  private:
   std::uint32_t world_;

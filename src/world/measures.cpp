@@ -1,5 +1,6 @@
 // What a world tells of itself: energy and momentum.
 #include "world/state.h"
+#include "world/validate.h"
 
 namespace pcphys {
 
@@ -42,11 +43,14 @@ Vec3 World::angular_momentum() const {
 
 std::size_t World::contact_count() const { return settled().contact_rows() - 1; }
 
-std::size_t World::memory_bytes() const {
-  const WorldState& s = state();
-  return s.tables.memory_bytes() + s.bodies.capacity() * sizeof(BodyRecord) + s.joints.capacity() * sizeof(JointRecord) +
-         s.shapes.capacity() * sizeof(ShapeRecord) +
-         s.contacts.keys.capacity() * (sizeof(ContactKey) + sizeof(s.contacts.ends[0]) + sizeof(s.contacts.features[0]));
+Status World::shrink() try {
+  if (Status ok = changeable(); !ok) return ok;
+  state().shrink();
+  return {};
+} catch (...) {
+  return caught();
 }
+
+std::size_t World::memory_bytes() const { return state().memory_bytes(); }
 
 }  // namespace pcphys

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 
 #include "pcphys/constants.h"
 
@@ -191,6 +192,22 @@ void WorldState::make_room(std::uint32_t more_bodies, std::uint32_t more_joints,
   pcphys::make_room(shapes, more_shapes);
   free_shapes.reserve(shapes.capacity());
   tables.reserve(Table::shape, std::uint32_t(shapes.size()) + more_shapes + 1);
+}
+
+void WorldState::shrink() {
+  settle_contacts();
+  drops.shrink();
+  while (!shapes.empty() && !shapes.back().alive) shapes.pop_back();  // the next ones take these places, in the same order
+  std::erase_if(free_shapes, [&](std::uint32_t shape) { return shape >= shapes.size(); });
+  std::ranges::make_heap(free_shapes, std::greater<>());
+  tables.resize(Table::shape, std::uint32_t(shapes.size()) + 1);
+  structure_version++;
+  tables.shrink();
+  for (IdPool* ids : {&body_ids, &joint_ids, &force_ids}) ids->shrink();
+  for (BodyRecord& body : bodies)
+    for (auto* list : {&body.shapes, &body.forces, &body.joints}) list->shrink_to_fit();
+  const auto shrink_all = [](auto&... columns) { (columns.shrink_to_fit(), ...); };
+  shrink_all(bodies, joints, shapes, free_shapes, forces, contacts.keys, contacts.ends, contacts.features);
 }
 
 void WorldState::freeze(std::uint32_t row) {

@@ -24,6 +24,8 @@ struct BodyRecord {
   std::vector<std::uint32_t> shapes;  // shape indices
   std::vector<std::uint32_t> forces;  // force indices, ascending: sums are taken in this order
   std::vector<std::uint32_t> joints;  // id indices of joints and springs
+
+  std::size_t memory_bytes() const { return bytes_of(shapes, forces, joints); }
 };
 struct JointRecord {
   std::uint32_t index = 0;
@@ -59,6 +61,8 @@ struct ContactColumns {
   std::vector<ContactKey> keys;                    // by row; row 0 pads
   std::vector<std::array<std::uint32_t, 2>> ends;  // body rows
   std::vector<std::array<std::uint32_t, 4>> features;
+
+  std::size_t memory_bytes() const { return bytes_of(keys, ends, features); }
 };
 
 /// Why two bodies never touch, besides filters.
@@ -83,6 +87,13 @@ enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, res
 struct WorldState {
   explicit WorldState(const WorldDef& def);
 
+  /// Gives back what none of its objects needs; no result follows from it.
+  void shrink();
+  std::size_t memory_bytes() const {
+    return bytes_of(tables, body_ids, joint_ids, force_ids, bodies, joints, shapes, free_shapes, forces, contacts, drops, frozen,
+                    no_collide, asked_apart);
+  }
+
   std::uint64_t serial;                 // another for each world of the process: what a stepper remembers is of one of them
   std::atomic<bool> stepping{false};    // some stepper steps it: nothing else may change it
   /// As ids carry it.
@@ -97,7 +108,7 @@ struct WorldState {
   std::vector<JointRecord> joints;  // by row; row 0 pads
   std::uint32_t springs = 0;        // how many of them are springs between two points
   std::vector<ShapeRecord> shapes;  // by shape index
-  std::vector<std::uint32_t> free_shapes;
+  std::vector<std::uint32_t> free_shapes;  // min-heap
   std::vector<ForceRecord> forces;  // by force index
   std::uint32_t callbacks = 0;      // how many of them are callbacks
   ContactColumns contacts;

@@ -147,6 +147,17 @@ void Tables::remove_table(Table own) {
   rows_[std::size_t(own)] = 0;
 }
 
+void Tables::shrink() {
+  for (Column& column : columns_) {
+    if (column.on_demand && column.made && !column.keeper) {
+      column.bytes = AlignedBytes();
+      column.made = false;
+    }
+    column.bytes.shrink();
+  }
+  layout_++;
+}
+
 void Tables::touch_all() {
   for (Column& column : columns_) column.version++;
 }

@@ -44,6 +44,9 @@ class Tables {
   void resize(Table table, std::uint32_t rows);
   void copy_row(Table table, std::uint32_t from, std::uint32_t to);
 
+  /// Gives back what is more than the rows there are, and rows that steps alone use.
+  void shrink();
+
   /// A buffer of the host's own beside those of the table; all rows hold `initial`, which is as long as a row.
   Buffer add(Table table, std::span<const std::byte> initial);
   void remove(Buffer own);

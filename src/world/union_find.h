@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "world/memory.h"
+
 namespace pcphys {
 
 class UnionFind {
@@ -28,6 +30,7 @@ class UnionFind {
     const auto [low, high] = std::minmax({root(a), root(b)});
     above_[high] = low;
   }
+  std::size_t memory_bytes() const { return bytes_of(above_); }
 
  private:
   std::vector<std::uint32_t> above_;
