@@ -84,6 +84,7 @@ Status Stepper::configure(const StepSettings& settings) try {
   if (Status ok = check_settings(settings); !ok) return ok;
   Inside& in = inside();
   in.settings = settings;
+  in.recorder.follow(settings);
   in.checked = true;
   in.prepared.reset();
   in.idle = {};
