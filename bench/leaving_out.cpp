@@ -101,7 +101,10 @@ struct Run {
     }
   }
   void fix() {
-    bodies([](BodyDef& def) { def.kind = BodyKind::fixed; });
+    bodies([](BodyDef& def) {
+      def.kind = BodyKind::fixed;
+      def.velocity = {};
+    });
   }
   void still() {
     bodies([](BodyDef& def) { def.rotates = false; });

@@ -56,7 +56,8 @@ PCPHYS_KERNEL(clock_time, (PC_INOUT(Real) time, PC_PARAM(Real) h), { time = time
 
 SceneWorld with_own(Precision precision) {
   SceneWorld s = scene_world("balls", 40, precision);
-  must(s.world.add_property<Real>("fuel", 2.0, "kg"));
+  must(s.world.add_property<Real>("fuel", 2.0, "kg", body_table,
+                                  Role::state));  // hashes hold it beside worlds without kernels, too
   must(s.world.add_property<Vec3>("home", {0, 3, 0}, "m", body_table, Role::input));
   return s;
 }

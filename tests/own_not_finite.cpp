@@ -36,7 +36,7 @@ PCPHYS_KERNEL(shove, (PC_IN(Real) shoved, PC_INOUT(Vec3) force, PC_PARAM(Real) s
 std::vector<double> lasting(const World& world) {
   std::vector<double> numbers{double(world.hash())};
   for (const PropertyInfo& info : world.properties()) {
-    if (info.role != Role::state && info.role != Role::input) continue;
+    if (info.role == Role::derived || info.role == Role::scratch) continue;
     const PropertyView view = must(world.view(info.name));
     for (std::size_t row = 0; row < view.count; row++)
       for (std::uint32_t c = 0; c < view.components; c++) numbers.push_back(view.at(row, c));

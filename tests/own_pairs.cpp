@@ -33,6 +33,9 @@ PCPHYS_PAIR_KERNEL(conduction,
                      flow = Vec3(heat, -heat, d);
                    })
 
+PCPHYS_KERNEL(warm_total, (PC_IN(Real) heat, PC_SUM(Real) whole), { whole = heat; })
+PCPHYS_KERNEL(tick, (PC_INOUT(Real) ticks), { ticks = ticks + PC_REAL(1.0); })
+
 constexpr double strength = 2, softening = 0.01;
 void add_attraction(Stepper& stepper, World& world) {
   must(stepper.add_kernel(world, {.text = attraction::text(), .parameters = {{"strength", strength}, {"softening", softening}}}));
@@ -206,4 +209,37 @@ TEST_CASE("bodies that act on each other make the same sub-steps") {
   add_attraction(with, world);
   run(world, with, 1);
   CHECK(with.step(world, frame).refined > alone);
+}
+
+TEST_CASE("where nothing moves: the same on CPU and GL, of bodies in pairs, by themselves and in total") {
+  require_gl();
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    for (const bool any : {true, false}) {
+      for (const std::optional<double> cutoff : {std::optional<double>(), std::optional<double>(3)}) {
+        std::uint64_t hashes[2];
+        for (const bool gl : {false, true}) {
+          World world(WorldDef{precision, {}});
+          for (int i = 0; any && i < 5; i++) (void)must(world.create_body(fixed_box({3.0 * i, 0, 0}, {1, 1, 1})));
+          (void)must(world.add_property<Real>("heat", 2));
+          (void)must(world.add_property<std::uint32_t>("warmer"));
+          (void)must(world.add_property<Vec3>("flow"));
+          const TableId one = must(world.add_table("one", 1)), cells = must(world.add_table("cells", 4));
+          const auto whole = must(world.add_property<Real>("whole", 7, "1", one));
+          const auto ticks = must(world.add_property<Real>("ticks", 0, "1", cells));
+          StepSettings settings;
+          if (gl) settings.set_all(Place::gl);
+          Stepper stepper(settings);
+          must(stepper.add_kernel(world, {.text = conduction::text(), .parameters = {{"rate", 0.1}}, .cutoff = cutoff}));
+          must(stepper.add_kernel(world, {.text = warm_total::text()}));
+          must(stepper.add_kernel(world, {.text = tick::text(), .over = cells}));
+          add_attraction(stepper, world);
+          run(world, stepper, 2);
+          CHECK(double(must(world.get(whole, RowOf(1)))) == 0);  // of no rows
+          CHECK(double(must(world.get(ticks, RowOf(4)))) == 8);
+          hashes[gl] = world.hash();
+        }
+        CHECK(hashes[0] == hashes[1]);
+      }
+    }
+  }
 }

@@ -205,8 +205,8 @@ TEST_CASE("set functions refuse") {
                 "A fixed body has no velocity; make it kinematic to move it.");
   CHECK_REFUSED(w, w.set_angular_velocity(p.a, {0, 0, infinity}), ErrorCode::not_finite,
                 "The angular velocity of a body is (0, 0, inf)");
-  CHECK_REFUSED(w, w.set_angular_velocity(p.fixed, {}), ErrorCode::bad_argument,
-                "A fixed body has no angular velocity; make it kinematic to turn it.");
+  CHECK_REFUSED(w, w.set_angular_velocity(p.fixed, {0, 1, 0}), ErrorCode::bad_argument,
+                "A fixed body has no angular velocity; make it kinematic to move it.");
   CHECK_REFUSED(w, w.set_position_last(p.a, {not_a_number, 0, 0}), ErrorCode::not_finite,
                 "The last position of a body is (nan, 0, 0)");
   CHECK_REFUSED(w, w.set_position_last(p.fixed, {}), ErrorCode::bad_argument, "A fixed body has no last position");
@@ -235,6 +235,28 @@ TEST_CASE("set functions refuse") {
   CHECK_REFUSED(w, w.add_force(p.a, ForceCallback{}), ErrorCode::bad_argument, "The force callback is empty; pass a function.");
   CHECK_REFUSED(w, w.view("speed of light"), ErrorCode::unknown_name,
                 "There is no property \"speed of light\"; docs/properties.md lists those of the library, World::properties all.");
+}
+
+TEST_CASE("a fixed body has no velocity but zero, whoever asks") {
+  World world;
+  BodyDef def = fixed_box({}, {1, 1, 1});
+  def.velocity = {0, 2, 0};
+  CHECK_REFUSED(world, world.create_body(def), ErrorCode::bad_argument,
+                "A fixed body has no velocity; make it kinematic to move it.");
+  def.velocity = {};
+  def.angular_velocity = {0, 0, -1};
+  CHECK_REFUSED(world, world.create_body(def), ErrorCode::bad_argument,
+                "A fixed body has no angular velocity; make it kinematic to move it.");
+  def.angular_velocity = {};
+  const BodyId fixed = must(world.create_body(def));
+  const std::uint64_t hash = world.hash();
+  for (const BodyId body : {fixed, world.ground()}) {
+    must(world.set_velocity(body, {}));
+    must(world.set_angular_velocity(body, {}));
+    CHECK_REFUSED(world, world.set_velocity(body, {1, 0, 0}), ErrorCode::bad_argument, "A fixed body has no velocity");
+    CHECK_REFUSED(world, world.set_angular_velocity(body, {1, 0, 0}), ErrorCode::bad_argument, "A fixed body has no angular");
+  }
+  CHECK(world.hash() == hash);
 }
 
 TEST_CASE("last positions need a step") {

@@ -187,3 +187,19 @@ TEST_CASE("joints that come and go leave the pairs that a new stepper finds") {
   };
   CHECK(after(false) == after(true));
 }
+
+TEST_CASE("a body and itself: refused by name") {
+  World world;
+  BodyDef def = ball({});
+  const BodyId body = must(world.create_body(def));
+  def.kind = BodyKind::kinematic;
+  const BodyId hand = must(world.create_body(def));
+  for (const bool collide : {false, true})
+    CHECK_REFUSED(world, world.set_collide(body, body, collide), ErrorCode::bad_argument, "needs two different bodies");
+  SpringDef spring;
+  spring.a = spring.b = body;
+  CHECK_REFUSED(world, world.create_spring(spring), ErrorCode::bad_joint, "A spring needs two different bodies");
+  CHECK_REFUSED(world, world.create_joint(joint_between(body, body)), ErrorCode::bad_joint, "A joint needs two different bodies");
+  for (const BodyId both : {body, hand})
+    CHECK_REFUSED(world, world.grab(both, both, {}), ErrorCode::bad_joint, "A hand that grabs is a kinematic body");
+}

@@ -1,5 +1,5 @@
 // Pins properties and tables of the host's own: every type keeps its values and its default for present and coming rows, in
-// both precisions; values follow their objects when rows move; views, snapshots and the hash hold them; adding one to a world
+// both precisions; values follow their objects when rows move; views, snapshots and (of role state) the hash hold them; adding one to a world
 // that runs changes no bit of its motion; names, types, ids and values that do not fit are refused and change nothing.
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ template <class T> void keeps(Precision precision, const T& initial, const T& ot
   INFO(std::string(name(property_type<T>)));
   std::vector<BodyId> ids;
   World world = balls(precision, 3, ids);
-  const Property<T> p = must(world.add_property<T>("mine", initial, "m"));
+  const Property<T> p = must(world.add_property<T>("mine", initial, "m", body_table, Role::state));
   for (const BodyId id : ids) CHECK(must(world.get(p, id)) == initial);
   ids.push_back(must(world.create_body(ball({9, 5, 0}))));
   CHECK(must(world.get(p, ids.back())) == initial);  // of a row to come
@@ -87,7 +87,7 @@ TEST_CASE("of joints and springs, and of a table of the host's own") {
   CHECK(must(world.row_of(joint)) == 1);
 
   const TableId puffs = must(world.add_table("puffs", 4));
-  const auto heat = must(world.add_property<float>("heat", 20.0f, "K", puffs));
+  const auto heat = must(world.add_property<float>("heat", 20.0f, "K", puffs, Role::state));
   CHECK(must(world.rows(puffs)) == 4);
   must(world.set(heat, RowOf(4), 30.0f));
   const std::uint64_t hash = world.hash();

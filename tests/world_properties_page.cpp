@@ -60,6 +60,15 @@ std::string page() {
          "state, which snapshots and the hash hold; derived, which follows from others; scratch, which means\n"
          "nothing between steps. Place: the buffer that kernels bind, and the real in its row.\n"
          "\n"
+         "A property of a host's own (`World::add_property`) is of the role host unless it asks for another: it is\n"
+         "the host's alone until a kernel of a stepper names it (`Stepper::add_kernel`).\n"
+         "\n"
+         "| role | in snapshots | in the hash | another value wakes |\n"
+         "|---|---|---|---|\n"
+         "| host | yes | once a kernel has named it | once a kernel has named it |\n"
+         "| state | yes | always | once a kernel has named it |\n"
+         "| input, derived, scratch | no | no | once a kernel has named it |\n"
+         "\n"
          "<!-- Written by tests/world_properties_page.cpp from src/kernels/properties.inl; see there. -->\n";
   for (std::size_t t = 0; t < table_count; t++) {
     out << "\n## " << name(Table(t)) << "\n" << capital(table_docs[t]) << ".\n\n";

@@ -21,8 +21,8 @@ std::string_view name(PropertyType type);
 std::uint32_t components(PropertyType type);
 
 /// input: the host writes it; state: what snapshots and the hash hold; derived: follows from others; scratch: means nothing
-/// between steps.
-enum class Role : std::uint8_t { input, state, derived, scratch };
+/// between steps; host: what a host hangs on its objects. Snapshots hold that, and the hash since a kernel has named it.
+enum class Role : std::uint8_t { input, state, derived, scratch, host };
 std::string_view name(Role role);
 
 /// A number in the world's precision.

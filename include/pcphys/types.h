@@ -79,7 +79,7 @@ struct MassProperties {
 struct BodyDef {
   BodyKind kind = BodyKind::dynamic;
   Pose pose;
-  Vec3 velocity;          // of the centre of mass [m/s]
+  Vec3 velocity;          // of the centre of mass [m/s]; zero of a fixed body, and so is the next
   Vec3 angular_velocity;  // world axes [rad/s]
   std::vector<ShapeDef> shapes;
   double density = 1000;        // [kg/m^3]; used when `mass` is not given

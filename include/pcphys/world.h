@@ -131,7 +131,7 @@ class World {
   /// The shapes as they were given at creation.
   Result<std::vector<ShapeDef>> shapes(BodyId body) const;
   Status set_filter(BodyId body, const Filter& filter);
-  /// Whether two bodies may never collide, besides what joints and filters say.
+  /// Whether two bodies may never collide, besides what joints and filters say. Twice the same body is ErrorCode::bad_argument.
   Status set_collide(BodyId a, BodyId b, bool collide);
   Result<JointDef> joint(JointId joint) const;
   /// From the next step on. Speed in [rad/s], torque in [N m]; a torque below zero is ErrorCode::bad_joint.
@@ -170,11 +170,12 @@ class World {
 
   /// A property of the host's own, of bodies, of joints (and springs), or of a table of its own: T is Real, float, double,
   /// std::int32_t, std::uint32_t, Vec3, Vec4, Quat, Mat3 or SymMat3. Every row, present and to come, starts with `initial`.
-  /// Snapshots and the hash hold it unless its role is another than `state`. The name must be one that a kernel's text can use:
+  /// Until a kernel of some stepper names it, it is the host's alone: to set it wakes nobody, and the hash does not hold it unless its
+  /// role is `state`. Snapshots hold it if its role is `host` or `state`. The name must be one that a kernel's text can use:
   /// letters, digits and underscores, not that of another property (ErrorCode::name_taken).
   template <PropertyValue T>
   Result<Property<T>> add_property(std::string_view name, const T& initial = {}, std::string_view unit = "1",
-                                   TableId table = body_table, Role role = Role::state) {
+                                   TableId table = body_table, Role role = Role::host) {
     const PropertyNumbers numbers(initial);
     return handle<T>(add_property(name, property_type<T>, numbers.x, unit, table, role));
   }
@@ -207,9 +208,10 @@ class World {
   /// Takes its properties with it.
   Status remove(TableId table);
 
-  /// FNV-1a, 64 bit, over state and solver memory in ascending id order; -0 counts as +0.
+  /// FNV-1a, 64 bit, over state and solver memory in ascending id order; -0 counts as +0. A property of role `host` is in
+  /// it since a kernel of some stepper has named it: what comes of steps may follow from it.
   std::uint64_t hash() const;
-  /// All properties of role `state`, as bytes; restored bit for bit into a world with the same objects.
+  /// All properties of role `state` or `host`, as bytes; restored bit for bit into a world with the same objects.
   std::vector<std::byte> snapshot() const;
   Status restore(std::span<const std::byte> snapshot);
 

@@ -126,9 +126,16 @@ void EventRecorder::record_as(const StepSettings& settings, const WorldState& s,
   if (settings.body_events && before.poses) find_moved<Scalar>(s, *before.poses, moving);
 }
 
+void EventRecorder::follow(const StepSettings& settings) {
+  if (!settings.contact_events) touching_.clear();
+  if (settings.body_events) return;
+  asleep_.clear();
+  rest_serial_ = 0;  // of no world
+}
+
 void EventRecorder::record(const StepSettings& settings, const WorldState& s, const Before& before,
                            std::span<const std::uint32_t> moving) {
-  if (!settings.contact_events || serial_ != s.serial) touching_.clear();
+  if (serial_ != s.serial) touching_.clear();
   serial_ = s.serial;
   if (s.tables.precision() == Precision::f32)
     record_as<float>(settings, s, before, moving);

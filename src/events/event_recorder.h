@@ -22,6 +22,8 @@ class EventRecorder {
     const AlignedBytes* poses;  // as the step began with them; null where it left them alone
     const Detector& detector;   // that found the contacts
   };
+  /// What these settings do not ask for is not remembered: once they ask again it begins anew.
+  void follow(const StepSettings& settings);
   /// Before a step, which may fail. Who touches is remembered.
   void clear() { begun_.clear(), ended_.clear(), hits_.clear(), moved_.clear(), slept_.clear(), woken_.clear(); }
   /// After a step. `moving`: rows of bodies.

@@ -225,7 +225,7 @@ Status GlContext::enter() {
   if (depth_ == 0) {
     if (Status status = make_current(); !status) return status;
     if (host_ != nullptr) {
-      while (glGetError() != GL_NO_ERROR) {}  // the host's, not ours to report
+      host_errors_.take();  // not ours to report
       bindings_.save();
     }
   }
@@ -255,6 +255,7 @@ Status GlContext::make_current() {
 void GlContext::leave() {
   if (--depth_ > 0) return;
   if (host_ != nullptr) {
+    host_errors_.give_back();
     bindings_.restore();
   } else if (switched_) {
     if (before_.context != EGL_NO_CONTEXT)

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "glcompute/host_errors.h"
 #include "pcphys/device.h"
 #include "pcphys/result.h"
 
@@ -36,7 +37,7 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// Makes the own context current on this thread; of a host's it checks that it is, and keeps its bindings.
+  /// Makes the own context current on this thread; of a host's it checks that it is, and keeps its bindings and its unread errors.
   /// Calls nest; `leave` of the outermost restores what was.
   Status enter();
   void leave();
@@ -63,6 +64,7 @@ class GlContext {
     unsigned api;
   } before_{};
   GlBindings bindings_;
+  HostErrors host_errors_;
   std::string debug_message_;  // the driver's first complaint, debug builds only
 };
 

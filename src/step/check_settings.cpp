@@ -19,6 +19,12 @@ Status check_settings(const StepSettings& s) {
     return Error{ErrorCode::bad_argument, "The order is " + std::to_string(s.order) + "; it must be 2, or 4 for joint trees."};
   if (s.order == 4 && s.integrator == Integrator::seed)
     return Error{ErrorCode::bad_argument, "The original's scheme (seed) is of first order; use the order 2 with it, or verlet."};
+  for (const Place place : {s.integrate, s.joints, s.impulses, s.islands})
+    if (place > Place::gl) return Error{ErrorCode::bad_argument, "A stage is put on no known place; use Place::cpu or gl."};
+  if (s.integrator > Integrator::seed)
+    return Error{ErrorCode::bad_argument, "The integrator is none that there is; use Integrator::verlet or seed."};
+  if (s.narrow > NarrowPhase::fcl)
+    return Error{ErrorCode::bad_argument, "The narrow phase is none that there is; use NarrowPhase::native or fcl."};
   if (Status ok = Workers::check(s.threads); !ok) return ok;
   if (s.refinement < 1 || s.refinement > most_substeps)
     return Error{ErrorCode::bad_argument,

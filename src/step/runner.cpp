@@ -129,7 +129,8 @@ void Runner::undo(WorldState& state) {
 Status Runner::attach(Place place, Buffer buffer, void* host, std::size_t bytes) {
   Device& d = at(place);
   Copy& copy = d.copy(buffer);
-  if (copy.host == host && copy.bytes == bytes) return {};
+  if (copy.attached && copy.host == host && copy.bytes == bytes) return {};
+  copy.attached = true;
   if (place == Place::gl && copy.bytes != bytes) copy.version = 0;
   copy.host = host;
   copy.bytes = bytes;

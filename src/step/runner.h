@@ -90,6 +90,7 @@ class Runner final : Keeper {
     void* host = nullptr;
     std::size_t bytes = 0;
     std::uint64_t version = 0;  // of the host's data that the device holds; 0: none
+    bool attached = false;      // a list of nothing is, too
   };
   struct Device {
     std::unique_ptr<Backend> backend;

@@ -84,6 +84,7 @@ Status Stepper::configure(const StepSettings& settings) try {
   if (Status ok = check_settings(settings); !ok) return ok;
   Inside& in = inside();
   in.settings = settings;
+  in.recorder.follow(settings);
   in.checked = true;
   in.prepared.reset();
   in.idle = {};
@@ -251,7 +252,9 @@ Status Stepper::add_kernel(World& world, const KernelDef& def) {
     if (!added) return added.error();
     Status ok = in.follow_own(s);
     if (ok) ok = in.check_kernel(s, **added);
-    if (!ok) (void)in.own.remove(s, def.text.name);
+    if (!ok) return (void)in.own.remove(s, def.text.name), ok;
+    for (const Access& a : (*added)->accesses)
+      if (is_own(a.buffer)) s.own.name(a.buffer);
     return ok;
   };
   const auto add_within_memory = [&]() -> Status {

@@ -104,6 +104,8 @@ Status World::set_filter(BodyId body, const Filter& filter) try {
 Status World::set_collide(BodyId a, BodyId b, bool collide) try {
   Status ok = changeable(a);
   if (ok) ok = changeable(b);
+  if (ok && a == b)
+    ok = Error{ErrorCode::bad_argument, "A body never collides with itself; set_collide needs two different bodies."};
   if (!ok) return ok;
   WorldState& s = state();
   for (const BodyId body : {a, b}) make_room(s.asked_apart[body.index], 2);

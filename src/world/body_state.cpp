@@ -49,8 +49,8 @@ Status World::set_velocity(BodyId body, Vec3 velocity) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(velocity, "velocity of a body"); !ok) return ok;
   const std::uint32_t row = state().body_ids.row(body.index);
-  if (state().bodies[row].kind == BodyKind::fixed)
-    return Error{ErrorCode::bad_argument, "A fixed body has no velocity; make it kinematic to move it."};
+  const BodyKind kind = state().bodies[row].kind;
+  if (Status ok = check_moves(kind, velocity, "velocity"); !ok || kind == BodyKind::fixed) return ok;
   state().change(row);
   state().bring_in_phase(row);
   state().tables.set3(Buffer::motion, row, 0, velocity);
@@ -70,8 +70,8 @@ Status World::set_angular_velocity(BodyId body, Vec3 w) try {
   if (Status ok = changeable(body); !ok) return ok;
   if (Status ok = check_finite(w, "angular velocity of a body"); !ok) return ok;
   const std::uint32_t row = state().body_ids.row(body.index);
-  if (state().bodies[row].kind == BodyKind::fixed)
-    return Error{ErrorCode::bad_argument, "A fixed body has no angular velocity; make it kinematic to turn it."};
+  const BodyKind kind = state().bodies[row].kind;
+  if (Status ok = check_moves(kind, w, "angular velocity"); !ok || kind == BodyKind::fixed) return ok;
   if (!state().rotates(row) && w != Vec3{}) return no_rotation();
   if (Status ok = check_spin(mass_properties(body)->moments, w); !ok) return ok;
   state().change(row);

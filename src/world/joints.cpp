@@ -174,7 +174,8 @@ double mass_of_all(const WorldState& s, std::uint32_t row) {
 }  // namespace
 
 Result<JointId> World::grab(BodyId hand, BodyId body, Vec3 point) try {
-  Status ok = check_finite(point, "point of a grab");
+  Status ok = changeable();
+  if (ok) ok = check_finite(point, "point of a grab");
   if (ok && (!valid(hand) || !valid(body))) ok = stale("body");
   if (!ok) return ok.error();
   const WorldState& s = state();

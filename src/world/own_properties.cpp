@@ -1,5 +1,6 @@
 #include "world/own_properties.h"
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -28,16 +29,25 @@ std::uint32_t OwnProperties::add(OwnProperty property) {
   return k;
 }
 
+bool OwnProperties::named(Buffer buffer) const {
+  return std::ranges::any_of(list, [&](const OwnProperty& p) { return p.used && p.named && p.buffer == buffer; });
+}
+
+void OwnProperties::name(Buffer buffer) {
+  for (OwnProperty& p : list)
+    if (p.used && p.buffer == buffer) p.named = true;
+}
+
 std::string_view OwnProperties::table_name(Table table) const {
   for (const OwnTable& t : tables)
     if (t.used && t.table == table) return t.name;
-  return name(table);
+  return pcphys::name(table);
 }
 
 std::pair<std::string_view, std::string_view> OwnProperties::names(Buffer buffer) const {
   for (const OwnProperty& p : list)
     if (p.used && p.buffer == buffer) return {p.name, table_name(p.table)};
-  return {schema(buffer).name, of_table(buffer) ? name(schema(buffer).table) : std::string_view()};
+  return {schema(buffer).name, of_table(buffer) ? pcphys::name(schema(buffer).table) : std::string_view()};
 }
 
 std::vector<Field> fields(const Tables& tables, const OwnProperties& own, Table table, Role role) {

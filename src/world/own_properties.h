@@ -23,6 +23,7 @@ struct OwnProperty {
   Buffer buffer{};
   std::uint32_t generation = 0;
   bool used = false;
+  bool named = false;  // by a kernel of some stepper: what comes of steps may follow from it
 };
 struct OwnTable {
   std::string name;
@@ -34,6 +35,9 @@ struct OwnTable {
 struct OwnProperties {
   /// In the first free place; which.
   std::uint32_t add(OwnProperty property);
+  /// Whether a kernel has named the property that stands there; and that one has.
+  bool named(Buffer buffer) const;
+  void name(Buffer buffer);
   /// Of a table, the library's or the host's own.
   std::string_view table_name(Table table) const;
   /// Of a buffer, and of its table; a list is of none.
@@ -56,6 +60,8 @@ struct Field {
 };
 /// Fields of a role, the library's first, in the order of the lists.
 std::vector<Field> fields(const Tables& tables, const OwnProperties& own, Table table, Role role);
+/// Whether snapshots hold it.
+constexpr bool lasts(Role role) { return role == Role::state || role == Role::host; }
 
 /// Bytes of a number of that type.
 std::size_t number_bytes(PropertyType type, std::size_t real_bytes);

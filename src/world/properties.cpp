@@ -198,7 +198,7 @@ Result<std::uint32_t> find_row(const WorldState& s, const Found& f, RowOf object
 }  // namespace
 
 std::string_view name(Role role) {
-  constexpr std::string_view names[] = {"input", "state", "derived", "scratch"};
+  constexpr std::string_view names[] = {"input", "state", "derived", "scratch", "host"};
   return names[std::size_t(role)];
 }
 std::string_view name(PropertyType type) {
@@ -241,6 +241,8 @@ Result<World::AnyProperty> World::add_property(std::string_view name, PropertyTy
   Status ok = changeable();
   if (ok) ok = check_name(name, "property");
   if (ok) ok = check_numbers(type, initial, name, s.tables.real_bytes());
+  if (ok && role > Role::host)
+    ok = Error{ErrorCode::bad_argument, "The role of a property is none that there is; use one of Role, such as Role::host."};
   if (!ok) return ok.error();
   Found there;
   if (by_name(s, name, there)) return taken(name, "property", there.info.own ? "" : " among those of the library");
@@ -324,7 +326,7 @@ Status World::write(AnyProperty property, RowOf object, const double* numbers) t
     changed |= read_number(number, f.info.type, real) != before;
   }
   s.tables.touch(f.buffer);
-  if (changed) s.stir_reader(f.table, *row);
+  if (changed && s.own.named(f.buffer)) s.stir_reader(f.table, *row);
   return {};
 } catch (...) {
   return caught();

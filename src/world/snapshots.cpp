@@ -51,10 +51,13 @@ class Reader {
 
 /// Of contacts also what is no state: hosts are shown it until the next step.
 struct Layout {
-  explicit Layout(const WorldState& s) : bodies(s, Table::body), joints(s, Table::joint), contacts(s, Table::contact, true) {
+  explicit Layout(const WorldState& s)
+      : bodies(s, Table::body, StateRows::of_snapshots),
+        joints(s, Table::joint, StateRows::of_snapshots),
+        contacts(s, Table::contact, StateRows::shown) {
     for (const OwnTable& t : s.own.tables) {
       if (!t.used) continue;
-      own.emplace_back(StateRows(s, t.table), s.tables.rows(t.table));
+      own.emplace_back(StateRows(s, t.table, StateRows::of_snapshots), s.tables.rows(t.table));
       own_bytes += (s.tables.rows(t.table) - 1) * own.back().first.bytes();
     }
     fixed_bytes = head_bytes + (s.bodies.size() - 1) * (4 + bodies.bytes()) + (s.joints.size() - 1) * (4 + joints.bytes()) + 4;
@@ -95,7 +98,7 @@ std::uint64_t object_hash(const WorldState& s) {
     hash_shape(hash, s.shapes[i]);
   }
   for (const OwnProperty& p : s.own.list) {
-    if (!p.used || p.role != Role::state) continue;
+    if (!p.used || !lasts(p.role)) continue;
     hash.bytes(p.name.data(), p.name.size());
     hash.index(std::uint32_t(p.type));
     hash.index(std::uint32_t(p.table));

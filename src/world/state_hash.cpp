@@ -6,8 +6,8 @@ namespace {
 
 std::uint64_t hash_world(const WorldState& s) {
   Hash hash;
-  const StateRows all(s, Table::body), bodies = all.within(Buffer::rest, false), rest = all.within(Buffer::rest);
-  const StateRows joints(s, Table::joint), contacts(s, Table::contact);
+  const StateRows all(s, Table::body, StateRows::of_hash), bodies = all.within(Buffer::rest, false), rest = all.within(Buffer::rest);
+  const StateRows joints(s, Table::joint, StateRows::of_hash), contacts(s, Table::contact, StateRows::of_hash);
   for (std::uint32_t i = 1; i < s.body_ids.size(); i++) {
     if (!s.body_ids.alive(i)) continue;
     hash.index(i);
@@ -31,7 +31,8 @@ std::uint64_t hash_world(const WorldState& s) {
   }
   for (const OwnTable& t : s.own.tables) {
     if (!t.used) continue;
-    const StateRows rows(s, t.table);
+    const StateRows rows(s, t.table, StateRows::of_hash);
+    if (rows.bytes() == 0) continue;  // the host's alone
     hash.bytes(t.name.data(), t.name.size());
     for (std::uint32_t row = 1; row < s.tables.rows(t.table); row++) rows.hash(hash, row);
   }

@@ -37,11 +37,14 @@ class Hash {
 /// What of a table is state, and where it stands.
 class StateRows {
  public:
-  /// `shown`: also what hosts are shown though it is none.
-  StateRows(const WorldState& s, Table table, bool shown = false)
-      : tables_(s.tables), fields_(fields(s.tables, s.own, table, Role::state)) {
+  /// of_hash: with those of the host's that a kernel has named; of_snapshots: with all of the host's; shown: also what hosts are shown
+  /// though it is none.
+  enum Of : std::uint8_t { of_hash, of_snapshots, shown };
+  StateRows(const WorldState& s, Table table, Of of) : tables_(s.tables), fields_(fields(s.tables, s.own, table, Role::state)) {
+    for (const Field& f : fields(s.tables, s.own, table, Role::host))
+      if (of != of_hash || s.own.named(f.buffer)) fields_.push_back(f);
     for (const Role role : {Role::input, Role::derived})
-      if (shown) std::ranges::copy(fields(s.tables, s.own, table, role), std::back_inserter(fields_));
+      if (of == shown) std::ranges::copy(fields(s.tables, s.own, table, role), std::back_inserter(fields_));
     for (const Field& f : fields_) bytes_ += f.bytes;
   }
   /// Those in the buffer alone, or all others.

@@ -109,6 +109,11 @@ Error no_rotation() {
           "The body does not rotate (BodyDef::rotates), so it has no angular velocity; create one that does."};
 }
 
+Status check_moves(BodyKind kind, Vec3 value, const char* what) {
+  if (kind != BodyKind::fixed || value == Vec3{}) return {};
+  return Error{ErrorCode::bad_argument, std::string("A fixed body has no ") + what + "; make it kinematic to move it."};
+}
+
 Status check_finite(double value, const char* what) {
   if (!sane(value))
     return Error{ErrorCode::not_finite, std::string("The ") + what + " is " + number(value) +
@@ -237,6 +242,8 @@ Result<MassProperties> check(const BodyDef& def, Quat& orientation) {
   if (ok) ok = check_unit(orientation, "orientation of a body");
   if (ok) ok = check_finite(def.velocity, "velocity of a body");
   if (ok) ok = check_finite(def.angular_velocity, "angular velocity of a body");
+  if (ok) ok = check_moves(def.kind, def.velocity, "velocity");
+  if (ok) ok = check_moves(def.kind, def.angular_velocity, "angular velocity");
   if (ok) ok = check(def.material);
   if (ok) ok = check_finite(def.linear_drag, "linear drag of a body");
   if (ok) ok = check_finite(def.angular_drag, "angular drag of a body");

@@ -20,6 +20,8 @@ Error caught();
 Error busy(const char* what);
 /// Of an angular velocity for a body of BodyDef::rotates = false.
 Error no_rotation();
+/// Of a body of that kind: a fixed one has none but zero. `what` is "velocity", "angular velocity".
+Status check_moves(BodyKind kind, Vec3 value, const char* what);
 Status check_finite(double value, const char* what);
 Status check_finite(Vec3 value, const char* what);
 /// Whether a body of such moments may spin so fast, however it is turned.

@@ -72,6 +72,7 @@ BodyDef draw_body_def(Choices& c, const Theme& theme) {
   if (c.below(6) == 1) def.angular_drag = c.number(0, 2);
   def.can_sleep = c.below(10) != 1;
   def.rotates = c.below(12) != 1;
+  if (def.kind == BodyKind::fixed) def.velocity = def.angular_velocity = {};  // else it is refused
   return def;
 }
 
@@ -280,7 +281,7 @@ Call own(Choices& c, const Host& host) {
   const std::string name = "own" + std::to_string(c.below(4));
   switch (c.below(4)) {
     case 0:
-      return {"add_property", [=, role = Role(c.below(4))](Host& h) {
+      return {"add_property", [=, role = Role(c.below(5))](Host& h) {
                 return keep(h.properties, h.world.add_property<Real>(name, value, "1", body_table, role));
               }};
     case 1: return {"remove_property", [=](Host& h) { return of(h.world.remove_property(name)); }};
