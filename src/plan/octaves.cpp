@@ -64,6 +64,7 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
     used_ = 0;
     for (std::uint32_t row = 1; row < of_bodies_.size(); row++)
       if (state.goes(row)) used_ |= 1u << of_bodies_[row];
+    if (used_ == 0) used_ = 1;
   }
   return !std::ranges::equal(before_, of_bodies_);
 }

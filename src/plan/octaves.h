@@ -47,7 +47,7 @@ class Octaves {
 
   /// By body row its class; empty: all are of octave 0.
   std::span<const std::uint8_t> of_bodies() const { return of_bodies_; }
-  /// Bit k: some body that moves is of class k.
+  /// Bit k: some body that moves is of class k; bit 0 where none moves.
   std::uint32_t used() const { return used_; }
   /// How many bodies are of a higher octave than 0.
   std::uint32_t refined() const { return refined_; }
