@@ -13,6 +13,9 @@ set_property(CACHE PCPHYS_WITH_FCL PROPERTY STRINGS AUTO ON OFF)
 set(PCPHYS_WITH_TBB AUTO CACHE STRING "Threads by oneTBB: AUTO, ON or OFF")
 set_property(CACHE PCPHYS_WITH_TBB PROPERTY STRINGS AUTO ON OFF)
 
+set(PCPHYS_KERNELS_FROM "" CACHE FILEPATH "The library of another build, of which the kernels are taken instead of compiled")
+option(PCPHYS_FUZZERS "Build the targets of libFuzzer (Clang)" OFF)
+
 if(PROJECT_IS_TOP_LEVEL)
   get_property(multi_config GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
   if(NOT CMAKE_BUILD_TYPE AND NOT multi_config)

@@ -34,6 +34,20 @@ macro(pcphys_drop_foreign_lanes sources)
   endif()
 endmacro()
 
+# With PCPHYS_KERNELS_FROM the kernels, which compile for minutes, are those of another build's library, and only the host code is
+# compiled here: under sanitizers, and for fuzzers, in two minutes. The objects of kernels share no function with others
+# (check_lane_objects.cmake), so both fit together, whatever their flags and compilers.
+macro(pcphys_drop_kernels sources)
+  if(PCPHYS_KERNELS_FROM)
+    list(FILTER ${sources} EXCLUDE REGEX "/src/(cpu/kernels|collision/narrow)_[fd][148]v?\\.cpp$")
+  endif()
+endmacro()
+function(pcphys_take_kernels target)
+  if(PCPHYS_KERNELS_FROM)
+    target_link_libraries(${target} PRIVATE ${PCPHYS_KERNELS_FROM})
+  endif()
+endfunction()
+
 # One file per instantiation, each with the instruction set it may use; which one runs is chosen at run time.
 # -mno-fma: a compiler driver that defaults to a newer processor must not bring fused operations back.
 function(pcphys_set_lane_flags)

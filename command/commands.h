@@ -4,10 +4,6 @@
 
 namespace pcphys::command {
 
-struct OutputOptions {
-  std::string json, csv;
-};
-
 int run(const RunOptions& options);
 int plan(const RunOptions& options);
 int tables(const RunOptions& options);

@@ -1,7 +1,5 @@
 // pcphys compare: scenes in pcphys and in the other engines that were found when it was built.
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 
@@ -15,25 +13,6 @@ namespace {
 /// Which peers take part when none is named: Runge and Kutta's method is for smooth motion.
 constexpr const char* usual = "bullet,ode,ode-dantzig,mujoco";
 
-struct Entry {
-  std::string scene;
-  std::optional<long long> count;
-};
-
-/// "balls" or "balls:1000".
-Result<Entry> parse(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  Entry entry{text.substr(0, colon), {}};
-  if (colon == std::string::npos) return entry;
-  long long count = 0;
-  const char *begin = text.data() + colon + 1, *end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(begin, end, count);
-  if (error != std::errc{} || stop != end)
-    return Error{ErrorCode::bad_argument, "The scene '" + text + "' has no number after its colon; give for example balls:1000."};
-  entry.count = count;
-  return entry;
-}
-
 Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_options) {
   std::vector<std::string> names = options.scenes;
   if (names.empty())
@@ -43,7 +22,7 @@ Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_
   if (run_options.sleep == "on")
     return Error{ErrorCode::bad_argument, "--sleep on is not for compare: the peers keep everything awake; leave it off."};
   for (const std::string& name : names) {
-    const auto entry = parse(name);
+    const auto entry = scene_of(name);
     if (!entry) return entry.error();
     RunOptions own = run_options;
     own.scene = entry->scene;
@@ -87,22 +66,7 @@ Result<Contest> hold(const Setup& setup, std::span<const std::string> names, con
   return contest;
 }
 
-Status check(const CompareOptions& options) {
-  if (auto status = check_range("peer-substeps", options.peer_substeps, 0, 1000); !status) return status;
-  if (auto status = check_range("peer-iterations", options.peer_iterations, 0, 100000); !status) return status;
-  return check_budget(options.budget);
-}
-
 }  // namespace
-
-void add_compare_options(CLI::App& app, CompareOptions& options) {
-  app.add_option("SCENE", options.scenes, "names of scenes, with a count of their own as balls:1000; all when none is given");
-  app.add_option("--peers", options.peers,
-                 "bullet, ode, ode-dantzig, mujoco, mujoco-rk4 with commas between; all or none (default: all but the last)");
-  app.add_option("--peer-substeps", options.peer_substeps, "sub-steps of the peers; 0: each one's own")->capture_default_str();
-  app.add_option("--peer-iterations", options.peer_iterations, "of their solvers; 0: each one's own")->capture_default_str();
-  app.add_option("--budget", options.budget, "a peer stops after this time in a scene [s]")->capture_default_str();
-}
 
 int compare(const CompareOptions& options, const RunOptions& run_options) {
   if (auto status = check(options); !status) return fail(status.error());

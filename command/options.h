@@ -1,4 +1,4 @@
-// What stands on the command line of `run`, `plan` and `tables`, and what it means to the library.
+// What stands on the command line of each sub-command, and what it means to the library.
 #pragma once
 #include <cstdint>
 #include <initializer_list>
@@ -12,6 +12,12 @@
 
 namespace CLI {
 class App;
+}
+namespace pcphys::cases {
+struct Selection;
+}
+namespace pcphys::wild {
+struct RunOptions;
 }
 
 namespace pcphys::command {
@@ -63,6 +69,11 @@ struct WildOptions {
   std::string shrink_to, json, csv;
 };
 
+/// Of `scenes` and `doctor`.
+struct OutputOptions {
+  std::string json, csv;
+};
+
 /// The options in the library's own terms.
 struct Setup {
   std::string scene;
@@ -97,7 +108,22 @@ Result<std::vector<std::string>> found_peers(const std::string& list);
 /// "0.01" or "1/60" [s].
 Result<double> time_step(const std::string& text);
 
-/// Errors: bad_argument with a sentence that names the option and what it accepts.
+/// A scene of `compare`.
+struct SceneEntry {
+  std::string scene;
+  std::optional<long long> count;
+};
+/// "balls" or "balls:1000".
+Result<SceneEntry> scene_of(const std::string& text);
+/// One scene of each family, of which every measure is told.
+bool single(const WildOptions& options);
+
+// Errors: bad_argument with a sentence that names the option and what it accepts; of peers as `found_peers`. Whether there are such
+// scenes, cases, families and devices is looked at when they are wanted.
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps);
+/// Of the cases of these groups.
+Result<cases::Selection> resolve(const CaseOptions& options, const std::string& groups);
+Result<wild::RunOptions> resolve(const WildOptions& options);
+Status check(const CompareOptions& options);
 
 }  // namespace pcphys::command

@@ -342,6 +342,26 @@ TEST_CASE("asked again after it was switched off: as a new stepper tells it") {
   CHECK(again(false).slept.size() == 3);
 }
 
+TEST_CASE("what sleeps when touches are first asked for is told with where it rests, in a restored world too") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    Towers towers(1, precision), twin(1, precision);
+    must(towers.world.destroy(towers.joint));
+    must(twin.world.destroy(twin.joint));
+    (void)towers.fall_asleep();
+    must(twin.world.restore(towers.world.snapshot()));
+    StepSettings settings = sleepy();
+    settings.contact_events = settings.hit_events = true;
+    Stepper stepper(settings);
+    run(twin.world, stepper, 1);
+    REQUIRE(twin.all_asleep());
+    const StepEvents events = stepper.events();
+    CHECK(events.hits.empty());
+    REQUIRE(events.begun.size() == 3);
+    for (const ContactBegun& touch : events.begun)
+      CHECK(length(touch.point - Vec3{0, std::round(touch.point.y), 0}) < 0.1);
+  }
+}
+
 TEST_CASE("moved in flight, where steps keep no copy of the poses") {
   SceneWorld s = scene_world("ballistic", 20), plain = scene_world("ballistic", 20);
   Stepper stepper(all_events()), without;

@@ -255,3 +255,21 @@ TEST_CASE("octaves: a ragdoll that is pulled gets them by how far its body would
       CHECK(asked(false, 1e3, called, precision) == 4);
     }
 }
+
+TEST_CASE("a step that asked for more sub-steps before all of its bodies were frozen reports those of the settings") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World world(WorldDef{precision, {}});
+    BodyDef link = box({0, 0, 0}, {0.1, 0.2, 0.4}, 1);
+    link.mass = 1e-9;
+    const BodyId upper = must(world.create_body(link));
+    link.pose.position = {0, 0, 2};
+    const BodyId lower = must(world.create_body(link));
+    (void)must(world.create_joint(pin(upper, {0, 0, 1}, lower, {0, 0, -1})));
+    for (const BodyId body : {upper, lower}) (void)must(world.add_force(body, {{1e14, 0, 0}, {10, 20, 10}}));
+    Stepper stepper({.substeps = 1});
+    const StepReport& report = stepper.step(world, frame);
+    REQUIRE(report);
+    CHECK(report.frozen.size() == 2);
+    CHECK(report.substeps == 1);
+  }
+}

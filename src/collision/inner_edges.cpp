@@ -91,11 +91,12 @@ template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& l
     return Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, row_of(at)};
   };
   const auto is_covered = [&](std::uint32_t at) {
-    const auto beside = std::ranges::equal_range(beside_, body_of(at), {}, body_of);
+    const auto first = std::ranges::lower_bound(beside_, body_of(at), {}, body_of);
+    const auto last = std::ranges::upper_bound(beside_, body_of(at), {}, body_of);
     const Meeting<Scalar> x = meeting(at);
     for (std::uint32_t point = 0; point < 4; point++) {
       const auto covers_it = [&](std::uint32_t other) { return covers<Scalar>(meeting(other), x, point); };
-      if ((x.c.together >> point & 1) != 0 && std::ranges::none_of(beside, covers_it)) return false;
+      if ((x.c.together >> point & 1) != 0 && std::none_of(first, last, covers_it)) return false;
     }
     return x.c.together != 0;
   };

@@ -34,24 +34,29 @@ bool sleeps(const WorldState& s, std::uint32_t contact) {
   return s.asleep(s.contacts.ends[contact][0]) || s.asleep(s.contacts.ends[contact][1]);
 }
 
+/// Of the four points of a contact. What sleeps had no step, and its row of `touch` may be of another, or not be there: its impulses are
+/// those that it rests on.
+template <class Scalar> const Scalar* impulses_of(const WorldState& s, std::uint32_t contact) {
+  if (sleeps(s, contact)) return row_of<Scalar>(s, Buffer::contact, contact) + normal_impulse_at;
+  return row_of<Scalar>(s, Buffer::touch, contact);
+}
+
 /// Whether a point was pressed in this step, or the shapes overlap.
 template <class Scalar> bool touches(const WorldState& s, std::uint32_t contact) {
-  const Scalar *touch = row_of<Scalar>(s, Buffer::touch, contact), *found = row_of<Scalar>(s, Buffer::contact, contact);
-  // what sleeps had no step, and its row of `touch` may be of another: its impulses are those that it rests on
-  if (sleeps(s, contact)) touch = found + normal_impulse_at;
-  if (touch[0] > 0 || touch[1] > 0 || touch[2] > 0 || touch[3] > 0) return true;
+  const Scalar *impulses = impulses_of<Scalar>(s, contact), *found = row_of<Scalar>(s, Buffer::contact, contact);
+  if (impulses[0] > 0 || impulses[1] > 0 || impulses[2] > 0 || impulses[3] > 0) return true;
   for (int i = 0; i < int(found[3]); i++)
     if (found[7 + 4 * i] <= 0) return true;
   return false;
 }
 
 /// The mean of the points by their impulses; of a contact without any the deepest one.
-template <class Scalar> Vec3 mean_point(const Scalar* touch, const Scalar* found) {
+template <class Scalar> Vec3 mean_point(const Scalar* impulses, const Scalar* found) {
   Vec3 mean, deepest;
   double whole = 0, least = 0;
   for (int i = 0; i < int(found[3]); i++) {
     const Vec3 point = vec3(found + 4 + 4 * i);
-    const double impulse = double(touch[i]), gap = double(found[7 + 4 * i]);
+    const double impulse = double(impulses[i]), gap = double(found[7 + 4 * i]);
     mean = mean + impulse * point;
     whole += impulse;
     if (i > 0 && gap >= least) continue;
@@ -62,8 +67,7 @@ template <class Scalar> Vec3 mean_point(const Scalar* touch, const Scalar* found
 }
 
 template <class Scalar> Vec3 meeting_point(const WorldState& s, std::uint32_t contact, const EventRecorder::Before& before) {
-  return before.detector.origin(contact) +
-         mean_point(row_of<Scalar>(s, Buffer::touch, contact), row_of<Scalar>(s, Buffer::contact, contact));
+  return before.detector.origin(contact) + mean_point(impulses_of<Scalar>(s, contact), row_of<Scalar>(s, Buffer::contact, contact));
 }
 
 /// Places of shapes are used again: whether these are the ones that touched.
@@ -82,9 +86,10 @@ ContactBegun EventRecorder::meeting(const WorldState& s, std::uint32_t contact, 
 
 template <class Scalar> void EventRecorder::find_hits(const WorldState& s, const Before& before, double least_speed) {
   for (std::uint32_t row = 1; row < s.contact_rows(); row++) {
+    if (sleeps(s, row)) continue;
     const Scalar* touch = row_of<Scalar>(s, Buffer::touch, row);
     const double speed = double(touch[speed_at]);
-    if (!(speed > 0 && speed >= least_speed) || sleeps(s, row)) continue;
+    if (!(speed > 0 && speed >= least_speed)) continue;
     const double impulse = double(touch[0]) + double(touch[1]) + double(touch[2]) + double(touch[3]);
     hits_.push_back({meeting<Scalar>(s, row, before), speed, impulse});
   }

@@ -59,8 +59,7 @@ void Nets::add(const WorldState& state, std::span<const std::uint32_t> springs) 
     for (const std::uint32_t body : {state.joints[row].body_a, state.joints[row].body_b})
       net.bodies.push_back(state.body_ids.row(body));
   std::ranges::sort(net.bodies, {}, id);
-  const auto [first, last] = std::ranges::unique(net.bodies);
-  net.bodies.erase(first, last);
+  net.bodies.erase(std::unique(net.bodies.begin(), net.bodies.end()), net.bodies.end());
   for (const std::uint32_t row : springs) {
     for (const std::uint32_t body : {state.joints[row].body_a, state.joints[row].body_b}) {
       const auto at = std::ranges::lower_bound(net.bodies, id(state.body_ids.row(body)), {}, id);

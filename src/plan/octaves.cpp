@@ -90,8 +90,7 @@ void Octaves::assign(const WorldState& state, bool together) {
 
 void Octaves::count_limited() {
   std::ranges::sort(limits_);
-  const auto repeated = std::ranges::unique(limits_);
-  limits_.erase(repeated.begin(), repeated.end());
+  limits_.erase(std::unique(limits_.begin(), limits_.end()), limits_.end());
   for (const std::uint32_t root : limits_) limited_ += islands_.size(root);
 }
 

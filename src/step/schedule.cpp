@@ -188,9 +188,11 @@ void TreeSlots::find_parallel(std::span<const JointLink> links) {
   std::ranges::sort(closing, {}, &Closing::bodies);
   for (std::size_t i = 0; i < forest_.trees(); i++) {
     const std::span<const TreeNode> tree = forest_.tree(i);
-    for (const TreeNode& node : tree.subspan(1))
-      for (const Closing& c : std::ranges::equal_range(closing, both(node.body, tree[node.parent].body), {}, &Closing::bodies))
-        parallel_[c.row] = true;
+    for (const TreeNode& node : tree.subspan(1)) {
+      const auto bodies = both(node.body, tree[node.parent].body);
+      const auto first = std::ranges::lower_bound(closing, bodies, {}, &Closing::bodies);
+      for (auto c = first; c != closing.end() && c->bodies == bodies; ++c) parallel_[c->row] = true;
+    }
   }
 }
 

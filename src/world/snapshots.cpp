@@ -156,20 +156,26 @@ class Look {
 
 bool is_flag(double x) { return x == 0 || x == 1; }
 
-/// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, and flags. (Impulses may be any numbers: a
-/// body that they throw beyond the range is frozen.)
+/// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, turned by quaternions of unit length, both
+/// as they are rounded and with what rounding dropped, and flags. (Impulses may be any numbers: a body that they throw beyond the range is
+/// frozen.)
 bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
-  double square = 0;
-  for (std::uint32_t c = 0; c < 8; c++) {
-    const double place = body.at(Buffer::pose, c), speed = body.at(Buffer::motion, c);
-    if (c != 3 && !(std::isfinite(place) && std::isfinite(speed))) return false;
-    square += c < 4 ? 0 : place * place;
+  double rounded = 0, whole = 0;
+  for (std::uint32_t c = 0; c < 16; c++) {
+    const double pose = body.at(Buffer::pose, c), part = body.at(Buffer::velocity_parts, c);
+    if (!std::isfinite(pose) || !std::isfinite(part)) return false;
+    if (c < 8 && !std::isfinite(body.at(Buffer::motion, c))) return false;
+    if (c < place::orientation || c >= place::orientation + 4) continue;
+    const double sum = pose + body.at(Buffer::pose, place::orientation_low + c - place::orientation);
+    rounded += pose * pose;
+    whole += sum * sum;
   }
+  const auto is_unit = [](double square) { return std::fabs(std::sqrt(square) - 1) <= constants::unit_tolerance; };
   const bool stands = s.bodies[row].kind == BodyKind::fixed;
   const double settling = body.at(Buffer::velocity_parts, place::settling), asleep = body.at(Buffer::rest, rest_asleep);
-  return std::fabs(std::sqrt(square) - 1) <= constants::unit_tolerance && settling >= 0 && settling <= constants::rounds &&
+  return is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
          body.at(Buffer::rest, rest_quiet_time) >= 0 && is_flag(asleep) && is_flag(body.at(Buffer::rest, rest_stirred)) &&
-         !(stands && (asleep > 0 || body.at(Buffer::motion, 7) == frozen_phase));
+         !(stands && (asleep > 0 || body.at(Buffer::motion, place::phase) == frozen_phase));
 }
 
 /// Of rows that name an object each: every one once.
