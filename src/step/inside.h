@@ -309,7 +309,7 @@ struct Stepper::Inside {
     if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
     list_islands(s, wanted);
     plan = &plans.find(wanted, own.ordered());
-    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return ok;
+    if (ok = runner.bind(settings, *plan, s, schedule, wanted.shapes); !ok) return ok;
     lap(Timer::plan);
 
     if (plan->flight && settings.body_events) recorder.keep_poses(s);
