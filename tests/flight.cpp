@@ -134,6 +134,30 @@ TEST_CASE("a body that would leave the range of numbers is frozen in flight, and
   }
 }
 
+// On the CPU such a step was made anew from the velocities that it had left, and only where bodies may sleep.
+TEST_CASE("a body that a force sends past what it was not looked for has the step of its flight made anew, in all places") {
+  require_gl();
+  std::vector<BodyState> wanted;
+  for (const bool sleep : {false, true})
+    for (const Place place : {Place::cpu, Place::gl}) {
+      CAPTURE(sleep);
+      World world({Precision::f32, {}});
+      (void)must(world.create_body(fixed_box({0, -0.05, 0}, {5, 0.05, 5})));
+      const BodyId thrown = must(world.create_body(ball({0, 3, 0}, 0.1)));
+      const double newtons = 1.2e5;  // 4 m within the step
+      (void)must(world.add_force(thrown, [=](const World&, BodyId) { return Wrench{{0, -newtons, 0}, {}}; }));
+      StepSettings settings;
+      settings.set_all(place);
+      settings.sleep = sleep;
+      Stepper stepper(settings);
+      const StepReport& report = stepper.step(world, frame);
+      REQUIRE(report);
+      CHECK(report.repeats == 1);
+      if (wanted.empty()) wanted = states(world, {thrown});
+      CHECK((states(world, {thrown}) == wanted));
+    }
+}
+
 TEST_CASE("only kernels of the host's own that look at bodies between sub-steps keep them from flight") {
   World world({Precision::f32});
   (void)add_bodies(world, kinds[0]);

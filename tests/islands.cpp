@@ -127,6 +127,7 @@ int check_labels(Backend& backend, std::uint32_t count) {
     for (std::uint32_t row = 1; row <= count; row++) different += lists.labels()[row] != islands.root(row);
     CHECK(different == 0);
   }
+  state.contacts.ends.assign(1, {0, 0});  // the world is whole again
   return most;
 }
 
@@ -200,10 +201,12 @@ TEST_CASE("islands: fixed bodies join nobody, and joints count") {
   lists.list(world.state());
   CHECK(lists.ends() == std::vector<std::uint32_t>{1, 3, 2, 4});
   CHECK_FALSE(lists.known());
-  world.state().contacts.ends = {{0, 0}, {1, fixed}};
+  world.state().contacts.ends.assign(1, {0, 0});  // the world is whole again, for a call
   must(world.destroy(world.joints()[0]));
+  world.state().contacts.ends = {{0, 0}, {1, fixed}};
   lists.list(world.state());
   CHECK(lists.known());  // each alone
+  world.state().contacts.ends.assign(1, {0, 0});
 }
 
 TEST_CASE("islands: equal bits and equal sleepers wherever stages run and islands are found") {

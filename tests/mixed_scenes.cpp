@@ -5,6 +5,7 @@
 #include "cases/parts.h"
 #include "scenes/builder.h"
 #include "scenes/metrics.h"
+#include "support_ways.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -110,5 +111,12 @@ TEST_CASE("mixed: the same bits in all lanes, in threads, on GL and in all mixes
         return hash_each_step(m.world, stepper, steps);
       };
       check_same_bits(hashes, 30, 30);
+      const auto in_the_middle = [&] {
+        Mixed m(precision, c.build);
+        Stepper first(lanes(1));
+        run(m.world, first, c.before);
+        return std::move(m.world);
+      };
+      check_same_ways({.make = in_the_middle}, 30, 16);
     }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
+#include "support_ways.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -184,6 +185,11 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
           return hashes;
         },
         4, 2);
+}
+
+TEST_CASE("the same bits whoever steps") {
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    check_same_ways({[&] { return linked_chains(precision); }, add_all}, 12, 4);
 }
 
 TEST_CASE("each joint of a body that moves gives once, everything is read before, and what stands takes nothing") {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
+#include "support_ways.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -232,6 +233,10 @@ TEST_CASE("forces once a step and in each sub-step: the same bits everywhere, in
           return hashes_of(settings, steps, precision, {true, false}, {});
         },
         20, 6);
+    const auto add_both = [&](Stepper& stepper, World& world) {
+      for (const bool once : {true, false}) add(stepper, world, once);
+    };
+    check_same_ways({[&] { return std::move(with_own(precision).world); }, add_both}, 20, 6);
     const auto both = hashes_of({}, 20, precision, {true, false}, {});
     CHECK(hashes_of({}, 20, precision, {false, true}, {}) == both);
     for (const bool once : {true, false}) {

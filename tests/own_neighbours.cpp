@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
+#include "support_ways.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -117,6 +118,11 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
           return hash_each_step(world, stepper, steps);
         },
         6, 3);
+}
+
+TEST_CASE("the same bits whoever steps") {
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    check_same_ways({[&] { return crowd(150, precision); }, [](Stepper& s, World& w) { add_kernels(s, w, 0.7); }}, 12, 4);
 }
 
 TEST_CASE("objects come and go") {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
+#include "support_ways.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -118,6 +119,11 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
             return hash_each_step(world, stepper, steps);
           },
           4, 2);
+}
+
+TEST_CASE("the same bits whoever steps") {
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    check_same_ways({[&] { return cloud(66, precision); }, add_attraction}, 12, 4);
 }
 
 TEST_CASE("of many others, in several chunks and on several levels") {

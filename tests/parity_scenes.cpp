@@ -1,9 +1,10 @@
 // Pins pcphys's signature: the same scene has the same hash in scalar C++, in 4 and 8 lanes, in any number of threads,
-// on GL, in all eight mixes of places, and when they change from step to step; in float and in double. It is run again
+// on GL, in all eight mixes of places, when they change from step to step, and whichever steppers step it; in float and in double. It is run again
 // for every change of a kernel, and has to hold on every device that promises parity (see `pcphys doctor`).
 #include <algorithm>
 #include <random>
 
+#include "support_ways.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -242,6 +243,33 @@ TEST_CASE("parity of the scene whose forces are its own kernel: magnets, in all 
           return hash_each_step(s.world, stepper, steps);
         },
         150, 8);
+}
+
+TEST_CASE("who steps a world changes nothing: new steppers, steppers in turns, snapshots, lanes, threads and places that change") {
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    for (const Case& c : cases) {
+      INFO(text(c, precision));
+      const auto in_the_middle = [&] {
+        SceneWorld s = scene_world(c.scene, c.count, precision);
+        Stepper stepper(lanes(0));
+        run(s.world, stepper, c.before);
+        return std::move(s.world);
+      };
+      check_same_ways({.make = in_the_middle}, 120, 16);
+    }
+}
+
+TEST_CASE("who steps the scene whose forces are its own kernel changes nothing") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    scenes::Scene scene;
+    const auto make = [&] {
+      SceneWorld s = scene_world("magnets", 72, precision);
+      scene = std::move(s.scene);
+      return std::move(s.world);
+    };
+    const auto give = [&](Stepper& stepper, World& world) { must(scenes::add_kernels(scene, world, stepper)); };
+    check_same_ways({make, give}, 60, 8);
+  }
 }
 
 TEST_CASE("steps so short that products come to be subnormal have the same bits on GL") {

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "support_sleep.h"
+#include "support_ways.h"
+#include "world/state.h"
 
 using namespace worldtest;
 
@@ -111,6 +113,22 @@ TEST_CASE("sleep: equal hashes in lanes, threads, on GL and in all mixes") {
     check_same_bits(hashes_of, 90, 70);
     CHECK(fell > 0);
     CHECK(woke > 0);
+  }
+}
+
+TEST_CASE("sleep: equal hashes whoever steps") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const auto make = [&] {
+      Towers t(2, precision);
+      (void)add_chain(t.world, {20, 5, 0}, 3, false, {});
+      BodyDef shot = ball({-7, 2.5, 0}, 0.2);
+      shot.velocity = {8, 1, 0};
+      (void)must(t.world.create_body(shot));
+      return std::move(t.world);
+    };
+    StepSettings settings = sleepy();
+    settings.sleep_time = 0.15;
+    check_same_ways({.make = make, .settings = settings}, 90, 40);
   }
 }
 
@@ -262,5 +280,30 @@ TEST_CASE("sleep: bodies that float at rest sleep, on every backend alike; those
     CHECK(must(world.is_asleep(still)));
     run(world, stepper, 100);
     CHECK(!must(world.is_asleep(drifts)));
+  }
+}
+
+// What a step freezes was counted among what moved in it and came to rest: it slept and stood, and steps reported it asleep.
+TEST_CASE("sleep: what is frozen stands, and does not sleep") {
+  require_gl();
+  for (const Place place : {Place::cpu, Place::gl}) {
+    World world({Precision::f32, {}});
+    const BodyId still = must(world.create_body(ball({}))), odd = must(world.create_body(ball({5, 0, 0})));
+    must(world.set_mass_properties(odd, {1e-30, {1e-30, 1e-30, 1e-30}}));
+    (void)must(world.add_force(odd, Wrench{{1e15, 0, 0}, {}}));
+    StepSettings settings = sleepy();
+    settings.sleep_time = 0.01;
+    settings.set_all(place);
+    Stepper stepper(settings);
+    const StepReport& report = stepper.step(world, frame);
+    REQUIRE(report);
+    CHECK(report.frozen == std::vector{odd});
+    CHECK(report.asleep == 1);
+    CHECK(must(world.is_asleep(still)));
+    CHECK(!must(world.is_asleep(odd)));
+    WorldState& state = world.state();
+    state.freeze(state.body_ids.row(still.index));  // as a step does with one that slept when it began
+    CHECK(!must(world.is_asleep(still)));
+    CHECK(state.sleepers == 0);
   }
 }

@@ -3,6 +3,7 @@
 // number of lanes and threads, on GL and in all mixes.
 #include <cmath>
 
+#include "support_ways.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -155,6 +156,7 @@ TEST_CASE("octaves: equal hashes in lanes, threads, on GL and in all mixes") {
       return hash_each_step(yard.world, stepper, steps);
     };
     check_same_bits(hashes_of, 60, 8);
+    check_same_ways({.make = [&] { return std::move(Yard(precision).world); }}, 60, 8);
   }
 }
 

@@ -221,13 +221,14 @@ void judge_bits(const Scene& scene, const PlayOptions& options, bool gl, Verdict
     change(changed);
     other += played_hash(scene, changed) != expected;
   };
-  const bool f64 = options.precision == Precision::f64;
-  compare([](PlayOptions& o) { o.lanes = 4; });
-  if (!f64) compare([](PlayOptions& o) { o.lanes = 8; });
+  // each differs in several ways: what one of them alone would change shows all the same
+  compare([](PlayOptions& o) { o.lanes = 4, o.steppers = 2; });
+  compare([&](PlayOptions& o) { o.lanes = options.precision == Precision::f32 ? 8 : 4, o.fresh_every = 5; });
   compare([](PlayOptions& o) { o.threads = 2; });
-  compare([](PlayOptions& o) { o.restored = true; });
+  compare([](PlayOptions& o) { o.fresh_every = 7, o.restored = true; });
   if (!makes_while_it_runs(scene)) compare([](PlayOptions& o) { o.unrelated = true; });
   if (gl) compare([](PlayOptions& o) { o.place = Place::gl; });
+  if (gl) compare([](PlayOptions& o) { o.place = Place::gl, o.mixed = true, o.steppers = 2; });
   Finding& f = verdict[Measure::bits];
   f.measured = true;
   f.worst = other;

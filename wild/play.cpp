@@ -10,8 +10,6 @@ namespace {
 
 /// Unrelated islands stand this far away [m]: further than anything of a scene goes, and near enough for float.
 constexpr double far_away = 2e4;
-/// Between restored snapshots.
-constexpr std::uint64_t steps_between = 7;
 
 WorldDef with_precision(WorldDef def, Precision precision) {
   def.precision = precision;
@@ -93,8 +91,10 @@ struct Player::Apply {
   Status operator()(const SetCanSleep& c) const { return p.world_.set_can_sleep(p.body(c.body), c.can_sleep); }
   Status operator()(const Wake& c) const { return p.world_.wake(p.body(c.body)); }
   Status operator()(const Configure& c) const {
-    p.settings_ = p.placed(c.settings);
-    return p.stepper_->configure(p.settings_);
+    const StepSettings before = std::exchange(p.settings_, c.settings);
+    const Status ok = p.configure();
+    if (!ok) p.settings_ = before;
+    return ok;
   }
   Status operator()(const Save&) const {
     p.saved_ = p.world_.snapshot();
@@ -108,8 +108,8 @@ Player::Player(const Scene& scene, const PlayOptions& options)
     : scene_(scene),
       options_(options),
       world_(with_precision(scene.world, options.precision)),
-      settings_(placed(scene.settings)) {
-  stepper_.emplace(settings_);
+      settings_(scene.settings) {
+  renew_steppers();
 }
 
 StepSettings Player::placed(StepSettings settings) const {
@@ -117,7 +117,33 @@ StepSettings Player::placed(StepSettings settings) const {
   settings.lanes = options_.lanes;
   settings.threads = options_.threads;
   settings.timings = false;
+  if (!options_.mixed) return settings;
+  (steps_ % 2 ? settings.integrate : settings.impulses) = Place::cpu;
+  (steps_ % 3 ? settings.joints : settings.integrate) = Place::cpu;
   return settings;
+}
+
+void Player::renew_steppers() {
+  steppers_.clear();
+  for (std::uint32_t i = 0; i < options_.steppers; i++) {
+    steppers_.emplace_back(placed(settings_));
+    steppers_.back().set_trace(trace_);
+  }
+}
+
+Status Player::configure() {
+  Status ok;
+  for (Stepper& stepper : steppers_) ok = stepper.configure(placed(settings_));
+  return ok;
+}
+
+Status Player::change_steppers() {
+  if (options_.fresh_every > 0 && steps_ > 0 && steps_ % options_.fresh_every == 0) {
+    if (options_.restored)
+      if (Status ok = world_.restore(world_.snapshot()); !ok) return ok;
+    renew_steppers();
+  }
+  return options_.mixed ? configure() : Status{};
 }
 
 /// After the scene's own first objects, so that ids of these are the same with it and without. What is made later has
@@ -136,14 +162,10 @@ void Player::add_unrelated() {
 }
 
 Status Player::step(double dt, Watcher* watcher, bool& go_on) {
-  if (options_.restored && ++steps_ % steps_between == 0) {
-    const std::vector<std::byte> snapshot = world_.snapshot();
-    if (Status ok = world_.restore(snapshot); !ok) return ok;
-    stepper_.emplace(settings_);
-    stepper_->set_trace(trace_);
-  }
+  if (Status ok = change_steppers(); !ok) return ok;
+  Stepper& stepper = steppers_[steps_++ % steppers_.size()];
   const auto start = std::chrono::steady_clock::now();
-  const StepReport& report = stepper_->step(world_, dt);
+  const StepReport& report = stepper.step(world_, dt);
   seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (watcher) go_on = watcher->after_step(*this, dt, report);
   return report ? Status{} : Status(report.error);

@@ -1,6 +1,5 @@
 // Plays a scene on the library.
 #pragma once
-#include <optional>
 #include <vector>
 
 #include "pcphys/step.h"
@@ -13,11 +12,13 @@ namespace pcphys::wild {
 struct PlayOptions {
   Precision precision = Precision::f32;
   Place place = Place::cpu;  // of all stages
+  bool mixed = false;        // some of them are on the CPU in its stead, others in each step
   std::uint32_t lanes = 0, threads = 1;
+  std::uint32_t steppers = 1;     // that step the world in turns
+  std::uint32_t fresh_every = 0;  // before each so manieth step all of them are new; 0: never
+  bool restored = false;          // and the world is restored from its own snapshot
   /// Far away stands a heap of two balls on a plate of its own, which never meets the scene.
   bool unrelated = false;
-  /// Before every 7th step a snapshot is restored into the same world, and a stepper that remembers nothing goes on.
-  bool restored = false;
 };
 
 class Player;
@@ -43,14 +44,13 @@ class Player {
   const PlayOptions& options() const { return options_; }
   const World& world() const { return world_; }
   World& world() { return world_; }
-  Stepper& stepper() { return *stepper_; }
   const StepSettings& settings() const { return settings_; }
   /// Of Stepper::step alone, so far.
   double seconds() const { return seconds_; }
   /// Told what contacts do (src/step/contact_trace.h); null: nobody is.
   void set_trace(ContactTrace* trace) {
     trace_ = trace;
-    stepper_->set_trace(trace);
+    for (Stepper& stepper : steppers_) stepper.set_trace(trace);
   }
   /// Invalid ids for what was never made, was refused or is destroyed.
   BodyId body(int number) const { return number == ground ? world_.ground() : at(bodies_, number); }
@@ -70,13 +70,17 @@ class Player {
   Status step(double dt, Watcher* watcher, bool& go_on);
   void add_unrelated();
   StepSettings placed(StepSettings settings) const;
+  void renew_steppers();
+  /// What the options ask for between two steps.
+  Status change_steppers();
+  Status configure();
   struct Apply;
 
   const Scene& scene_;
   PlayOptions options_;
   World world_;
-  std::optional<Stepper> stepper_;
-  StepSettings settings_;
+  std::vector<Stepper> steppers_;
+  StepSettings settings_;  // of the scene, as it was configured last
   std::vector<BodyId> bodies_;
   std::vector<JointId> joints_;
   std::vector<SpringId> springs_;

@@ -65,7 +65,7 @@ bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const A
   Scalar* rest = state.tables.data<Scalar>(Buffer::rest);
   bool some = false;
   for (const std::uint32_t row : moved) {
-    if (row == 0) continue;  // pads
+    if (state.stands(row)) continue;  // it pads, or was frozen by this step
     Scalar& time = rest[row * rest_fields + rest_quiet_time];
     const bool slow = rest[row * rest_fields + rest_can_sleep] > 0 && (restless.empty() || !restless[row]) && slowness.slow(row);
     time = slow ? std::min(Scalar(double(time) + dt), enough) : Scalar(0);
@@ -152,7 +152,7 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
 std::uint32_t Sleepers::choose(WorldState& state, std::span<const std::uint32_t> moved, double sleep_time) {
   build(state);
   for (const std::uint32_t row : moved)
-    if (state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time) awake_[root(row)] = true;
+    if (!state.stands(row) && state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time) awake_[root(row)] = true;
   mark_kept_awake(state);
   if (together_ && std::ranges::find(awake_, true) != awake_.end()) return 0;
   return lay_down(state, moved);
@@ -172,7 +172,7 @@ void Sleepers::mark_kept_awake(const WorldState& state) {
 std::uint32_t Sleepers::lay_down(WorldState& state, std::span<const std::uint32_t> moved) {
   std::uint32_t fell = 0;
   for (const std::uint32_t row : moved) {
-    if (row == 0 || awake_[root(row)]) continue;
+    if (state.stands(row) || awake_[root(row)]) continue;
     stop(state, row);
     state.tables.set(Buffer::rest, row, rest_asleep, 1);
     fell++;

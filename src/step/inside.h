@@ -219,6 +219,10 @@ struct Stepper::Inside {
   /// What stands for several joints, whose own impulses are none.
   void write_solved(WorldState& s);
   void update_structure(WorldState& s);
+  /// Whether the schedule is of the world's objects of now.
+  bool is_scheduled(const WorldState& s) const;
+  /// The world, and the schedule where it is of what the world is now.
+  void walk_in_debug(WorldState& s) const;
 
   void update_contacts(const WorldState& s) {
     schedule.update_contacts(s);
@@ -305,7 +309,7 @@ struct Stepper::Inside {
     if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
     list_islands(s, wanted);
     plan = &plans.find(wanted, own.ordered());
-    if (ok = runner.bind(settings, *plan, s, schedule); !ok) return ok;
+    if (ok = runner.bind(settings, *plan, s, schedule, wanted.shapes); !ok) return ok;
     lap(Timer::plan);
 
     if (plan->flight && settings.body_events) recorder.keep_poses(s);

@@ -142,8 +142,9 @@ Status Runner::attach_table(Place place, Buffer buffer, WorldState& state) {
   return attach(place, buffer, rows.data(), rows.size());
 }
 
-Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule) {
-  const Bound now{&plan, state.serial, state.tables.layout(), schedule.changes(), settings.timings, settings.sleep};
+Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule,
+                    bool strays) {
+  const Bound now{&plan, state.serial, state.tables.layout(), schedule.changes(), settings.timings, strays};
   if (now == bound_) {
     for (const Place place : exchanged_)
       if (Status ok = attach_table(place, Buffer::contact, state); !ok) return ok;
@@ -168,7 +169,7 @@ Status Runner::bind(const StepSettings& settings, const StepPlan& plan, WorldSta
   for (const PlanEntry& entry : plan.entries)
     if (entry.own && entry.kind == PlanEntry::Kind::kernel)
       if (Status ok = at(entry.place).backend->prepare(*entry.own); !ok) return ok;
-  prepare_calls(plan, settings, state, schedule);
+  prepare_calls(plan, settings.timings, strays, state, schedule);
   bound_ = now;
   return {};
 }

@@ -43,7 +43,8 @@ class Runner final : Keeper {
   Status prepare(const StepSettings& settings, Precision precision, const OwnKernels& own = {});
   /// Everything a plan binds: lists and colours packed for their backends, buffers attached. Where nothing of it has
   /// changed since the last step, that step's bindings stand. The plan stays where it is until another one is bound.
-  Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule);
+  /// `strays`: what goes further than it was looked for has the step made anew; it is undone then, also where all bodies are in flight.
+  Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, bool strays = false);
   /// Runs the plan that was bound.
   Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider = nullptr);
   /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others
@@ -111,7 +112,7 @@ class Runner final : Keeper {
   struct Bound {
     const StepPlan* plan = nullptr;
     std::uint64_t world = 0, layout = 0, schedule = 0;
-    bool timings = false, sleep = false;
+    bool timings = false, strays = false;
     friend bool operator==(const Bound&, const Bound&) = default;
   };
   /// What a backend is asked for at once: a transfer, or kernels, `count` of runs_ from `first` on.
@@ -138,7 +139,7 @@ class Runner final : Keeper {
   std::uint32_t lanes(Place place, Domain domain, const Schedule& schedule);
   Status attach_table(Place place, Buffer buffer, WorldState& state);
   /// Finds calls_, and what undo must find.
-  void prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state, const Schedule& schedule);
+  void prepare_calls(const StepPlan& plan, bool timings, bool strays, const WorldState& state, const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   void narrow(const PlanEntry& entry);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);

@@ -62,9 +62,7 @@ void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Sche
                    state.tables.rows(k.table) - 1});
 }
 
-void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, const WorldState& state,
-                           const Schedule& schedule) {
-  const bool timings = settings.timings;
+void Runner::prepare_calls(const StepPlan& plan, bool timings, bool strays, const WorldState& state, const Schedule& schedule) {
   calls_.clear();
   runs_.clear();
   ranges_.clear();
@@ -103,10 +101,7 @@ void Runner::prepare_calls(const StepPlan& plan, const StepSettings& settings, c
   infos_ = phase_count * (1 + octave);
   may_be_undone_ = std::ranges::any_of(plan.own, [](const auto& k) { return !k->of_library(); });
   kept_.clear();
-  if (plan.flight && !gl_ && plan.own.empty()) {        // nothing of it can fail
-    if (settings.sleep) kept_.push_back(Buffer::pose);  // how far bodies went
-    return;
-  }
+  if (plan.flight && !gl_ && !strays && plan.own.empty()) return;  // nothing of it can fail
   for (const Buffer buffer : plan.overwritten)
     if (keeps(buffer)) kept_.push_back(buffer);
 }

@@ -5,7 +5,9 @@
 #include <string>
 
 #include "step/inside.h"
+#include "step/schedule_invariants.h"
 #include "step/transfer_bytes.h"
+#include "world/invariants.h"
 
 namespace pcphys {
 
@@ -128,6 +130,7 @@ const StepReport& Stepper::step(World& world, double dt) {
   Clock::time_point start;
   if (clocked) start = in.began = Clock::now();
   in.step_within_memory(world, dt);
+  in.walk_in_debug(s);
   in.report.step = made + (in.report ? 1 : 0);
   in.report.bodies = std::uint32_t(world.body_count());
   in.report.joints = std::uint32_t(world.joint_count());
@@ -151,6 +154,18 @@ void Stepper::Inside::start_anew() {
   spoiled = false;
 }
 
+void Stepper::Inside::walk_in_debug(WorldState& s) const {
+  pcphys::walk_in_debug(s, "step");
+#ifndef NDEBUG
+  const bool walked = s.seen.rows_paid == 0;
+  if (walked && !spoiled && is_scheduled(s)) walk_invariants(s, schedule);
+#endif
+}
+
+bool Stepper::Inside::is_scheduled(const WorldState& s) const {
+  return scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version;
+}
+
 void Stepper::Inside::write_solved(WorldState& s) {
   undone = false;
   if (s.joints.size() == 1) return;  // not even the rows that pad need be there
@@ -160,7 +175,7 @@ void Stepper::Inside::write_solved(WorldState& s) {
 }
 
 void Stepper::Inside::update_structure(WorldState& s) {
-  if (scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version) {
+  if (is_scheduled(s)) {
     if (undone) write_solved(s);
     return;
   }

@@ -5,6 +5,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "world/invariants.h"
 #include "world/state.h"
 #include "world/validate.h"
 
@@ -40,6 +41,7 @@ World::World(const WorldDef& def) try : state_(std::make_unique<WorldState>(def)
 }
 World::~World() {
   if (state_ && state_->stepping) detail::misuse("A World was destroyed while a step of it runs; no callback may do that.");
+  if (state_) walk_in_debug(*state_, "~World");
 }
 World::World(World&& other) noexcept {
   if (other.state_ && other.state().stepping) detail::misuse("A World was moved while a step of it runs; no callback may do that.");
@@ -54,6 +56,7 @@ World& World::operator=(World&& other) noexcept {
 
 Status World::changeable(const char* call) const {
   if (state(call).stepping) return busy("world");
+  walk_in_debug(*state_, call);
   return {};
 }
 Status World::changeable(BodyId body, const char* call) const {
@@ -139,10 +142,12 @@ void forget_apart(WorldState& s, std::uint32_t index) {
   if (!asked) return;
   for (const std::uint32_t other : asked.mapped()) {
     s.no_collide.erase(WorldState::pair_key(index, other));
-    if (const auto of_other = s.asked_apart.find(other); of_other != s.asked_apart.end()) std::erase(of_other->second, index);
+    const auto of_other = s.asked_apart.find(other);
+    if (of_other == s.asked_apart.end()) continue;
+    std::erase(of_other->second, index);
+    if (of_other->second.empty()) s.asked_apart.erase(of_other);
   }
 }
-
 }  // namespace
 
 void WorldState::remove_body(std::uint32_t row) {

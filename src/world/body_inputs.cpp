@@ -101,6 +101,14 @@ Status World::set_filter(BodyId body, const Filter& filter) try {
   return caught();
 }
 
+namespace {
+/// A list of nobody is none.
+void drop_if_empty(WorldState& s, std::uint32_t body) {
+  const auto others = s.asked_apart.find(body);
+  if (others != s.asked_apart.end() && others->second.empty()) s.asked_apart.erase(others);
+}
+}  // namespace
+
 Status World::set_collide(BodyId a, BodyId b, bool collide) try {
   Status ok = changeable(a);
   if (ok) ok = changeable(b);
@@ -109,12 +117,13 @@ Status World::set_collide(BodyId a, BodyId b, bool collide) try {
   if (!ok) return ok;
   WorldState& s = state();
   for (const BodyId body : {a, b}) make_room(s.asked_apart[body.index], 2);
+  // nothing needs memory behind the next line
   const auto pair = s.no_collide.try_emplace(WorldState::pair_key(a.index, b.index)).first;
   for (const auto& [body, other] : {std::pair(a.index, b.index), std::pair(b.index, a.index)}) {
-    std::vector<std::uint32_t>& others = s.asked_apart[body];
+    std::vector<std::uint32_t>& others = s.asked_apart.at(body);
     if (pair->second.asked == collide) collide ? void(std::erase(others, other)) : others.push_back(other);
-    if (others.empty()) s.asked_apart.erase(body);
   }
+  for (const BodyId body : {a, b}) drop_if_empty(s, body.index);
   pair->second.asked = !collide;
   if (!pair->second.any()) s.no_collide.erase(pair);
   state().structure_version++;
@@ -122,6 +131,7 @@ Status World::set_collide(BodyId a, BodyId b, bool collide) try {
   state().stir_moving(state().body_ids.row(b.index));
   return {};
 } catch (...) {
+  for (const BodyId body : {a, b}) drop_if_empty(state(), body.index);
   return caught();
 }
 

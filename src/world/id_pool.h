@@ -66,6 +66,7 @@ class IdPool {
   void set_generation(std::uint32_t index, std::uint32_t generation) { slots_[index].generation = generation; }  // for tests
   std::uint32_t size() const { return std::uint32_t(slots_.size()); }  // indices ever used
   std::uint32_t count() const { return alive_; }
+  const std::vector<std::uint32_t>& free_indices() const { return free_; }  // as the heap has them
   void shrink() {
     slots_.shrink_to_fit();
     free_.shrink_to_fit();

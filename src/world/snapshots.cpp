@@ -218,6 +218,11 @@ bool is_content(const WorldState& s, const Layout& layout, Reader r) {
   return true;
 }
 
+/// Masses are kept of frozen bodies alone.
+void drop_unfrozen(WorldState& s) {
+  std::erase_if(s.frozen, [&](const auto& f) { return !s.bodies[s.body_ids.row(f.first)].frozen; });
+}
+
 /// Memory for contacts, and for any of the bodies to be frozen: nothing needs more while a snapshot is taken.
 void make_room_for(WorldState& s, std::uint32_t contacts) {
   s.tables.reserve(Table::contact, contacts);
@@ -244,7 +249,7 @@ void take_content(WorldState& s, const Layout& layout, Reader& r) {
   for (const auto& [rows, count] : layout.own)
     for (std::uint32_t row = 1; row < count; row++) read_row(r, s, rows, row);
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) s.follow_mark(row);
-  std::erase_if(s.frozen, [&](const auto& f) { return !s.bodies[s.body_ids.row(f.first)].frozen; });
+  drop_unfrozen(s);
   for (std::uint32_t row = 1; row < contacts; row++) s.contacts.ends[row] = s.ends_of(s.contacts.keys[row]);
 }
 
@@ -320,6 +325,7 @@ Status World::restore(std::span<const std::byte> snapshot) try {
   s.contacts_version++;
   return {};
 } catch (...) {
+  drop_unfrozen(state());  // there was no room for all
   return caught();
 }
 

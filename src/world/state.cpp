@@ -218,6 +218,11 @@ void WorldState::freeze(std::uint32_t row) {
   for (const Buffer buffer : {Buffer::motion, Buffer::velocity_parts, Buffer::mass, Buffer::inertia, Buffer::delta})
     for (std::uint32_t i = 0; i < reals_of(buffer); i++) tables.set(buffer, row, i, 0);
   tables.set(Buffer::motion, row, 7, frozen_phase);
+  if (asleep(row)) {  // what stands does not sleep
+    tables.set(Buffer::rest, row, rest_asleep, 0);
+    sleepers--;
+    rest_version++;
+  }
   structure_version++;
 }
 

@@ -12,6 +12,7 @@
 #include "world/contact_drops.h"
 #include "world/id_pool.h"
 #include "world/own_properties.h"
+#include "world/seen_changes.h"
 #include "world/tables.h"
 
 namespace pcphys {
@@ -131,6 +132,7 @@ struct WorldState {
   std::uint64_t rest_version = 1;           // who sleeps, and who is stirred
   std::uint64_t removals = 0;               // of properties and tables of the host's own
   std::uint64_t contacts_version = 1;       // which contacts there are
+  SeenChanges seen;                         // of the last walk over the invariants
 
   /// Body rows of a contact: the first is the one that moves, so that arms are short.
   std::array<std::uint32_t, 2> ends_of(const ContactKey& key) const;

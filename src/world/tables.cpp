@@ -218,6 +218,13 @@ void Tables::set4(Buffer buffer, std::uint32_t row, std::uint32_t offset, Quat q
   set(buffer, row, offset + 3, q.w);
 }
 
+bool Tables::are_long_enough() const {
+  return std::ranges::all_of(columns_, [&](const Column& column) {
+    const std::size_t wanted = column.used && column.made ? rows(column.table) * column.row_bytes : 0;
+    return column.bytes.size() == wanted;
+  });
+}
+
 std::size_t Tables::memory_bytes() const {
   std::size_t sum = 0;
   for (const Column& column : columns_) sum += column.bytes.capacity() + column.initial.capacity();

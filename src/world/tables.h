@@ -97,6 +97,8 @@ class Tables {
   void set4(Buffer buffer, std::uint32_t row, std::uint32_t offset, Quat value);
 
   std::size_t memory_bytes() const;
+  /// Whether every buffer is as long as its table's rows, or has no memory yet.
+  bool are_long_enough() const;
 
  private:
   struct Column {

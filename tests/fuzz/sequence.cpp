@@ -4,6 +4,8 @@
 #include <memory>
 #include <sstream>
 
+#include "world/invariants.h"
+
 namespace fuzz {
 
 using namespace pcphys;
@@ -72,6 +74,8 @@ class Sequence {
       const bool leads = host == hosts_[0];
       const std::uint64_t before = leads ? host->world.hash() : 0;
       const Outcome outcome = call.make(*host);
+      if (const std::string broken = broken_invariant(host->world.state()); !broken.empty())
+        return fail(*host, "a broken invariant: " + broken);
       counts_.calls++;
       counts_.steps += call.steps;
       counts_.refused += outcome.code != ErrorCode::none;
