@@ -30,9 +30,10 @@ PC_FN Vec3 pc_with_rows(PC_IO Slot s, Vec3 z, Vec3 f) {
 }
 // Impulses f (along the rows) on what is pending in quad k of a node. Lanes without a level there write zeros to row 0.
 PC_FN void pc_push_here(PC_IO Slot m, uint at, uint turning, Six f, Index node, uint k, bool again) {
-  Slot s = PC_NODE(m, at); Vec3 z = pc_with_rows(PC_PASS s, pc_pending_now(PC_PASS s, node, k, again), f.l);
+  Slot s = PC_NODE(m, at); Vec3 before = pc_pending_now(PC_PASS s, node, k, again); Vec3 z = pc_with_rows(PC_PASS s, before, f.l);
   if (turning > 0u) z = pc_with_rows(PC_PASS PC_NODE(m, at + turning), z, f.a);  // lint: allow (others have no such impulses)
-  PC_SCATTER(node_pending, node, k, pc_quad(pc_snap3(z), PC_REAL(0.0)));
+  Mask some = pc_max(pc_largest(f.l), pc_largest(f.a)) > PC_REAL(0.0);
+  PC_SCATTER(node_pending, node, k, pc_quad(pc_select3(some, pc_snap3(z), before), PC_REAL(0.0)));
 }
 // Side b is pushed after a, which may have changed what they share.
 PC_FN void pc_push_side(PC_IO Way w, Slot m, uint side, uint turning, Six f) {

@@ -36,7 +36,7 @@ PC_FN Mask pc_goes_by_rows(PC_IO Meeting now) {
   Vec3 wa = pc_angular_velocity(now.a);
   Vec3 wb = pc_angular_velocity(now.b);
   precise Real turned = pc_max(pc_dot(wa, wa), pc_dot(wb, wb)) * PC_INFO(h) * PC_INFO(h) * PC_INFO(load_ahead);
-  return turned < PC_REAL(0.25);
+  return pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), turned, PC_REAL(0.0)) < PC_REAL(0.25);  // (a blow-up times zero is no number)
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -55,9 +55,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   r.couple = pc_select3(acts, r.couple, pc_zero3());
 
   Real changes = pc_max(r.touch, pc_max(pc_largest(r.impulse), pc_largest(r.couple)));
-  if (!PC_ANY(changes > PC_REAL(0.0))) return;  // lint: allow (nothing changes nothing)
+  Mask some = changes > PC_REAL(0.0);
+  if (!PC_ANY(some)) return;  // lint: allow (nothing changes nothing)
+  r.impulse = pc_select3(some, r.impulse, pc_zero3()); r.couple = pc_select3(some, r.couple, pc_zero3()); r.touch = pc_select(some, r.touch, PC_REAL(0.0));
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u); Real zero = PC_REAL(0.0); BodyState a = now.a; BodyState b = now.b;
-  Vec3 torque_a = pc_moment(r.couple, now.arms.a, r.impulse); Vec3 torque_b = pc_moment(r.couple, now.arms.b, r.impulse);
+  Vec3 torque_a = pc_select3(some, pc_moment(r.couple, now.arms.a, r.impulse), pc_zero3()); Vec3 torque_b = pc_select3(some, pc_moment(r.couple, now.arms.b, r.impulse), pc_zero3());
   Real free_a = pc_free_mass(tree_a, a); Real free_b = pc_free_mass(tree_b, b);
   if (PC_ANY(pc_max(free_a, free_b) > zero)) {  // lint: allow (bodies of trees and those that stand keep their rows)
     a.phase = pc_select(free_a > zero, pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(free_b > zero, pc_max(b.phase, r.touch), b.phase);

@@ -29,10 +29,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   pc_keep_approach(PC_PASS w, m, ia, ib);
   Wrench wrench = pc_warm_start(PC_PASS m); Real size = pc_max(pc_largest(wrench.impulse), pc_largest(wrench.couple));
-  if (!PC_ANY(size > zero)) return;  // lint: allow (nothing changes nothing)
+  Mask some = size > zero;
+  if (!PC_ANY(some)) return;  // lint: allow (nothing changes nothing)
+  wrench.impulse = pc_select3(some, wrench.impulse, pc_zero3()); wrench.couple = pc_select3(some, wrench.couple, pc_zero3());
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
-  Vec3 torque_a = pc_moment(wrench.couple, arms.a, wrench.impulse); Vec3 torque_b = pc_moment(wrench.couple, arms.b, wrench.impulse);
+  Vec3 torque_a = pc_select3(some, pc_moment(wrench.couple, arms.a, wrench.impulse), pc_zero3()); Vec3 torque_b = pc_select3(some, pc_moment(wrench.couple, arms.b, wrench.impulse), pc_zero3());
   Mask tree_a = pc_in_tree(PC_PASS w, m, 0u); Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
   Quad linear_a = PC_GATHER(motion, ia, 0u); Quad linear_b = PC_GATHER(motion, ib, 0u);
   if (PC_ANY(pc_max(pc_select(tree_a, zero, linear_a.s), pc_select(tree_b, zero, linear_b.s)) > zero)) {  // lint: allow (bodies of trees and those that stand keep their rows)

@@ -14,7 +14,8 @@ PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 bare, Sym3 loose) {
     Vec3 j = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
     Mask stops = pc_or(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), kinds > PC_REAL(4.5));
     Real stiffness = pc_select(stops, PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));
-    precise Real spring = stiffness * PC_LD(tree_rows, n, TREE_ON + i) * pc_inverse_or_zero(pc_dot(j, pc_sym_mul(loose, j)));
+    precise Real on = PC_LD(tree_rows, n, TREE_ON + i); precise Real stiff = stiffness * on * pc_inverse_or_zero(pc_dot(j, pc_sym_mul(loose, j)));
+    Real spring = pc_select(on > PC_REAL(0.0), stiff, PC_REAL(0.0));
     PC_ST(tree_rows, n, TREE_SPRING + i, spring); freedom = pc_sym_outer(freedom, j, spring);
   }
   return pc_sym_inverse(freedom);
@@ -56,9 +57,12 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
   Sym3 inverse = loose;
 #ifdef PC_DRIVES
-  if (PC_ANY(pc_has_drive(PC_PASS n))) { freedom = pc_with_drives(PC_PASS n, up, freedom, loose); loose = pc_sym_inverse(freedom); inverse = loose; }  // lint: allow (zeros otherwise)
+  if (PC_ANY(pc_has_drive(PC_PASS n))) {  // lint: allow (others keep what they have)
+    freedom = pc_with_drives(PC_PASS n, up, freedom, loose); loose = pc_sym_select(pc_has_drive(PC_PASS n), pc_sym_inverse(freedom), loose); inverse = loose;
+  }
 #endif
-  if (PC_ANY(pc_has_rows(PC_PASS n))) inverse = pc_with_springs(PC_PASS n, freedom, loose);  // lint: allow (zeros otherwise)
+  Mask has_rows = pc_has_rows(PC_PASS n);
+  if (PC_ANY(has_rows)) inverse = pc_sym_select(has_rows, pc_with_springs(PC_PASS n, freedom, loose), loose);  // lint: allow (others keep what they have)
   Vec3 w0 = pc_sym_mul(inverse, u0); Vec3 w1 = pc_sym_mul(inverse, u1); Vec3 w2 = pc_sym_mul(inverse, u2); Vec3 w3 = pc_sym_mul(inverse, u3); Vec3 w4 = pc_sym_mul(inverse, u4); Vec3 w5 = pc_sym_mul(inverse, u5);
   pc_sts_tree(PC_PASS n, TREE_D, inverse);
   pc_stm_tree(PC_PASS n, TREE_W, pc_mat3(w0, w1, w2)); pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_mat3(w3, w4, w5));

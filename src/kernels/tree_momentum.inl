@@ -13,27 +13,27 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_tu
     push = pc_add(push, p); precise Vec3 all = turn + pc_ld3_tree(PC_PASS n, TREE_CHANGE) + pc_cross(r, p); turn = all;
   }
   PC_MEET;
-  Vec3 centre = pc_ld3_tree(PC_PASS root, TREE_CENTRE); Vec3 drift = pc_select3(free, pc_scale(push, PC_LD(tree_rows, root, TREE_ALL)), pc_zero3());
-  Vec3 excess = pc_sym_mul(pc_lds_tree(PC_PASS root, TREE_RIGID), pc_sub(turn, pc_cross(centre, push))); Vec3 w = pc_select3(free, excess, pc_zero3());
+  Vec3 centre = pc_ld3_tree(PC_PASS root, TREE_CENTRE); Vec3 drift = pc_scale(push, PC_LD(tree_rows, root, TREE_ALL));
+  Vec3 w = pc_sym_mul(pc_lds_tree(PC_PASS root, TREE_RIGID), pc_sub(turn, pc_cross(centre, push)));
   PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre);
-    precise Vec3 v = pc_ld3_tree(PC_PASS n, TREE_X) - drift - pc_cross(w, r); precise Vec3 l = pc_ld3_tree(PC_PASS n, TREE_CHANGE) - pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w);
-    pc_st3_tree(PC_PASS n, TREE_X, v); pc_st3_tree(PC_PASS n, TREE_CHANGE, l);
+    Slot n = PC_NODE(m, t.first + k); Vec3 r = pc_sub(pc_ld3_tree(PC_PASS n, TREE_PLACE), centre); Vec3 rate = pc_ld3_tree(PC_PASS n, TREE_X); Vec3 change = pc_ld3_tree(PC_PASS n, TREE_CHANGE);
+    precise Vec3 v = rate - drift - pc_cross(w, r); precise Vec3 l = change - pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), w);
+    pc_st3_tree(PC_PASS n, TREE_X, pc_select3(free, v, rate)); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_select3(free, l, change));
   }
 }
 
-// Adds the changes to the bodies' velocities and momenta, both momenta of a free tree kept; and that contacts touched them.
-PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) {
+// Adds the changes to the bodies' velocities and momenta, of `some` trees, both momenta of a free one kept; and that contacts touched them.
+PC_FN void pc_tree_add_changes_of(PC_IO Slot m, Tree t, Mask some, Vec3 given_push, Vec3 given_turn) {
   pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
     angular.s = pc_max(angular.s, PC_LD(tree_rows, n, TREE_TOUCH));
     linear.v = pc_add(linear.v, pc_ld3_tree(PC_PASS n, TREE_X)); angular.v = pc_madd(angular.v, pc_ld3_tree(PC_PASS n, TREE_CHANGE), PC_LD(tree_rows, n, TREE_TOTAL));
-    PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 0u, linear);
-    PC_SCATTER_IF(linear.s > PC_REAL(0.0), motion, body, 1u, angular);
+    Mask moves = pc_and(some, linear.s > PC_REAL(0.0)); PC_SCATTER_IF(moves, motion, body, 0u, linear); PC_SCATTER_IF(moves, motion, body, 1u, angular);
   }
 }
+PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) { pc_tree_add_changes_of(PC_PASS m, t, PC_IS(1u), given_push, given_turn); }
 
 // Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
 // between heavy ones as the difference of large numbers.

@@ -20,6 +20,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   fastest = pc_max(fastest, pc_largest(gained)); PC_MOST(fastest);
   pc_tree_whole(PC_PASS m, t);
-  if (!PC_ANY(fastest > PC_REAL(0.0))) return;  // lint: allow (a push of nothing changes nothing)
-  pc_tree_add_changes(PC_PASS m, t, pc_zero3(), pc_negate(gained));
+  Mask pushed = fastest > PC_REAL(0.0);
+  if (!PC_ANY(pushed)) return;  // lint: allow (a push of nothing changes nothing)
+  pc_tree_add_changes_of(PC_PASS m, t, pushed, pc_zero3(), pc_negate(gained));
 }
