@@ -209,6 +209,11 @@ void add_destroyed(BadCalls& calls) {
                    }});
   calls.push_back(
       {"World::destroy", "the ground", bad_argument, [](Host& h) { return error_of(h.world.destroy(h.world.ground())); }});
+  calls.push_back({"World::shrink", "while a step runs", busy, [](Host& h) {
+                     Error error;
+                     (void)h.within_step([&] { error = error_of(h.world.shrink()); });
+                     return error;
+                   }});
 }
 
 }  // namespace

@@ -158,6 +158,11 @@ void add_bad_kernels(BadCalls& calls) {
     (void)h.within_step([&] { error = error_of(h.stepper.remove_kernels()); });
     return error;
   });
+  add("Stepper::shrink", "while a step runs", busy, [](Host& h) {
+    Error error;
+    (void)h.within_step([&] { error = error_of(h.stepper.shrink()); });
+    return error;
+  });
   name = "Stepper::set_parameter";
   add(name, "a kernel or parameter that is not there", unknown_name, [](Host& h) {
     return error_of(h.stepper.set_parameter("burn", {"rate", 1.0}));

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -33,10 +34,12 @@ struct JointRecord {
   std::uint32_t body_a = 0, body_b = 0;  // id indices
   JointDef def;                          // of a spring: bodies and anchors
   std::optional<SpringDef> spring;       // between two points, in place of a joint
+  /// Steps take what is below for zero, so that it is zero to everybody.
+  static bool acts(double x) { return x >= std::numeric_limits<double>::min(); }
   /// Whether it has a motor or a spring, or is one that pulls or damps.
   bool driven() const {
-    if (spring) return spring->stiffness > 0 || spring->damping > 0;
-    return def.motor.torque > 0 || def.spring.stiffness > 0 || def.spring.damping > 0;
+    if (spring) return acts(spring->stiffness) || acts(spring->damping);
+    return acts(def.motor.torque) || acts(def.spring.stiffness) || acts(def.spring.damping);
   }
 };
 /// Host columns of a shape; the shape table's row is index + 1 (row 0 pads).

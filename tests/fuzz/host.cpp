@@ -63,6 +63,10 @@ Outcome Host::step(double dt) {
       if (const Status ok = world.restore(world.snapshot()); !ok) return of(ok);
     renew();
   }
+  if (twin_.restored && steps_ % 3 == 0) {
+    (void)world.shrink();
+    for (Stepper& stepper : steppers_) (void)stepper.shrink();
+  }
   const StepReport& report = steppers_[steps_++ % steppers_.size()].step(world, dt);
   if (!report) return {report.error.code, {}, report.error.message};
   Outcome made{ErrorCode::none,

@@ -17,7 +17,7 @@ struct Twin {
   std::uint32_t lanes = 1, threads = 1;
   std::uint32_t steppers = 1;     // that step it in turns
   std::uint32_t fresh_every = 0;  // before each so manieth step all of them are new; 0: never
-  bool restored = false;          // and the world restored from its own snapshot
+  bool restored = false;          // and the world restored from its own snapshot, and both shrunk before each third
   bool mixed = false;             // stages are on the GPU and the CPU by turns
 };
 
