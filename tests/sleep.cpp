@@ -283,6 +283,27 @@ TEST_CASE("sleep: bodies that float at rest sleep, on every backend alike; those
   }
 }
 
+// A step that is made anew, since a body left the range of numbers in it, took whom the host had stirred for woken: they slept on, and moved.
+TEST_CASE("sleep: who is stirred wakes in a step that freezes another") {
+  World world({Precision::f32, {}});
+  const BodyId still = must(world.create_body(ball({}))), odd = must(world.create_body(ball({5, 0, 0})));
+  const BodyId one = must(world.create_body(ball({20, 0, 0}))), two = must(world.create_body(ball({22, 0, 0})));
+  (void)must(world.create_joint(pin(one, {1, 0, 0}, two, {-1, 0, 0})));  // the step is no flight
+  must(world.set_mass_properties(odd, {1e-30, {1e-30, 1e-30, 1e-30}}));
+  StepSettings settings = sleepy();
+  settings.sleep_time = 0.01;
+  Stepper stepper(settings);
+  run(world, stepper, 2);
+  REQUIRE(must(world.is_asleep(still)));
+  must(world.set_velocity(still, {1, 0, 0}));
+  (void)must(world.add_force(odd, Wrench{{1e15, 0, 0}, {}}));
+  const StepReport& report = stepper.step(world, frame);
+  REQUIRE(report);
+  CHECK(report.frozen == std::vector{odd});
+  CHECK(!must(world.is_asleep(still)));
+  CHECK(must(world.pose(still)).position.x > 0.9 * frame);
+}
+
 // What a step freezes was counted among what moved in it and came to rest: it slept and stood, and steps reported it asleep.
 TEST_CASE("sleep: what is frozen stands, and does not sleep") {
   require_gl();

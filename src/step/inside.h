@@ -77,6 +77,7 @@ struct Stepper::Inside {
   CalledForces called;
   ForceJumps jumps;
   StepPlan no_plan;
+  Rollback unfrozen;  // of this step, once it has frozen bodies
   Clock::time_point began;
   ContactLooks looks{detector, schedule.contacts};
 
@@ -179,9 +180,10 @@ struct Stepper::Inside {
       find_leaving(s, schedule.moving_bodies(), dt, leaving);
       if (leaving.empty()) leaving = outside;
       if (leaving.empty()) return ok;
+      keep_unfrozen(s);
       freeze(s);
-      update_structure(s);
     }
+    unfrozen.drop();
     record_events(s);
     detector.let_go(s);
     if (settings.sleep) {
@@ -240,6 +242,10 @@ struct Stepper::Inside {
     }
     std::ranges::sort(report.frozen);
   }
+
+  /// Before a step that is made anew freezes, since it may fail after that: then it has frozen nobody.
+  void keep_unfrozen(const WorldState& s);
+  void unfreeze(WorldState& s);
 
   /// Bodies in flight that their kernel has left where they were: all others have made the step.
   void freeze_left(WorldState& s) {
@@ -328,12 +334,12 @@ struct Stepper::Inside {
     if (own.hosts()) written = own.check_written(s);
     suspect = own.hosts() && !watched && (left || !outside.empty() || !written);
     if (suspect || !written) return {};
-    if (left) freeze_left(s);
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
     const AlignedBytes* before = runner.before(Buffer::pose);
     strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
+    if (left) freeze_left(s);
     follow_step(s, dt);
     if (s.settling > 0) s.settling--;
     tell(wanted, found);

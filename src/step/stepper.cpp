@@ -166,6 +166,23 @@ bool Stepper::Inside::is_scheduled(const WorldState& s) const {
   return scheduled_serial == s.serial && scheduled == s.structure_version && scheduled_rest == s.rest_version;
 }
 
+void Stepper::Inside::keep_unfrozen(const WorldState& s) {
+  constexpr Buffer written[] = {Buffer::motion,  Buffer::velocity_parts, Buffer::mass,
+                                Buffer::inertia, Buffer::delta,          Buffer::rest};
+  for (const Buffer buffer : written) unfrozen.keep(s.tables, buffer);
+}
+
+void Stepper::Inside::unfreeze(WorldState& s) {
+  for (const BodyId id : report.frozen) {
+    s.frozen.erase(id.index);
+    s.bodies[s.body_ids.row(id.index)].frozen = false;
+  }
+  if (!report.frozen.empty()) s.structure_version++;
+  report.frozen.clear();
+  unfrozen.put_back(s.tables);
+  s.count_rest();
+}
+
 void Stepper::Inside::write_solved(WorldState& s) {
   undone = false;
   if (s.joints.size() == 1) return;  // not even the rows that pad need be there
@@ -196,10 +213,14 @@ void Stepper::Inside::step_within_memory(World& world, double dt) {
   try {
     s.settle_contacts();
     if (spoiled) start_anew();
-    if (const Status ok = step(world, dt); !ok) report.error = ok.error();
+    if (const Status ok = step(world, dt); !ok) {
+      unfreeze(s);
+      report.error = ok.error();
+    }
   } catch (...) {
     spoiled = true;
     undo(s);
+    unfreeze(s);
     s.last_substep = last_substep;
     s.soft_substep = soft_substep;
     s.settling = settling;
@@ -319,7 +340,7 @@ std::vector<BufferUse> Stepper::memory(const World& world) const try {
   MemoryUses uses(world.state());
   uses.add_host(inside_->schedule);
   uses.add("collision", "", Place::cpu, in.detector.memory_bytes() + in.looks.memory_bytes());
-  uses.add("islands", "", Place::cpu, bytes_of(in.octaves, in.fourth, in.sleepers, in.unrest));
+  uses.add("islands", "", Place::cpu, bytes_of(in.octaves, in.fourth, in.sleepers, in.unrest, in.unfrozen));
   uses.add("events", "", Place::cpu, in.recorder.memory_bytes());
   in.runner.list_memory(uses);
   return uses.take();
@@ -332,6 +353,7 @@ Status Stepper::shrink() try {
   Inside& in = inside();
   in.start_anew();
   in.runner.let_go();
+  in.unfrozen = Rollback();
   return {};
 } catch (...) {
   return caught();
