@@ -289,6 +289,7 @@ TEST_CASE("sleep: who is stirred wakes in a step that freezes another") {
   const BodyId still = must(world.create_body(ball({}))), odd = must(world.create_body(ball({5, 0, 0})));
   const BodyId one = must(world.create_body(ball({20, 0, 0}))), two = must(world.create_body(ball({22, 0, 0})));
   (void)must(world.create_joint(pin(one, {1, 0, 0}, two, {-1, 0, 0})));  // the step is no flight
+  must(world.set_can_sleep(one, false));
   must(world.set_mass_properties(odd, {1e-30, {1e-30, 1e-30, 1e-30}}));
   StepSettings settings = sleepy();
   settings.sleep_time = 0.01;
