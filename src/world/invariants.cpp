@@ -220,7 +220,8 @@ class Walk {
                  "is kept apart from another, and one of them is gone"))
         return;
       if (!holds(why.any(), "body id", high, "is kept apart from another for no reason")) return;
-      if (!holds(std::ranges::equal_range(marks.pairs, pair).size() == why.joints, "body id", high,
+      const auto first = std::ranges::lower_bound(marks.pairs, pair), last = std::ranges::upper_bound(marks.pairs, pair);
+      if (!holds(std::size_t(last - first) == why.joints, "body id", high,
                  "is kept apart from another by more or fewer joints than there are"))
         return;
       counted += why.joints;
