@@ -156,6 +156,13 @@ class Look {
 
 bool is_flag(double x) { return x == 0 || x == 1; }
 
+/// As who sleeps is, until the host stirs it.
+bool is_still(const Look& body) {
+  for (std::uint32_t c = 0; c < 3; c++)
+    if (body.at(Buffer::motion, c) != 0 || body.at(Buffer::motion, 4 + c) != 0 || body.at(Buffer::velocity_parts, c) != 0) return false;
+  return true;
+}
+
 /// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, turned by quaternions of unit length, both
 /// as they are rounded and with what rounding dropped, and flags. (Impulses may be any numbers: a body that they throw beyond the range is
 /// frozen.)
@@ -173,9 +180,11 @@ bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
   const auto is_unit = [](double square) { return std::fabs(std::sqrt(square) - 1) <= constants::unit_tolerance; };
   const bool stands = s.bodies[row].kind == BodyKind::fixed;
   const double settling = body.at(Buffer::velocity_parts, place::settling), asleep = body.at(Buffer::rest, rest_asleep);
+  const double stirred = body.at(Buffer::rest, rest_stirred);
+  const bool freezes = body.at(Buffer::motion, place::phase) == frozen_phase;
   return is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
-         body.at(Buffer::rest, rest_quiet_time) >= 0 && is_flag(asleep) && is_flag(body.at(Buffer::rest, rest_stirred)) &&
-         !(stands && (asleep > 0 || body.at(Buffer::motion, place::phase) == frozen_phase));
+         body.at(Buffer::rest, rest_quiet_time) >= 0 && is_flag(asleep) && is_flag(stirred) && !(stands && freezes) &&
+         (asleep == 0 || (!stands && !freezes && (stirred > 0 || is_still(body))));
 }
 
 /// Of rows that name an object each: every one once.
