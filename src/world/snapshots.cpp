@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -155,6 +156,7 @@ class Look {
 };
 
 bool is_flag(double x) { return x == 0 || x == 1; }
+bool is_time(double x) { return x == 0 || x >= double(std::numeric_limits<float>::min()); }  // steps take less for zero
 
 /// As who sleeps is, until the host stirs it.
 bool is_still(const Look& body) {
@@ -183,7 +185,7 @@ bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
   const double stirred = body.at(Buffer::rest, rest_stirred);
   const bool freezes = body.at(Buffer::motion, place::phase) == frozen_phase;
   return is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
-         body.at(Buffer::rest, rest_quiet_time) >= 0 && is_flag(asleep) && is_flag(stirred) && !(stands && freezes) &&
+         is_time(body.at(Buffer::rest, rest_quiet_time)) && is_flag(asleep) && is_flag(stirred) && !(stands && freezes) &&
          (asleep == 0 || (!stands && !freezes && (stirred > 0 || is_still(body))));
 }
 
