@@ -17,8 +17,7 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
   app.add_option("--backend", options.backend, "gl: run the first 600 steps of everything there too, and compare hashes")
       ->capture_default_str();
   app.add_flag("--first", options.first, "with --backend gl: those 600 steps alone, for the hashes; no errors");
-  app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
-      ->capture_default_str();
+  add_device(app, options.device);
   app.add_option("--repeats", options.repeats, "runs that a time is the median of; what takes over 0.3 s runs once")
       ->capture_default_str();
   app.add_option("--peers", options.peers, "other engines beside pcphys: all, none, or names with commas between")

@@ -193,6 +193,15 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--joint-damping", options.joint_damping, "of all joints [N m s/rad] (default: the scene's own)");
 }
 
+void add_lanes_and_threads(CLI::App& app, std::string& lanes, long long& threads) {
+  app.add_option("--lanes", lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
+  app.add_option("--threads", threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
+}
+
+void add_device(CLI::App& app, long long& device) {
+  app.add_option("--device", device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")->capture_default_str();
+}
+
 void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--backend", options.backend, "cpu or gl, for all three stages")->capture_default_str();
   app.add_option("--integrate", options.integrate, "cpu or gl, for this stage");
@@ -207,15 +216,13 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--order", options.order, "2, or 4: joint trees on which nothing but forces and pins acts move in fourth order")
       ->capture_default_str();
   app.add_option("--precision", options.precision, "float or double")->capture_default_str();
-  app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
-  app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
+  add_lanes_and_threads(app, options.lanes, options.threads);
   app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
   app.add_option("--sleep", options.sleep, "on: islands at rest are no longer stepped")->capture_default_str();
   app.add_option("--islands", options.islands, "cpu or gl: where the islands that may sleep are found")->capture_default_str();
   app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")
       ->capture_default_str();
-  app.add_option("--device", options.device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
-      ->capture_default_str();
+  add_device(app, options.device);
   app.add_option("--timings", options.timings, "on: clock every stage, which makes a GPU wait after each; off: whole steps only")
       ->capture_default_str();
 }

@@ -22,6 +22,10 @@ struct RunOptions;
 
 namespace pcphys::command {
 
+/// Options that several sub-commands have.
+void add_lanes_and_threads(CLI::App& app, std::string& lanes, long long& threads);
+void add_device(CLI::App& app, long long& device);
+
 /// As they were typed; `resolve` checks them.
 struct RunOptions {
   std::string scene;

@@ -50,8 +50,7 @@ void add_wild_options(CLI::App& app, WildOptions& options) {
   app.add_option("--budget", options.budget, "seconds for all families together (default: 60, without --seed and --count)");
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--backend", options.backend, "cpu or gl, for all stages")->capture_default_str();
-  app.add_option("--lanes", options.lanes, "SIMD lanes of the CPU: auto, 1, 4 or 8")->capture_default_str();
-  app.add_option("--threads", options.threads, "of the CPU; 0: as many as the processor runs at a time")->capture_default_str();
+  add_lanes_and_threads(app, options.lanes, options.threads);
   app.add_option("--peers", options.peers, "the same scenes in other engines: all, none, or names with commas between")
       ->capture_default_str();
   app.add_option("--bits", options.bits, "replay every so many seeds in other ways that must give the same bits; 0: none")

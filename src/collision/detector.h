@@ -166,6 +166,7 @@ class Detector {
   template <class Scalar> void find_twists(const WorldState& state, const Options& options);
   void find_drawn(double dt);
   template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
+  template <class Scalar> struct Merge;
   template <class Scalar> Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
   /// Takes over contacts of the last step, from the first row to before the last.
   template <class Scalar>

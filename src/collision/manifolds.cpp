@@ -188,95 +188,111 @@ void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t
     found.kept_points += std::uint32_t(s.tables.data<Scalar>(Buffer::contact)[first * reals_of(Buffer::contact) + 3]);
 }
 
-template <class Scalar>
-Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scalar>& scratch, Found& found) {
-  const auto pairs = pairs_.pairs();
+/// The contacts of this step, in ascending order of their keys, from its pairs and the contacts of the last one, which stand in that order
+/// too.
+template <class Scalar> struct Detector::Merge {
+  Detector& d;
+  WorldState& s;
+  Scratch<Scalar>& scratch;
+  Found& found;
   const Scalar* materials = s.tables.data<Scalar>(Buffer::material);
   const Scalar* before = s.tables.data<Scalar>(Buffer::contact);
-  const std::uint32_t before_rows = s.contact_rows();
-  const std::size_t reals = schema(Buffer::contact).reals;
+  std::uint32_t before_rows = s.contact_rows(), old = 1, kept = d.parts_.empty() ? before_rows : 1;
+  std::size_t of_alone = 0;  // how many of a batch had no manifold in lanes
+  BodyReader<Scalar> bodies{s.tables};
+  Touch<Scalar> touch{};
+  static constexpr std::size_t reals = reals_of(Buffer::contact);
+
+  /// Contacts of what sleeps, up to a key; null: all.
+  void keep_until(const ContactKey* end) {
+    const auto ends = [&] { return kept == before_rows || (end && *end <= s.contacts.keys[kept]); };
+    while (!ends()) {
+      const std::uint32_t first = kept;
+      while (!ends() && d.stays(s.contacts.ends[kept])) kept++;
+      d.keep(s, scratch, first, kept, found);
+      while (!ends() && !d.stays(s.contacts.ends[kept])) kept++;
+    }
+  }
+
+  void add(std::uint32_t place) {
+    if (!d.touches(scratch, place, of_alone, touch)) return;
+    const std::uint32_t pair = d.batch_[place];
+    const auto [a, b] = d.pairs_.pairs()[pair];
+    const ContactKey key{a, b};
+    while (old < before_rows && s.contacts.keys[old] < key) old++;
+    const bool was_there = old < before_rows && s.contacts.keys[old] == key;
+    const Scalar* was = was_there ? before + old * reals : nullptr;
+    found.faces |= touch.manifold->count > 1;
+    const Standing standing = d.template stand<Scalar>(s, scratch, pair, was_there && holds(was), touch);
+    if (kept < before_rows) keep_until(&key);
+    const std::size_t row = d.next_.keys.size();
+    d.next_.keys.push_back(key);
+    d.next_.ends.push_back({touch.rows[0], touch.rows[1]});
+    d.next_.features.push_back({});
+    d.standings_.resize(row + 1);
+    d.standings_[row] = standing;
+    if (!d.parts_.empty())
+      for (const std::uint32_t body : touch.rows)
+        if (d.parts_[body] == Part::sleeps) d.touched_.push_back(body);
+    const double margin = d.margin(a, b);
+    if (!standing.touches && standing.gap > margin + double(standing.thick))
+      d.distant_.push_back(d.distant(std::uint32_t(row), standing, to_vec3(touch.manifold->normal)));
+    write(row, standing.touches ? was : nullptr, margin);
+  }
+
+  /// `was`: the row of before, if its impulses are to act on.
+  void write(std::size_t row, const Scalar* was, double margin) {
+    const std::size_t end = (row + 1) * reals * sizeof(Scalar);
+    if (scratch.contacts.size() < end) scratch.contacts.resize(end);
+    Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
+    auto& features = d.next_.features.back();
+    const Scalar* of_a = materials + touch.rows[0] * reals_of(Buffer::material);
+    const Scalar* of_b = materials + touch.rows[1] * reals_of(Buffer::material);
+    write_contact(*touch.manifold, of_a, of_b, out, features.data());
+    out[place::impact_time] = Scalar(touch.impact);
+    bodies.shift(touch.rows[0], touch.rows[1], out + place::apart);
+    if (was) remember_impulses(was, s.contacts.features[old].data(), Scalar(margin), out, features.data());
+    found.points += touch.manifold->count;
+    found.friction |= out[28] > 0 || out[29] > 0;
+    d.standings_[row].bounces = out[30] > 0;
+    found.restitution |= out[30] > 0;
+    found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
+    found.impacts |= touch.impact >= 0;
+  }
+};
+
+template <class Scalar>
+Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scalar>& scratch, Found& found) {
   next_.keys.resize(1);
   next_.ends.resize(1);
   next_.features.resize(1);
   standings_.resize(1);
+  later_.resize(1);
   for (std::vector<std::uint32_t>& rows : anew_) rows.clear();
   distant_.clear();
-  std::uint32_t old = 1;
-  hints_.resize(pairs.size());
+  touched_.clear();
+  hints_.resize(pairs_.pairs().size());
   found = {};
   found.pairs = std::uint32_t(near_.size());
   leave_out_sleepers();
-  std::size_t of_alone = 0;
-  const BodyReader<Scalar> bodies(s.tables);
-  Touch<Scalar> touch;
-  touched_.clear();
-  std::uint32_t kept = parts_.empty() ? before_rows : 1;
-  // contacts of what sleeps, up to a key
-  const auto keep_until = [&](const ContactKey* end) {
-    const auto ends = [&] { return kept == before_rows || (end && *end <= s.contacts.keys[kept]); };
-    while (!ends()) {
-      const std::uint32_t first = kept;
-      while (!ends() && stays(s.contacts.ends[kept])) kept++;
-      keep(s, scratch, first, kept, found);
-      while (!ends() && !stays(s.contacts.ends[kept])) kept++;
-    }
-  };
-  const auto add = [&](std::uint32_t place) {
-    if (!touches(scratch, place, of_alone, touch)) return;
-    const std::uint32_t i = batch_[place];
-    const auto [a, b] = pairs[i];
-    const auto [row_a, row_b] = touch.rows;
-    Manifold<Scalar>& manifold = *touch.manifold;
-    found.faces |= manifold.count > 1;
-    const ContactKey key{a, b};
-    while (old < before_rows && s.contacts.keys[old] < key) old++;
-    const bool was_there = old < before_rows && s.contacts.keys[old] == key;
-    const Standing standing = stand<Scalar>(s, scratch, i, was_there && holds(before + old * reals), touch);
-    if (kept < before_rows) keep_until(&key);
-    const std::size_t row = next_.keys.size();
-    next_.keys.push_back(key);
-    next_.ends.push_back({row_a, row_b});
-    next_.features.push_back({});
-    if (scratch.contacts.size() < (row + 1) * reals * sizeof(Scalar)) scratch.contacts.resize((row + 1) * reals * sizeof(Scalar));
-    Scalar* out = reinterpret_cast<Scalar*>(scratch.contacts.data()) + row * reals;
-    auto& features = next_.features.back();
-    if (!parts_.empty())
-      for (const std::uint32_t body : touch.rows)
-        if (parts_[body] == Part::sleeps) touched_.push_back(body);
-    const Scalar *of_a = materials + row_a * reals_of(Buffer::material), *of_b = materials + row_b * reals_of(Buffer::material);
-    standings_.resize(row + 1);
-    standings_[row] = standing;
-    if (!standing.touches && standing.gap > margin(a, b) + double(standing.thick))
-      distant_.push_back(distant(std::uint32_t(row), standing, to_vec3(manifold.normal)));
-    write_contact(manifold, of_a, of_b, out, features.data());
-    out[place::impact_time] = Scalar(touch.impact);
-    bodies.shift(row_a, row_b, out + place::apart);
-    if (standing.touches && was_there)
-      remember_impulses(before + old * reals, s.contacts.features[old].data(), Scalar(margin(a, b)), out, features.data());
-    found.points += manifold.count;
-    found.friction |= out[28] > 0 || out[29] > 0;
-    standings_[row].bounces = out[30] > 0;
-    found.restitution |= out[30] > 0;
-    found.rolling |= std::max({of_a[4], of_a[5], of_b[4], of_b[5]}) > 0;
-    found.impacts |= touch.impact >= 0;
-  };
+  Merge<Scalar> merge{*this, s, scratch, found};
   for (std::size_t first = 0; first < near_.size(); first += most_in_batch) {
     batch_ = std::span(near_).subspan(first, std::min(most_in_batch, near_.size() - first));
-    of_alone = 0;
+    merge.of_alone = 0;
     if (round_) sort_out(options, scratch);
     find_manifolds(s, options, scratch);
-    each_candidate(add);
+    each_candidate([&](std::uint32_t place) { merge.add(place); });
   }
-  keep_until(nullptr);
+  merge.keep_until(nullptr);
   found.points += found.kept_points;
-  drop_distant(next_, scratch.contacts, reals * sizeof(Scalar));
+  const std::size_t row_bytes = reals_of(Buffer::contact) * sizeof(Scalar);
+  drop_distant(next_, scratch.contacts, row_bytes);
   found.contacts = std::uint32_t(next_.keys.size()) - 1;
-  later_.resize(1);
   starts_.resize(s.bodies.size());
-  for (std::uint32_t row = 0; row < starts_.size(); row++) starts_[row] = bodies.position(row);
+  for (std::uint32_t row = 0; row < starts_.size(); row++) starts_[row] = merge.bodies.position(row);
   found.placed = s.settling > 0 && some_settles(s, next_.ends);
   found.changed = next_.ends != s.contacts.ends || next_.keys != s.contacts.keys;
-  scratch.contacts.resize(next_.keys.size() * reals * sizeof(Scalar));
+  scratch.contacts.resize(next_.keys.size() * row_bytes);
   s.tables.exchange(Table::contact, Buffer::contact, scratch.contacts, std::uint32_t(next_.keys.size()));
   std::swap(s.contacts, next_);
   replaced_ = true;
