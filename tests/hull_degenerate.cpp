@@ -87,6 +87,18 @@ const char* fault_of(const Hull& hull) {
   return nullptr;
 }
 
+/// How far points lie outside of it, as a share of its radius, beyond what rounding makes of how far away they are.
+double sticks_out(const Hull& hull, const Points& points) {
+  const Pose frame = hull.frame();
+  double most = 0;
+  for (const Vec3& p : points) {
+    const Vec3 own = rotate(conjugate(frame.orientation), p - frame.position);
+    for (std::size_t f = 0; f < hull.face_count(); f++)
+      most = std::max(most, dot(own - hull.vertices()[hull.face(f)[0]], hull.data()->normals[f]) - 1e-14 * length(frame.position));
+  }
+  return most / hull.radius();
+}
+
 /// Whether a hull was made; it must be sound then, and the reason one of those that there are if not.
 bool made_or_refused(const Points& points) {
   const auto hull = make_hull(points);
@@ -99,6 +111,7 @@ bool made_or_refused(const Points& points) {
   const char* const fault = fault_of(*hull);
   CHECK_MESSAGE(fault == nullptr, (fault ? fault : "") << " of a hull of " << points.size() << " points, volume "
                                                        << hull->volume() << ", inner radius " << hull->inner_radius());
+  CHECK(sticks_out(*hull, points) < 10 * constants::hull_planarity);
   return true;
 }
 
@@ -113,6 +126,11 @@ TEST_CASE("hull: thin, small, large and distant points make a sound hull or none
     const Points points = scaled(some_points(dice, some_extents(dice)), scale);
     made_or_refused(moved(points, {far * dice.direction(), dice.orientation()}));
   }
+}
+
+TEST_CASE("hull: points that each lie near what is left of the others are not cut off one after the other") {
+  CHECK(made_or_refused({{0, 0, 0}, {1000, 0, 0}, {0, 1000, 0}, {0, 0, 2}, {1000, 0, 3}, {0, -256, -1}, {-1, -1, -1}, {-1, 1, 0},
+                         {-1, 0, 0}, {0, 0, -6143}, {2560, 3, 0}}));
 }
 
 TEST_CASE("hull: points in a plane, on a line or in one place make none, however they are turned") {

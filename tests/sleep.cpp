@@ -283,6 +283,20 @@ TEST_CASE("sleep: bodies that float at rest sleep, on every backend alike; those
   }
 }
 
+// The time that a body had been quiet for was one that the next snapshot could not hold.
+TEST_CASE("sleep: a time too short for a step to see is none") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World world({precision, {}});
+    const BodyId still = must(world.create_body(ball({})));
+    StepSettings settings = sleepy();
+    settings.sleep_time = 1e-320;
+    Stepper stepper(settings);
+    run(world, stepper, 2);
+    CHECK(must(world.is_asleep(still)));
+    must(world.restore(world.snapshot()));
+  }
+}
+
 // A step that is made anew, since a body left the range of numbers in it, took whom the host had stirred for woken: they slept on, and moved.
 TEST_CASE("sleep: who is stirred wakes in a step that freezes another") {
   World world({Precision::f32, {}});

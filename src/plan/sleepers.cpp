@@ -61,7 +61,7 @@ template <class Scalar>
 bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
                 std::span<const char> restless, const StepSettings& settings) {
   const Slowness<Scalar> slowness(state, before, dt, settings);
-  const Scalar enough = Scalar(settings.sleep_time);
+  const Scalar enough = normal<Scalar>(settings.sleep_time);
   Scalar* rest = state.tables.data<Scalar>(Buffer::rest);
   bool some = false;
   for (const std::uint32_t row : moved) {
@@ -134,7 +134,7 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
                       const StepSettings& settings, std::span<const std::uint32_t> labels, StepReport& report) {
   labels_ = labels;
   const bool single = state.tables.precision() == Precision::f32;
-  const double sleep_time = single ? double(float(settings.sleep_time)) : settings.sleep_time;  // as the table holds it
+  const double wanted = settings.sleep_time, sleep_time = single ? double(normal<float>(wanted)) : normal<double>(wanted);  // as in the table
   const bool some = single ? count_time<float>(state, moved, before, dt, restless_, settings)
                            : count_time<double>(state, moved, before, dt, restless_, settings);
   if (!moved.empty()) {

@@ -202,6 +202,16 @@ bool closed(const std::vector<Polygon>& faces) {
          });
 }
 
+/// How far some vertex lies outside of a face: those that go one after the other may each have been near what the last one left.
+double sticks_out(const std::vector<Point>& points, const Polygon& vertices, const std::vector<Polygon>& faces) {
+  double most = 0;
+  for (const Polygon& face : faces) {
+    const Point normal = normal_of(points, face);
+    for (const std::uint32_t v : vertices) most = std::max(most, normal.dot(points[v] - points[face[0]]));
+  }
+  return most;
+}
+
 Error too_many(std::size_t points, std::size_t vertices) {
   return {ErrorCode::buffer_full, "The hull of " + std::to_string(points) + " points has " + std::to_string(vertices) +
                                       " vertices and room for " + std::to_string(constants::largest_hull_vertices) +
@@ -223,7 +233,7 @@ Result<Solid> solid_of(const std::vector<Point>& points, double extent) {
     const double tolerance = share * extent;
     Polygon vertices = apart(points, all, tolerance);
     const std::vector<Polygon> faces = faces_of(points, planes_of(points, triangles, tolerance), vertices, tolerance);
-    if (!closed(faces)) continue;
+    if (!closed(faces) || sticks_out(points, all, faces) > 4 * tolerance) continue;
     if (vertices.size() > constants::largest_hull_vertices) return too_many(points.size(), vertices.size());
     Solid solid;
     std::vector<std::uint32_t> number(points.size(), 0);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -156,13 +155,24 @@ class Look {
 };
 
 bool is_flag(double x) { return x == 0 || x == 1; }
-bool is_time(double x) { return x == 0 || x >= double(std::numeric_limits<float>::min()); }  // steps take less for zero
 
 /// As who sleeps is, until the host stirs it.
 bool is_still(const Look& body) {
   for (std::uint32_t c = 0; c < 3; c++)
     if (body.at(Buffer::motion, c) != 0 || body.at(Buffer::motion, 4 + c) != 0 || body.at(Buffer::velocity_parts, c) != 0) return false;
   return true;
+}
+
+/// Whether its place and velocities are, however their parts are added up.
+bool reads_finite(const WorldState& s, std::uint32_t row, const Look& body) {
+  double light = 0, place = 0, speed = 0, momentum = 0;
+  for (std::uint32_t c = 0; c < 3; c++) {
+    light = std::max(light, s.tables.get(Buffer::mass, row, 4 + c));
+    place += std::fabs(body.at(Buffer::pose, c)) + std::fabs(body.at(Buffer::pose, 8 + c));
+    speed += std::fabs(body.at(Buffer::motion, c)) + std::fabs(body.at(Buffer::velocity_parts, c));
+    momentum += std::fabs(body.at(Buffer::motion, 4 + c)) + std::fabs(body.at(Buffer::velocity_parts, 4 + c));
+  }
+  return std::isfinite(place) && std::isfinite(speed) && std::isfinite(momentum * std::max(light, 1.0));
 }
 
 /// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, turned by quaternions of unit length, both
@@ -182,10 +192,12 @@ bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
   const auto is_unit = [](double square) { return std::fabs(std::sqrt(square) - 1) <= constants::unit_tolerance; };
   const bool stands = s.bodies[row].kind == BodyKind::fixed;
   const double settling = body.at(Buffer::velocity_parts, place::settling), asleep = body.at(Buffer::rest, rest_asleep);
-  const double stirred = body.at(Buffer::rest, rest_stirred);
+  const double stirred = body.at(Buffer::rest, rest_stirred), quiet = body.at(Buffer::rest, rest_quiet_time);
+  const bool single = s.tables.precision() == Precision::f32;
+  const auto is_normal = [&](double x) { return x == (single ? double(normal<float>(x)) : normal<double>(x)); };
   const bool freezes = body.at(Buffer::motion, place::phase) == frozen_phase;
-  return is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
-         is_time(body.at(Buffer::rest, rest_quiet_time)) && is_flag(asleep) && is_flag(stirred) && !(stands && freezes) &&
+  return reads_finite(s, row, body) && is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
+         quiet >= 0 && is_normal(quiet) && is_flag(asleep) && is_flag(stirred) && !(stands && freezes) &&
          (asleep == 0 || (!stands && !freezes && (stirred > 0 || is_still(body))));
 }
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <unordered_map>
@@ -34,10 +33,9 @@ struct JointRecord {
   std::uint32_t body_a = 0, body_b = 0;  // id indices
   JointDef def;                          // of a spring: bodies and anchors
   std::optional<SpringDef> spring;       // between two points, in place of a joint
-  /// Steps take what is below for zero, so that it is zero to everybody.
-  static bool acts(double x) { return x >= std::numeric_limits<double>::min(); }
   /// Whether it has a motor or a spring, or is one that pulls or damps.
   bool driven() const {
+    const auto acts = [](double x) { return normal<double>(x) > 0; };
     if (spring) return acts(spring->stiffness) || acts(spring->damping);
     return acts(def.motor.torque) || acts(def.spring.stiffness) || acts(def.spring.damping);
   }

@@ -4,7 +4,6 @@
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace pcphys {
@@ -181,14 +180,6 @@ double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const
   assert(row < rows(columns_[index(buffer)].table));
   return read<1>(*this, buffer, row, offset)[0];
 }
-namespace {
-/// Steps on the CPU take numbers below the normal ones for zero, and devices may hand them on: they are zero from the start.
-template <class Scalar> Scalar normal(double value) {
-  const Scalar x = Scalar(value);
-  return std::fabs(x) < std::numeric_limits<Scalar>::min() ? Scalar(0) : x;
-}
-}  // namespace
-
 void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
   assert(row < rows(columns_[index(buffer)].table));
   const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;

@@ -1,6 +1,8 @@
 // The storage of all tables: one aligned block of bytes a buffer, in the precision of the world.
 #pragma once
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -10,6 +12,12 @@
 #include "world/schema.h"
 
 namespace pcphys {
+
+/// Steps on the CPU take numbers below the normal ones for zero, and devices may hand them on: to everybody they are zero from the start.
+template <class Scalar> Scalar normal(double value) {
+  const Scalar x = Scalar(value);
+  return std::fabs(x) < std::numeric_limits<Scalar>::min() ? Scalar(0) : x;
+}
 
 /// Holds the newest rows of buffers that the host has not asked for since a device wrote them.
 class Keeper {
