@@ -8,7 +8,7 @@
 
 namespace pcphys {
 
-Tables::Tables(Precision precision) : precision_(precision), columns_(table_buffer_count), rows_(table_count, 0) {
+Tables::Tables(Precision precision) : precision_(precision), columns_(table_buffer_count), rows_(table_count, 0), columns_of_(table_count) {
   for (std::size_t b = 0; b < table_buffer_count; b++) add_listed(Buffer(b));
   // row 0 of every table is the padding row
   for (std::size_t t = 0; t < table_count; t++) resize(Table(t), 1);
@@ -18,6 +18,7 @@ void Tables::add_listed(Buffer buffer) {
   Column& column = columns_[index(buffer)];
   column.used = true;
   column.table = schema(buffer).table;
+  columns_of_[std::size_t(column.table)].push_back(std::uint32_t(index(buffer)));
   column.row_bytes = schema(buffer).reals * real_bytes();
   column.initial.resize(column.row_bytes);
   column.on_demand = !holds(buffer, Role::input) && !holds(buffer, Role::state) && !holds(buffer, Role::derived);
@@ -42,18 +43,18 @@ void Tables::fill(Column& column, std::uint32_t before, std::uint32_t rows) {
 }
 
 void Tables::reserve(Table table, std::uint32_t rows) {
-  for (Column& column : columns_)
-    if (column.used && column.table == table && (column.made || (rows > 1 && !column.on_demand)))
-      column.bytes.reserve(rows * column.row_bytes);
+  for (const std::uint32_t k : columns_of_[std::size_t(table)]) {
+    Column& column = columns_[k];
+    if (column.made || (rows > 1 && !column.on_demand)) column.bytes.reserve(rows * column.row_bytes);
+  }
 }
 
 void Tables::resize(Table table, std::uint32_t rows) {
   reserve(table, rows);
   const std::uint32_t before = std::exchange(rows_[std::size_t(table)], rows);
   layout_++;
-  for (std::size_t k = 0; k < columns_.size(); k++) {
+  for (const std::uint32_t k : columns_of_[std::size_t(table)]) {
     Column& column = columns_[k];
-    if (!column.used || column.table != table) continue;
     if (!column.made && (rows <= 1 || column.on_demand)) {
       column.version++;
       continue;
@@ -98,9 +99,10 @@ void Tables::take_back(Keeper* keeper) {
 }
 
 void Tables::copy_row(Table table, std::uint32_t from, std::uint32_t to) {
-  for (Column& column : columns_) {
-    if (!column.used || column.table != table || !column.made) continue;
-    if (column.keeper) make_current(buffer_at(std::size_t(&column - columns_.data())));
+  for (const std::uint32_t k : columns_of_[std::size_t(table)]) {
+    Column& column = columns_[k];
+    if (!column.made) continue;
+    if (column.keeper) make_current(buffer_at(k));
     const std::size_t n = column.row_bytes;
     column.version++;
     std::memcpy(column.bytes.data() + to * n, column.bytes.data() + from * n, n);
@@ -111,6 +113,8 @@ Buffer Tables::add(Table table, std::span<const std::byte> initial) {
   std::size_t k = table_buffer_count;
   while (k < columns_.size() && columns_[k].used) k++;
   if (k == columns_.size()) columns_.emplace_back();
+  std::vector<std::uint32_t>& of_table = columns_of_[std::size_t(table)];
+  pcphys::make_room(of_table);
   Column column;
   column.version = columns_[k].version;  // goes on: a device may still hold what stood here before
   column.used = column.made = true;
@@ -120,6 +124,7 @@ Buffer Tables::add(Table table, std::span<const std::byte> initial) {
   std::memcpy(column.initial.data(), initial.data(), initial.size());
   fill(column, 0, rows(table));
   columns_[k] = std::move(column);
+  of_table.push_back(std::uint32_t(k));
   layout_++;
   return own_buffer(k - table_buffer_count);
 }
@@ -127,6 +132,7 @@ Buffer Tables::add(Table table, std::span<const std::byte> initial) {
 void Tables::remove(Buffer own) {
   const std::uint64_t version = this->version(own);
   Column& column = columns_[index(own)];
+  std::erase(columns_of_[std::size_t(column.table)], std::uint32_t(index(own)));
   column = {};
   column.version = version + 1;
   layout_++;
@@ -135,14 +141,14 @@ void Tables::remove(Buffer own) {
 Table Tables::add_table() {
   std::size_t t = table_count;
   while (t < rows_.size() && rows_[t] > 0) t++;
-  if (t == rows_.size()) rows_.push_back(0);
+  if (columns_of_.size() == t) columns_of_.emplace_back();
+  if (rows_.size() == t) rows_.push_back(0);
   rows_[t] = 1;
   return Table(t);
 }
 
 void Tables::remove_table(Table own) {
-  for (std::size_t k = table_buffer_count; k < columns_.size(); k++)
-    if (columns_[k].used && columns_[k].table == own) remove(own_buffer(k - table_buffer_count));
+  while (!columns_of_[std::size_t(own)].empty()) remove(buffer_at(columns_of_[std::size_t(own)].back()));
   rows_[std::size_t(own)] = 0;
 }
 
@@ -180,24 +186,25 @@ double Tables::get(Buffer buffer, std::uint32_t row, std::uint32_t offset) const
   assert(row < rows(columns_[index(buffer)].table));
   return read<1>(*this, buffer, row, offset)[0];
 }
-void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
-  assert(row < rows(columns_[index(buffer)].table));
-  const std::size_t i = std::size_t(row) * (row_bytes(buffer) / real_bytes()) + offset;
+template <std::size_t n>
+void Tables::write(Buffer buffer, std::uint32_t row, std::uint32_t offset, const std::array<double, n>& values) {
+  Column& column = at(buffer);
+  assert(row < rows(column.table));
+  std::byte* to = column.bytes.data() + row * column.row_bytes + std::size_t(offset) * real_bytes();
   if (precision_ == Precision::f32)
-    data<float>(buffer)[i] = normal<float>(value);
+    std::ranges::transform(values, reinterpret_cast<float*>(to), normal<float>);
   else
-    data<double>(buffer)[i] = normal<double>(value);
-  touch(buffer);
+    std::ranges::transform(values, reinterpret_cast<double*>(to), normal<double>);
+  column.version++;
 }
+void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) { write<1>(buffer, row, offset, {value}); }
 Vec3 Tables::get3(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
   assert(row < rows(columns_[index(buffer)].table));
   const auto [x, y, z] = read<3>(*this, buffer, row, offset);
   return {x, y, z};
 }
 void Tables::set3(Buffer buffer, std::uint32_t row, std::uint32_t offset, Vec3 v) {
-  set(buffer, row, offset, v.x);
-  set(buffer, row, offset + 1, v.y);
-  set(buffer, row, offset + 2, v.z);
+  write<3>(buffer, row, offset, {v.x, v.y, v.z});
 }
 Quat Tables::get4(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
   assert(row < rows(columns_[index(buffer)].table));
@@ -205,8 +212,7 @@ Quat Tables::get4(Buffer buffer, std::uint32_t row, std::uint32_t offset) const 
   return {x, y, z, w};
 }
 void Tables::set4(Buffer buffer, std::uint32_t row, std::uint32_t offset, Quat q) {
-  set3(buffer, row, offset, {q.x, q.y, q.z});
-  set(buffer, row, offset + 3, q.w);
+  write<4>(buffer, row, offset, {q.x, q.y, q.z, q.w});
 }
 
 bool Tables::are_long_enough() const {

@@ -1,5 +1,6 @@
 // The storage of all tables: one aligned block of bytes a buffer, in the precision of the world.
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -119,6 +120,7 @@ class Tables {
     AlignedBytes bytes;
     std::uint64_t version = 0;
   };
+  template <std::size_t n> void write(Buffer buffer, std::uint32_t row, std::uint32_t offset, const std::array<double, n>& values);
   /// Columns stand in the order of the list of buffers, the host's own behind them.
   static std::size_t index(Buffer buffer) {
     return is_own(buffer) ? std::size_t(buffer) - buffer_count + table_buffer_count : std::size_t(buffer);
@@ -137,7 +139,8 @@ class Tables {
 
   Precision precision_;
   std::vector<Column> columns_;
-  std::vector<std::uint32_t> rows_;  // by Table; 0: removed
+  std::vector<std::uint32_t> rows_;                     // by Table; 0: removed
+  std::vector<std::vector<std::uint32_t>> columns_of_;  // by Table, those that are used
   std::uint64_t layout_ = 0;
   std::vector<Keeper*> keepers_;  // that hold rows, or did
 };
