@@ -28,7 +28,7 @@ Simulated& throw_ball(Trial& trial, double drag, Integrator integrator = Integra
 
 void fall_with_drag(Trial& trial, double drag) {
   Simulated& run = throw_ball(trial, drag);
-  Worst position, growth;
+  Worst position;
   double speed = length(start_velocity);
   for (long k = 1; k <= trial.steps(5); ++k) {
     run.step(trial.dt());

@@ -42,7 +42,8 @@ double angle(const Run& run, BodyId body) {
 
 TEST_CASE("carried: a box that sticks to a turntable stays where it stands") {
   for (const Mode& mode : precisions())
-    for (const auto& [spin, most] : {std::pair(0.5, 1e-6), {1, 3e-6}, {2, 4e-5}}) {
+    for (const auto& pair : {std::pair(0.5, 1e-6), {1, 3e-6}, {2, 4e-5}}) {
+      const double spin = pair.first, most = pair.second;
       CAPTURE(mode.name());
       CAPTURE(spin);
       Run run(mode, {0, -gravity, 0}, 4);

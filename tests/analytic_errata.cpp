@@ -152,7 +152,9 @@ TEST_CASE("errata (vi): drag decays exponentially at any dt F; 1 - dt F is first
 TEST_CASE("errata (vi): what falls in drag falls by the exact term; by 1 - dt F it is centimetres too low") {
   const double drag = 1, seconds = 2;
   const double exact = -gravity / drag * (seconds - (1 - std::exp(-drag * seconds)) / drag);
-  for (const auto& [per_second, off] : {std::pair{60, -0.12}, {240, -0.030}, {1200, -0.0060}}) {
+  for (const auto& pair : {std::pair{60, -0.12}, {240, -0.030}, {1200, -0.0060}}) {
+    const int per_second = pair.first;
+    const double off = pair.second;
     CAPTURE(per_second);
     const double dt = 1.0 / per_second;
     for (const Mode& mode : precisions()) {

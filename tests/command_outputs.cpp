@@ -116,7 +116,8 @@ TEST_CASE("outputs: two for one place are refused, however it is spelled") {
                        {"plan balls ", "--json ", " --csv "},
                        {"scenes ", "--json ", " --csv "},
                        {"wild encounter --count 1 ", "--csv ", " --shrink-to "}};
-  for (const auto& [first, second] : names) {
+  for (const auto& pair : names) {
+    const std::string first = pair[0], second = pair[1];
     CAPTURE(first + " " + second);
     for (const Two& two : pairs) {
       const std::string in_folder = "cd " + std::filesystem::path(old).parent_path().string() + "; ";

@@ -16,6 +16,7 @@ namespace {
 using uint = std::uint32_t;
 struct uvec2 {
   uint x, y;
+  uvec2(uint x, uint y) : x(x), y(y) {}  // as GLSL writes it: not every compiler takes parentheses for an aggregate
 };
 uvec2 unpackDouble2x32(double v) {
   const auto b = std::bit_cast<std::uint64_t>(v);

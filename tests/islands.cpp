@@ -112,8 +112,9 @@ int check_labels(Backend& backend, std::uint32_t count) {
   World world = bodies(count);
   WorldState& state = world.state();
   int most = 0;
-  for (auto& [name, edges] : graphs(count)) {
-    INFO(name << ", " << count << " bodies");
+  for (const auto& graph : graphs(count)) {
+    const auto& edges = graph.second;
+    INFO(graph.first << ", " << count << " bodies");
     state.contacts.ends = edges;
     Islands islands;
     islands.build(state);

@@ -119,8 +119,9 @@ TEST_CASE("out of memory: each call is refused or made whole") {
     CAPTURE(sleep);
     Host scarce(sleep), rich(sleep);
     int sum = 0;
-    for (const auto& [name, act] : acts()) {
-      CAPTURE(std::string(name));
+    for (const auto& named : acts()) {
+      const auto& act = named.second;
+      CAPTURE(std::string(named.first));
       sum += refusals(scarce, act);
       REQUIRE(act(rich) == ErrorCode::none);
       REQUIRE(scarce.world.hash() == rich.world.hash());

@@ -61,9 +61,10 @@ TEST_CASE("sleep: with it off nothing sleeps, and a step with it off wakes what 
 
 TEST_CASE("sleep: no island sleeps by halves, in a pile that comes to rest") {
   std::uint32_t most = 0, woke = 0;
-  for (const auto& [scene, count] : {std::pair("hulls", 30), std::pair("dominoes", 20), std::pair("ragdolls", 3)}) {
+  for (const auto& pair : {std::pair("hulls", 30), std::pair("dominoes", 20), std::pair("ragdolls", 3)}) {
+    const char* scene = pair.first;
     INFO(scene);
-    SceneWorld s = scene_world(scene, count);
+    SceneWorld s = scene_world(scene, pair.second);
     StepSettings settings = sleepy();
     settings.sleep_time = 0.1;
     settings.sleep_speed = 0.05;

@@ -34,8 +34,10 @@ std::vector<std::uint64_t> hashes(const char* scene, int count, Precision precis
 TEST_CASE("small worlds have the bits of every lane width, also while they grow and shrink") {
   const std::pair<const char*, int> worlds[] = {{"balls", 1}, {"stack", 1}, {"stack", 4}, {"chain", 1},
                                                 {"chain", 6}, {"door", 1},  {"heavy", 2}, {"ragdolls", 1}};
-  for (const auto& [scene, count] : worlds)
+  for (const auto& pair : worlds)
     for (const Precision precision : {Precision::f32, Precision::f64}) {
+      const char* scene = pair.first;
+      const int count = pair.second;
       INFO(scene << " " << count << (precision == Precision::f32 ? ", float" : ", double"));
       const auto own = hashes(scene, count, precision, widest), scalar = hashes(scene, count, precision, 1);
       CHECK(std::ranges::mismatch(own, scalar).in1 == own.end());

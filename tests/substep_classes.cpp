@@ -214,7 +214,9 @@ TEST_CASE("octaves: a kinematic body joins what it carries") {
 
 TEST_CASE("octaves: a step that makes a free tree spin, or whip, far faster than it was made for is made again") {
   for (const Precision precision : {Precision::f32, Precision::f64})
-    for (const auto& [torque, substeps] : {std::pair(10.0, 4u), {1e3, 32u}, {1e5, 64u}}) {  // enough; whips; spins
+    for (const auto& pair : {std::pair(10.0, 4u), {1e3, 32u}, {1e5, 64u}}) {  // enough; whips; spins
+      const double torque = pair.first;
+      const std::uint32_t substeps = pair.second;
       CAPTURE(torque);
       World world({precision, {}});
       const std::vector<BodyId> links = add_links(world, {}, 4, 0);

@@ -241,9 +241,9 @@ TEST_CASE("worst device: islands are the same in whatever order it visits who to
   settings.sleep_time = 0.1;
   settings.sleep_speed = 0.3;
   settings.sleep_spin = 1;
-  for (const auto& [name, count] : all_scenes) {
-    CAPTURE(name);
-    const MakeWorld make = maker(name, count, Precision::f32);
+  for (const auto& scene : all_scenes) {
+    CAPTURE(scene.first);
+    const MakeWorld make = maker(scene.first, scene.second, Precision::f32);
     const std::uint64_t wanted = hash_after(make, settings, 2, 70);
     const WorstDeviceScope scope;
     StepSettings there = settings;

@@ -202,6 +202,8 @@ template <class T> bool change(T& value, const T& simpler) {
   value = simpler;
   return true;
 }
+/// All of them were made, whichever was the first to change something.
+template <class... Changed> bool any(Changed... changed) { return (changed || ...); }
 
 template <class C> C* of(Call& call) { return std::get_if<C>(&call); }
 
@@ -232,26 +234,25 @@ bool plain_material(Call& call) {
   if (!make) return false;
   const Material usual;
   Material& m = make->def.material;
-  const bool friction =
-      change(m.static_friction, usual.static_friction) | change(m.kinetic_friction, usual.kinetic_friction);
-  const bool levers = change(m.rolling_friction, 0.0) | change(m.torsional_friction, 0.0);
-  const bool rules = change(m.friction_rule, usual.friction_rule) | change(m.restitution_rule, usual.restitution_rule);
-  return friction | levers | rules | change(m.restitution, usual.restitution);
+  const bool friction = any(change(m.static_friction, usual.static_friction), change(m.kinetic_friction, usual.kinetic_friction));
+  const bool levers = any(change(m.rolling_friction, 0.0), change(m.torsional_friction, 0.0));
+  const bool rules = any(change(m.friction_rule, usual.friction_rule), change(m.restitution_rule, usual.restitution_rule));
+  return any(friction, levers, rules, change(m.restitution, usual.restitution));
 }
 bool plain_body(Call& call) {
   MakeBody* make = of<MakeBody>(call);
   if (!make) return false;
   BodyDef& def = make->def;
-  const bool drag = change(def.linear_drag, 0.0) | change(def.angular_drag, 0.0);
-  return drag | change(def.density, 1000.0) | change(def.can_sleep, true);
+  const bool drag = any(change(def.linear_drag, 0.0), change(def.angular_drag, 0.0));
+  return any(drag, change(def.density, 1000.0), change(def.can_sleep, true));
 }
 bool no_motor(Call& call) {
   MakeJoint* make = of<MakeJoint>(call);
-  return make && (change(make->def.motor.speed, 0.0) | change(make->def.motor.torque, 0.0));
+  return make && any(change(make->def.motor.speed, 0.0), change(make->def.motor.torque, 0.0));
 }
 bool no_joint_spring(Call& call) {
   MakeJoint* make = of<MakeJoint>(call);
-  return make && (change(make->def.spring.stiffness, 0.0) | change(make->def.spring.damping, 0.0));
+  return make && any(change(make->def.spring.stiffness, 0.0), change(make->def.spring.damping, 0.0));
 }
 bool pin_alone(Call& call) {
   MakeJoint* make = of<MakeJoint>(call);
@@ -266,8 +267,8 @@ bool undamped(Call& call) {
 template <int digits> bool round_motion(Call& call) {
   MakeBody* make = of<MakeBody>(call);
   if (!make) return false;
-  return change(make->def.velocity, rounded(make->def.velocity, digits)) |
-         change(make->def.angular_velocity, rounded(make->def.angular_velocity, digits));
+  return any(change(make->def.velocity, rounded(make->def.velocity, digits)),
+             change(make->def.angular_velocity, rounded(make->def.angular_velocity, digits)));
 }
 template <int digits> bool round_position(Call& call) {
   MakeBody* make = of<MakeBody>(call);
@@ -277,7 +278,7 @@ template <int digits> bool round_size(Call& call) {
   MakeBody* make = of<MakeBody>(call);
   if (!make || make->def.moments) return false;
   bool changed = false;
-  for (ShapeDef& shape : make->def.shapes) changed = changed | change(shape.size, rounded(shape.size, digits));
+  for (ShapeDef& shape : make->def.shapes) changed = any(change(shape.size, rounded(shape.size, digits)), changed);
   return changed;
 }
 template <int digits> bool round_material(Call& call) {
@@ -287,7 +288,7 @@ template <int digits> bool round_material(Call& call) {
   bool changed = change(make->def.density, rounded(make->def.density, digits));
   for (double* value :
        {&m.static_friction, &m.kinetic_friction, &m.restitution, &m.rolling_friction, &m.torsional_friction})
-    changed = changed | change(*value, rounded(*value, digits));
+    changed = any(change(*value, rounded(*value, digits)), changed);
   return changed;
 }
 
