@@ -25,6 +25,7 @@ void write_contact_row(WorldState& s, const SphereContact& c, double gap) {
   s.tables.set(Buffer::contact, 1, 29, c.friction);
   s.tables.set(Buffer::contact, 1, 30, c.restitution);
   s.tables.set3(Buffer::contact, 1, 32, s.pose(2).position - s.pose(1).position);
+  s.contacts_version++;
 }
 
 Result<World> make_world(const SphereContact& c, Precision precision) {

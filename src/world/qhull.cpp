@@ -11,6 +11,14 @@ namespace {
 struct Close {
   void operator()(std::FILE* file) const { std::fclose(file); }
 };
+struct Free {
+  void operator()(qhT* qh) const {
+    int left = 0, total = 0;
+    qh_freeqhull(qh, !qh_ALL);
+    qh_memfreeshort(qh, &left, &total);
+    delete qh;
+  }
+};
 }  // namespace
 
 std::vector<std::uint32_t> qhull_triangles(std::vector<double>& coordinates) {
@@ -18,7 +26,7 @@ std::vector<std::uint32_t> qhull_triangles(std::vector<double>& coordinates) {
   const std::unique_ptr<std::FILE, Close> quiet(std::fopen("/dev/null", "w"));
   if (!quiet) return triangles;
   char command[] = "qhull Qt";  // triangles, also of merged facets
-  const auto context = std::make_unique<qhT>();
+  const std::unique_ptr<qhT, Free> context(new qhT());
   qhT* const qh = context.get();
   qh_zero(qh, quiet.get());
   const int code = qh_new_qhull(qh, 3, int(coordinates.size() / 3), coordinates.data(), 0, command, nullptr, quiet.get());
@@ -28,9 +36,6 @@ std::vector<std::uint32_t> qhull_triangles(std::vector<double>& coordinates) {
     FORALLfacets { FOREACHvertex_(facet->vertices) triangles.push_back(std::uint32_t(qh_pointid(qh, vertex->point))); }
     if (triangles.size() % 3 != 0) triangles.clear();
   }
-  int left = 0, total = 0;
-  qh_freeqhull(qh, !qh_ALL);
-  qh_memfreeshort(qh, &left, &total);
   return triangles;
 }
 
