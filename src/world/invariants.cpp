@@ -1,8 +1,10 @@
 #include "world/invariants.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <new>
+#include <string_view>
 #include <vector>
 
 #include "pcphys/result.h"
@@ -29,7 +31,7 @@ class Walk {
     for (const Part part :
          {&Walk::walk_ids, &Walk::walk_rows, &Walk::walk_shapes, &Walk::walk_forces, &Walk::walk_joints,
           &Walk::walk_counts, &Walk::walk_frozen, &Walk::walk_joints_apart, &Walk::walk_asked_apart,
-          &Walk::walk_contacts, &Walk::walk_rest, &Walk::walk_islands, &Walk::walk_own}) {
+          &Walk::walk_contacts, &Walk::walk_rest, &Walk::walk_islands, &Walk::walk_numbers, &Walk::walk_own}) {
       (this->*part)();
       if (!broken_.empty()) break;
     }
@@ -38,7 +40,7 @@ class Walk {
 
  private:
   /// Whether it holds; the first that does not is what is said of number `at` of those objects.
-  bool holds(bool so, const char* object, std::size_t at, const char* predicate) {
+  bool holds(bool so, std::string_view object, std::size_t at, const char* predicate) {
     if (!so && broken_.empty()) broken_ = std::string(object) + " " + std::to_string(at) + " " + predicate;
     return so;
   }
@@ -277,6 +279,21 @@ class Walk {
                  "has no number of points"))
         return;
     }
+  }
+
+  /// Impulses of joints may pass what numbers hold, where masses near the largest hang on them: the next step freezes what they act on.
+  void walk_numbers() {
+    for (std::size_t k = 0; k < table_buffer_count; k++) {
+      const Buffer buffer = Buffer(k);
+      if (!pcphys::holds(buffer, Role::state) || t_.table_of(buffer) == Table::joint || !is_here(buffer)) continue;
+      t_.precision() == Precision::f32 ? walk_numbers<float>(buffer) : walk_numbers<double>(buffer);
+    }
+  }
+  template <class Scalar> void walk_numbers(Buffer buffer) {
+    const std::size_t reals = t_.row_bytes(buffer) / sizeof(Scalar), all = t_.rows(t_.table_of(buffer)) * reals;
+    const Scalar* const first = t_.data<Scalar>(buffer);
+    const Scalar* const bad = std::find_if_not(first, first + all, [](Scalar x) { return std::isfinite(x); });
+    holds(bad == first + all, schema(buffer).name, std::size_t(bad - first) / reals, "holds a number that is not finite");
   }
 
   double rest(std::uint32_t row, RestField field) const { return t_.get(Buffer::rest, row, field); }
