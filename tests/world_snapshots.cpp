@@ -1,7 +1,9 @@
 // Pins snapshots: a restored world is the same to the bit and goes on as the run that went on, contacts' warm
 // start included, in the same world, in a twin, and in a twin with another past; bytes that are cut, changed
 // or of another world are refused and change nothing.
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "support_world.h"
 #include "world/state_rows.h"
@@ -180,6 +182,28 @@ template <class Scalar> int count_taken(Precision precision, Scalar number) {
 TEST_CASE("whatever number stands in the state of a body, it is refused, or the world goes on and its snapshots are whole") {
   for (const float number : {2.0f, 1.0f, -1.0f, 3e38f, 1e-40f}) CHECK(count_taken(Precision::f32, number) > 10);
   for (const double number : {2.0, 1.0, -1.0, 1.7e308, 1e-310}) CHECK(count_taken(Precision::f64, number) > 10);
+}
+
+TEST_CASE("contacts with numbers that are not finite are refused") {
+  World world;
+  must(world.create_body(fixed_box({0, -0.5, 0}, {5, 0.5, 5})));
+  must(world.create_body(ball({0, 0.5, 0})));
+  Stepper stepper;
+  for (int i = 0; i < 5; i++) REQUIRE(stepper.step(world, frame));
+  const std::vector<std::byte> snapshot = world.snapshot();
+  int taken = 0;
+  for (std::size_t at = 0; at + sizeof(float) <= snapshot.size() - 8; at += sizeof(float)) {
+    INFO("byte " << at);
+    std::vector<std::byte> changed = snapshot;
+    put(changed, at, std::numeric_limits<float>::quiet_NaN());
+    if (!world.restore(changed)) continue;
+    taken++;
+    for (const Contact& contact : world.contacts()) {
+      CHECK(finite(contact.normal));
+      for (const Contact::Point& point : contact.points) CHECK(std::isfinite(point.separation + point.impulse));
+    }
+  }
+  CHECK(taken > 0);  // the features of points are no numbers
 }
 
 TEST_CASE("an empty world has a snapshot") {

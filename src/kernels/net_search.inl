@@ -58,8 +58,9 @@ PC_FN void pc_net_search(PC_IO Slot m, Net n, Mask wants) {
   Real square = pc_net_square(PC_PASS m, n, zero);
   precise Real enough = square * (PC_INFO(rounding) * PC_INFO(rounding));
   Real kept = zero;
+  Mask goes = wants;
   for (uint i = 0u; i < PC_COUNT(rounds); i++) {
-    Mask goes = pc_and(wants, pc_and(square > enough, square > PC_TINY));
+    goes = pc_and(goes, pc_and(square > enough, square > PC_TINY));
     if (!PC_ANY(goes)) break;  // lint: allow (steps of those that are done are zero)
     pc_net_turn(PC_PASS m, n, kept);
     Real product = pc_net_image(PC_PASS m, n);

@@ -126,9 +126,13 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
   block.zz = zz;
   pc_sts_net(PC_PASS s, NET_BLOCK, pc_sym_inverse(block));
 }
-// Impulses and arms with a share of the step that was found, and what they make of the bodies.
-PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share) {
-  pc_net_clear(PC_PASS m, n, NET_PUSH);
+// (a net that is not asked keeps what it has, to the bit, where nets beside it are)
+PC_FN void pc_net_keep(PC_IO Slot b, uint f, Mask these, Vec3 v) {
+  pc_st3_net(PC_PASS b, f, pc_select3(these, v, pc_ld3_net(PC_PASS b, f)));
+}
+// Impulses and arms with a share of the step that was found, and what they make of the bodies, where `live`.
+PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share, Mask live) {
+  pc_net_clear(PC_PASS m, n, NET_SUM);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     Vec3 impulse = pc_net_further(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), share);
@@ -137,7 +141,12 @@ PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share) {
     Vec3 arm_a = pc_net_further(ra, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM), ra), share);
     Vec3 arm_b = pc_net_further(rb, pc_sub(pc_ld3_net(PC_PASS s, NET_AIM + 3u), rb), share);
     Slot a = pc_net_end(PC_PASS m, n, k, 0u);
-    pc_net_add(PC_PASS a, pc_net_end(PC_PASS m, n, k, 1u), NET_PUSH, arm_a, arm_b, impulse);
+    pc_net_add(PC_PASS a, pc_net_end(PC_PASS m, n, k, 1u), NET_SUM, arm_a, arm_b, impulse);
+  }
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    pc_net_keep(PC_PASS b, NET_PUSH, live, pc_ld3_net(PC_PASS b, NET_SUM));
+    pc_net_keep(PC_PASS b, NET_PUSH + 3u, live, pc_ld3_net(PC_PASS b, NET_SUM + 3u));
   }
 }
 // Takes that share, where `takes`.
@@ -160,10 +169,6 @@ PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
 
 #include "net_search.inl"
 
-// (a net that is not asked keeps what it has, to the bit, where nets beside it are)
-PC_FN void pc_net_keep(PC_IO Slot b, uint f, Mask these, Vec3 v) {
-  pc_st3_net(PC_PASS b, f, pc_select3(these, v, pc_ld3_net(PC_PASS b, f)));
-}
 PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
@@ -260,6 +265,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Mask asked = pc_net_wants(PC_PASS m, n);
   if (!PC_ANY(asked)) return;  // lint: allow (nothing is stored otherwise)
   pc_net_begin(PC_PASS m, n, asked);
+  Mask live = asked;  // a net that is done stays as it is, where nets beside it go on
   uint rounds = PC_COUNT(rounds);
   Real share = zero;
   Real level = zero;
@@ -271,19 +277,20 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Mask better = pc_or(first, pc_or(now.level < bound, now.open < open));
     level = pc_select(better, now.level, level);
     open = pc_select(better, now.open, open);
-    pc_net_take(PC_PASS m, n, share, pc_and(asked, better));
+    pc_net_take(PC_PASS m, n, share, pc_and(live, better));
     precise Real enough = now.given * (PC_INFO(rounding) * PC_INFO(rounding));
-    Mask goes = pc_and(asked, pc_and(better, now.open > enough));
-    Mask back = pc_and(asked, pc_select(better, zero, one) > PC_REAL(0.5));
+    Mask goes = pc_and(live, pc_and(better, now.open > enough));
+    Mask back = pc_and(live, pc_select(better, zero, one) > PC_REAL(0.5));
     share = pc_select(better, zero, share);
-    if (!PC_ANY(pc_or(goes, back))) break;  // lint: allow (nothing more is found)
+    live = pc_or(goes, back);
+    if (!PC_ANY(live)) break;  // lint: allow (nothing more is found)
     if (i + 1u < rounds) pc_net_search(PC_PASS m, n, goes);
     uint left = rounds - 1u - i;
     // a step that led up is made a quarter of it; the last one that may be is not taken
     Real less = pc_select(PC_IS(left), PC_REAL(0.25), zero);
     precise Real kept = share * less;
     share = pc_select(back, kept, pc_select(goes, pc_select(PC_IS(left), one, zero), zero));
-    pc_net_try(PC_PASS m, n, share);
+    pc_net_try(PC_PASS m, n, share, live);
   }
   pc_net_bound(PC_PASS m, n, asked);
   PC_ST(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH, zero);

@@ -140,6 +140,15 @@ class Look {
     });
     return value;
   }
+  /// Whether all of the library's are.
+  bool is_finite() const {
+    bool finite = true;
+    each([&](const Field& f, const std::byte* p) {
+      for (std::size_t at = 0; at < f.bytes && !is_own(f.buffer); at += real_)
+        finite = finite && std::isfinite(read_number(p + at, f.type, real_));
+    });
+    return finite;
+  }
 
  private:
   template <class Do> void each(const Do& what) const {
@@ -221,7 +230,7 @@ bool is_contact(const WorldState& s, const ContactKey& key, const Look& contact)
   const auto moves = [&](std::uint32_t body) { return s.bodies[s.body_ids.row(body)].kind == BodyKind::dynamic; };
   if (a == b || !(moves(a) || moves(b))) return false;
   const double points = contact.at(Buffer::contact, place::point_count);
-  return points >= 0 && points <= 4 && points == std::floor(points);
+  return points >= 0 && points <= 4 && points == std::floor(points) && contact.is_finite();
 }
 
 /// Whether all that stands behind the head is a state of this world. Its length is right.
