@@ -147,6 +147,7 @@ template <class Scalar> struct Detector::Meeting {
       fcl_hook()(x, y, look, m);
     else
       narrow(x, y, look, c.hint, m);
+    if (!has_normal(m)) m.count = 0;
   }
 
   /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that
