@@ -98,3 +98,25 @@ TEST_CASE("merged joints: joints with angles of their own stay as they are") {
     CHECK(rows(run) == 0);
   }
 }
+
+/// A snapshot of when a motor kept them apart has impulses of both; of joints that are one again the second stands back.
+TEST_CASE("merged joints: a snapshot of when they were two goes on the same for a stepper that knows them and for a new one") {
+  for (const Mode& mode : precisions()) {
+    Run run(mode, {0, -9.81, 0}, 4);
+    const BodyId a = run.add(plate({0.5, 0, 0}));
+    pin(run, run.world.ground(), {0, 0, 0.9}, a, {-0.5, 0, 0.9});
+    const JointId second = pin(run, run.world.ground(), {0, 0, -0.9}, a, {-0.5, 0, -0.9});
+    REQUIRE(run.world.set_motor(second, {2, 5}));
+    run.step(1.0 / 60, 10);
+    const std::vector<std::byte> apart = run.world.snapshot();
+    REQUIRE(run.world.set_motor(second, {}));
+    run.step(1.0 / 60, 2);
+    REQUIRE(run.world.restore(apart));
+    run.step(1.0 / 60, 2);
+    const std::uint64_t known = run.world.hash();
+    REQUIRE(run.world.restore(apart));
+    Stepper stepper(run.stepper.settings());
+    for (int i = 0; i < 2; i++) REQUIRE(stepper.step(run.world, 1.0 / 60));
+    CHECK(run.world.hash() == known);
+  }
+}
