@@ -59,6 +59,7 @@ struct Stepper::Inside {
   std::uint64_t scheduled_rest = 0;                   // and who slept in it
   bool other = false;                                 // than those of the last step
   bool undone = false;                                // a try of a step, with what it wrote of joints
+  std::uint64_t restores = 0;                         // of the world, when that was written last
   bool regrouped = false;                             // islands may be others than after it
   Sleepers sleepers;
   Unrest unrest;

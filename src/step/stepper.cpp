@@ -185,6 +185,7 @@ void Stepper::Inside::unfreeze(WorldState& s) {
 
 void Stepper::Inside::write_solved(WorldState& s) {
   undone = false;
+  restores = s.restores;
   if (s.joints.size() == 1) return;  // not even the rows that pad need be there
   runner.keep(s, Buffer::joint_impulse);
   schedule.trees.solved().write(s);
@@ -193,7 +194,7 @@ void Stepper::Inside::write_solved(WorldState& s) {
 
 void Stepper::Inside::update_structure(WorldState& s) {
   if (is_scheduled(s)) {
-    if (undone) write_solved(s);
+    if (undone || restores != s.restores) write_solved(s);
     return;
   }
   scheduled_serial = s.serial;

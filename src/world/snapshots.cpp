@@ -355,7 +355,7 @@ Status World::restore(std::span<const std::byte> snapshot) try {
   s.count_rest();
   s.tables.touch_all();
   s.contacts_version++;
-  s.structure_version++;  // what follows from joints is written into their rows anew
+  s.restores++;
   return {};
 } catch (...) {
   drop_unfrozen(state());  // there was no room for all

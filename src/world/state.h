@@ -125,6 +125,7 @@ struct WorldState {
 
   /// Counters that a stepper compares with what it saw last.
   std::uint64_t structure_version = 1;      // objects, kinds, filters
+  std::uint64_t restores = 0;               // of snapshots: rows hold what they held then
   std::uint64_t joint_changes = 0;          // how many of these were of joints alone
   std::uint32_t kinematic = 0;              // bodies of that kind
   double settling = 0;                      // the largest of the bodies' property of that name
