@@ -337,6 +337,7 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.rounding = Scalar(1e-3);
     info.substeps = Scalar(3);
     info.largest_state = Scalar(1e4);  // some bodies are beyond it
+    info.largest_impulse = Scalar(1);  // some contacts are
     state_.infos[std::size_t(phase)] = info;
   }
 }

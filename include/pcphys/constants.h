@@ -24,6 +24,8 @@ inline constexpr double smallest_mass = 1e-30, largest_mass = 1e30;
 /// A spin that with the largest moment of its body makes an angular momentum beyond this [kg m^2/s] is refused, in either
 /// precision: float32 must hold sums of such, whichever way the body is turned.
 inline constexpr double largest_spin_momentum = 1e36;
+/// Contacts remember no larger impulses [N s]: float32 must hold sums of such.
+inline constexpr double largest_impulse = 1e36;
 /// Time steps outside this interval are refused: their inverses or what falls within them leave float32's range [s].
 inline constexpr double shortest_step = 1e-15, longest_step = 1e3;
 /// How far an orientation may be from unit length; closer ones are normalised.

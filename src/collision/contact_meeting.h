@@ -147,7 +147,6 @@ template <class Scalar> struct Detector::Meeting {
       fcl_hook()(x, y, look, m);
     else
       narrow(x, y, look, c.hint, m);
-    if (!has_normal(m)) m.count = 0;
   }
 
   /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that
@@ -170,12 +169,15 @@ template <class Scalar> struct Detector::Meeting {
       if (double(m.points[i].separation) <= most) c.together |= std::uint8_t(1u << i);
   }
 
+  /// Whether one goes so far that it leaves the range of numbers: the step freezes it, and till then it meets nothing.
+  static bool is_lost(double goes) { return !(goes < constants::largest_state); }
+
   /// `sent`: how far others of a joint tree may send them against each other.
   void find(double sent) {
     const double way = this->way(), goes = std::max(way, sent), moved = this->moved();
     const bool quick = this->quick();
     if (c.touches && !c.struck && !quick && moved <= constants::contact_share * thick) return;
-    if (!c.touches && c.gap - moved > goes) return stand_aside();
+    if ((!c.touches && c.gap - moved > goes) || is_lost(goes)) return stand_aside();
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
     ShapeView<Scalar> there = b;
@@ -214,6 +216,7 @@ template <class Scalar> struct Detector::Meeting {
 
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.
   bool find_from(double from) {
+    if (is_lost(way())) return false;
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
     look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way());

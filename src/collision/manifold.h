@@ -16,10 +16,4 @@ template <class Scalar> struct Manifold {
   ManifoldPoint<Scalar> points[4];
 };
 
-/// Shapes may be so far from each other that numbers tell none.
-template <class Scalar> bool has_normal(const Manifold<Scalar>& m) {
-  const Scalar* n = m.normal;
-  return m.count > 0 && n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > Scalar(0.5);
-}
-
 }  // namespace pcphys

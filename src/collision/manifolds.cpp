@@ -82,7 +82,7 @@ bool Detector::touches(Scratch<Scalar>& scratch, std::uint32_t place, std::size_
   touch.impact = a.jointed || b.jointed ? -1 : 0;
   touch.manifold = round_ ? scratch.lanes.manifold(place) : nullptr;
   if (!touch.manifold) touch.manifold = &scratch.manifolds[found++];
-  return has_normal(*touch.manifold);
+  return touch.manifold->count > 0;
 }
 
 /// Whether a contact of the last step pushed.

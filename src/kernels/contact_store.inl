@@ -13,9 +13,9 @@ PC_FN Quad pc_lasting_friction(PC_IO Slot m, Real share) {
 }
 #endif
 
-// Of bodies so heavy that it is more than numbers hold nothing is remembered.
+// Where bodies are so heavy that it is more than numbers hold nothing lasts.
 PC_FN Real pc_load_of(Quad q) { precise Real load = pc_abs(q.v.x) + pc_abs(q.v.y) + pc_abs(q.v.z) + pc_abs(q.s); return load; }
-PC_FN Quad pc_kept_where(Mask known, Quad q) { return pc_quad(pc_select3(known, q.v, pc_zero3()), pc_select(known, q.s, PC_REAL(0.0))); }
+PC_FN Quad pc_kept_where(Mask held, Quad q) { return pc_quad(pc_select3(held, q.v, pc_zero3()), pc_select(held, q.s, PC_REAL(0.0))); }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index record = PC_ORDER(contact_order, m);
@@ -23,7 +23,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real ratio = PC_INFO(impulse_ratio); precise Real share = l.share * ratio;
   precise Real l0 = l.l0 * ratio; precise Real l1 = l.l1 * ratio; precise Real l2 = l.l2 * ratio; precise Real l3 = l.l3 * ratio;
   Quad normal = pc_quad(Vec3(l0, l1, l2), l3); Quad friction = pc_lasting_friction(PC_PASS m, share);
-  precise Real all = pc_load_of(normal) + pc_load_of(friction); Mask known = all < PC_REAL(1e37);
-  PC_SCATTER(contact, record, 5u, pc_kept_where(known, normal));
-  PC_SCATTER(contact, record, 6u, pc_kept_where(known, friction));
+  precise Real all = pc_load_of(normal) + pc_load_of(friction); Mask held = all < PC_INFO(largest_impulse);
+  PC_SCATTER(contact, record, 5u, pc_kept_where(held, normal));
+  PC_SCATTER(contact, record, 6u, pc_kept_where(held, friction));
 }

@@ -35,3 +35,4 @@ PC_INFO_FIELD(carries, "1 where there are kinematic bodies: contacts go by the a
 PC_INFO_FIELD(substeps, "how many a step of the class has")
 PC_INFO_FIELD(step, "their sum: what a kernel of the host's own that runs once a step is told as its h [s]")
 PC_INFO_FIELD(largest_state, "a body with larger numbers is frozen")
+PC_INFO_FIELD(largest_impulse, "of a contact, that it remembers [N s]")

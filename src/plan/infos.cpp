@@ -64,6 +64,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.substeps = Scalar(from.substeps << octave);
   biased.step = Scalar(from.h * from.substeps);
   biased.largest_state = Scalar(constants::largest_state);
+  biased.largest_impulse = Scalar(constants::largest_impulse);
 
   const auto change = [&](Phase phase, double before, double after) {
     InfoOf<Scalar>& info = infos[unsigned(phase)];
