@@ -1,11 +1,14 @@
 // Pins snapshots: a restored world is the same to the bit and goes on as the run that went on, contacts' warm
 // start included, in the same world, in a twin, and in a twin with another past; bytes that are cut, changed
 // or of another world are refused and change nothing.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 
 #include "support_world.h"
+#include "world/invariants.h"
 #include "world/state_rows.h"
 
 using namespace worldtest;
@@ -168,6 +171,7 @@ template <class Scalar> int count_taken(Precision precision, Scalar number) {
     must(world.restore(snapshot));
     if (!world.restore(changed)) continue;
     taken++;
+    CHECK(broken_invariant(world.state()) == "");
     CHECK(finite(must(world.velocity(body))));
     CHECK(finite(must(world.angular_velocity(body))));
     Stepper stepper({.sleep = true});
@@ -182,6 +186,46 @@ template <class Scalar> int count_taken(Precision precision, Scalar number) {
 TEST_CASE("whatever number stands in the state of a body, it is refused, or the world goes on and its snapshots are whole") {
   for (const float number : {2.0f, 1.0f, -1.0f, 3e38f, 1e-40f}) CHECK(count_taken(Precision::f32, number) > 10);
   for (const double number : {2.0, 1.0, -1.0, 1.7e308, 1e-310}) CHECK(count_taken(Precision::f64, number) > 10);
+}
+
+TEST_CASE("an infinite number is refused, or becomes part of another") {
+  CHECK(count_taken(Precision::f32, std::numeric_limits<float>::infinity()) > 0);
+  CHECK(count_taken(Precision::f64, std::numeric_limits<double>::infinity()) > 0);
+}
+
+TEST_CASE("a place beyond the range of numbers is refused") {
+  World world({Precision::f64});
+  const BodyId body = must(world.create_body(ball({1, 2, 4})));
+  std::vector<std::byte> snapshot = world.snapshot();
+  const double x = 4;
+  const auto at = std::ranges::search(snapshot, std::as_bytes(std::span(&x, 1))).begin() - snapshot.begin();
+  put(snapshot, std::size_t(at), 0.9 * constants::largest_state);
+  must(world.restore(snapshot));
+  CHECK(must(world.pose(body)).position.z == 0.9 * constants::largest_state);
+  put(snapshot, std::size_t(at), 10 * constants::largest_state);
+  CHECK_REFUSED(world, world.restore(snapshot), ErrorCode::bad_snapshot, "numbers that no step leaves");
+}
+
+TEST_CASE("bodies in contact of which one sleeps and one does not are refused") {
+  World world;
+  must(world.create_body(fixed_box({0, -0.5, 0}, {5, 0.5, 5})));
+  must(world.create_body(ball({0, 0.5, 0})));
+  const BodyId upper = must(world.create_body(ball({0, 1.5, 0})));
+  Stepper stepper({.sleep = true, .sleep_time = 0.1});
+  for (int i = 0; i < 60; i++) REQUIRE(stepper.step(world, frame));
+  REQUIRE(must(world.is_asleep(upper)));
+  const std::vector<std::byte> snapshot = world.snapshot();
+  int refused = 0;
+  for (std::size_t at = 0; at + sizeof(float) <= snapshot.size() - 8; at += sizeof(float)) {
+    INFO("byte " << at);
+    std::vector<std::byte> changed = snapshot;
+    put(changed, at, 0.0f);
+    if (world.restore(changed))
+      CHECK(broken_invariant(world.state()) == "");
+    else
+      refused++;
+  }
+  CHECK(refused > 2);
 }
 
 TEST_CASE("contacts with numbers that are not finite are refused") {

@@ -172,8 +172,8 @@ bool is_still(const Look& body) {
   return true;
 }
 
-/// Whether its place and velocities are, however their parts are added up.
-bool reads_finite(const WorldState& s, std::uint32_t row, const Look& body) {
+/// Whether its place and velocities are in the range of numbers, however their parts are added up.
+bool in_range(const WorldState& s, std::uint32_t row, const Look& body) {
   double light = 0, place = 0, speed = 0, momentum = 0;
   for (std::uint32_t c = 0; c < 3; c++) {
     light = std::max(light, s.tables.get(Buffer::mass, row, 4 + c));
@@ -181,20 +181,19 @@ bool reads_finite(const WorldState& s, std::uint32_t row, const Look& body) {
     speed += std::fabs(body.at(Buffer::motion, c)) + std::fabs(body.at(Buffer::velocity_parts, c));
     momentum += std::fabs(body.at(Buffer::motion, 4 + c)) + std::fabs(body.at(Buffer::velocity_parts, 4 + c));
   }
-  return std::isfinite(place) && std::isfinite(speed) && std::isfinite(momentum * std::max(light, 1.0));
+  constexpr double limit = 4 * constants::largest_state;  // of sums of sizes; lengths stay below what steps and hosts leave
+  return place < limit && speed < limit && std::isfinite(momentum * std::max(light, 1.0));
 }
 
 /// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, turned by quaternions of unit length, both
 /// as they are rounded and with what rounding dropped, and flags. (Impulses may be any numbers: a body that they throw beyond the range is
 /// frozen.)
 bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
+  if (!body.is_finite()) return false;
   double rounded = 0, whole = 0;
-  for (std::uint32_t c = 0; c < 16; c++) {
-    const double pose = body.at(Buffer::pose, c), part = body.at(Buffer::velocity_parts, c);
-    if (!std::isfinite(pose) || !std::isfinite(part)) return false;
-    if (c < 8 && !std::isfinite(body.at(Buffer::motion, c))) return false;
-    if (c < place::orientation || c >= place::orientation + 4) continue;
-    const double sum = pose + body.at(Buffer::pose, place::orientation_low + c - place::orientation);
+  for (std::uint32_t c = 0; c < 4; c++) {
+    const double pose = body.at(Buffer::pose, place::orientation + c);
+    const double sum = pose + body.at(Buffer::pose, place::orientation_low + c);
     rounded += pose * pose;
     whole += sum * sum;
   }
@@ -205,9 +204,18 @@ bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
   const bool single = s.tables.precision() == Precision::f32;
   const auto is_normal = [&](double x) { return x == (single ? double(normal<float>(x)) : normal<double>(x)); };
   const bool freezes = body.at(Buffer::motion, place::phase) == frozen_phase;
-  return reads_finite(s, row, body) && is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
+  return in_range(s, row, body) && is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
          quiet >= 0 && is_normal(quiet) && is_flag(asleep) && is_flag(stirred) && !(stands && freezes) &&
          (asleep == 0 || (!stands && !freezes && (stirred > 0 || is_still(body))));
+}
+
+/// Whether a body sleeps, as far as what acts on it must do the same: not if it stands, nor if the next step wakes both.
+enum class Rest : std::uint8_t { awake, asleep, any };
+
+Rest rest_of(const WorldState& s, std::uint32_t row, const Look& body) {
+  const bool stands = s.bodies[row].kind == BodyKind::fixed || body.at(Buffer::motion, place::phase) == frozen_phase;
+  if (stands || body.at(Buffer::rest, rest_stirred) > 0) return Rest::any;
+  return body.at(Buffer::rest, rest_asleep) > 0 ? Rest::asleep : Rest::awake;
 }
 
 /// Of rows that name an object each: every one once.
@@ -235,8 +243,18 @@ bool is_contact(const WorldState& s, const ContactKey& key, const Look& contact)
 
 /// Whether all that stands behind the head is a state of this world. Its length is right.
 bool is_content(const WorldState& s, const Layout& layout, Reader r) {
-  const auto body = [&](std::uint32_t row, const std::byte* bytes) { return row > 0 && is_state(s, row, Look(layout.bodies, bytes)); };
-  const auto joint = [](std::uint32_t, const std::byte*) { return true; };
+  std::vector<Rest> rests(s.bodies.size(), Rest::any);
+  const auto body = [&](std::uint32_t row, const std::byte* bytes) {
+    const Look look(layout.bodies, bytes);
+    rests[row] = rest_of(s, row, look);
+    return row > 0 && is_state(s, row, look);
+  };
+  // what acts on what sleeps sleeps too
+  const auto is_closed = [&](std::uint32_t body_a, std::uint32_t body_b) {
+    const Rest a = rests[s.body_ids.row(body_a)], b = rests[s.body_ids.row(body_b)];
+    return a == b || a == Rest::any || b == Rest::any;
+  };
+  const auto joint = [&](std::uint32_t row, const std::byte*) { return is_closed(s.joints[row].body_a, s.joints[row].body_b); };
   if (!read_indices(r, s.body_ids, layout.bodies.bytes(), s.bodies.size() - 1, body) ||
       !read_indices(r, s.joint_ids, layout.joints.bytes(), s.joints.size() - 1, joint))
     return false;
@@ -244,7 +262,9 @@ bool is_content(const WorldState& s, const Layout& layout, Reader r) {
   for (auto rows = r.get<std::uint32_t>(); rows > 1; rows--) {
     const auto key = r.get<ContactKey>();
     (void)r.take(sizeof(std::array<std::uint32_t, 4>));
-    if (key <= last || !is_contact(s, key, Look(layout.contacts, r.take(layout.contacts.bytes())))) return false;
+    if (key <= last || !is_contact(s, key, Look(layout.contacts, r.take(layout.contacts.bytes()))) ||
+        !is_closed(s.shapes[key.shape_a].body, s.shapes[key.shape_b].body))
+      return false;
     last = key;
   }
   return true;

@@ -60,6 +60,8 @@ std::vector<std::string> words_of(const std::uint8_t* data, std::size_t size) {
 
 }  // namespace
 
+std::size_t fuzz::number_bytes(std::uint8_t) { return 0; }
+
 std::vector<std::vector<std::uint8_t>> fuzz::seeds() {
   const auto line = [](const std::string& text) {
     std::vector<std::uint8_t> seed;

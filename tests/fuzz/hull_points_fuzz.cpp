@@ -110,6 +110,11 @@ void check_falls(const Hull& hull, Precision precision) {
 
 }  // namespace
 
+std::size_t fuzz::number_bytes(std::uint8_t head) {
+  const Form form = Form(head & 3);
+  return form == Form::real64 ? sizeof(double) : form == Form::real32 ? sizeof(float) : 0;
+}
+
 std::vector<std::vector<std::uint8_t>> fuzz::seeds() {
   const auto head = [](Form form, int exponent) { return std::uint8_t(unsigned(form) | unsigned(exponent + 32) << 2); };
   std::vector<std::uint8_t> cube{head(Form::grid, 0)}, ball{head(Form::grid, -6)}, wedge{head(Form::fine_grid, -8)},

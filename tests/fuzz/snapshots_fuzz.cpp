@@ -112,6 +112,8 @@ void check_goes_on(World& world, std::uint8_t which) {
 
 }  // namespace
 
+std::size_t fuzz::number_bytes(std::uint8_t head) { return head & 1 ? sizeof(double) : sizeof(float); }
+
 std::vector<std::vector<std::uint8_t>> fuzz::seeds() {
   std::vector<std::vector<std::uint8_t>> all;
   for (std::uint8_t which = 0; which < 16; which++) {
