@@ -172,7 +172,8 @@ bool is_still(const Look& body) {
   return true;
 }
 
-/// Whether its place and velocities are in the range of numbers, however their parts are added up.
+/// Whether its place is in the range of numbers and its velocities are numbers, however their parts are added up. (A force that the host
+/// has given may make them larger than the next step takes.)
 bool in_range(const WorldState& s, std::uint32_t row, const Look& body) {
   double light = 0, place = 0, speed = 0, momentum = 0;
   for (std::uint32_t c = 0; c < 3; c++) {
@@ -181,8 +182,7 @@ bool in_range(const WorldState& s, std::uint32_t row, const Look& body) {
     speed += std::fabs(body.at(Buffer::motion, c)) + std::fabs(body.at(Buffer::velocity_parts, c));
     momentum += std::fabs(body.at(Buffer::motion, 4 + c)) + std::fabs(body.at(Buffer::velocity_parts, 4 + c));
   }
-  constexpr double limit = 4 * constants::largest_state;  // of sums of sizes; lengths stay below what steps and hosts leave
-  return place < limit && speed < limit && std::isfinite(momentum * std::max(light, 1.0));
+  return place < 2 * constants::largest_state && std::isfinite(speed) && std::isfinite(momentum * std::max(light, 1.0));
 }
 
 /// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, turned by quaternions of unit length, both
