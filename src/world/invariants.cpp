@@ -321,10 +321,8 @@ class Walk {
   /// What acts on what sleeps sleeps too, unless one of both was stirred: the next step wakes it.
   void walk_islands() {
     if (s_.sleepers == 0 || !is_here(Buffer::rest)) return;
-    const auto is_closed = [&](std::uint32_t a, std::uint32_t b) {
-      return s_.stands(a) || s_.stands(b) || s_.asleep(a) == s_.asleep(b) || rest(a, rest_stirred) > 0 ||
-             rest(b, rest_stirred) > 0;
-    };
+    const auto of = [&](std::uint32_t row) { return rest_of(s_.stands(row), rest(row, rest_stirred) > 0, s_.asleep(row)); };
+    const auto is_closed = [&](std::uint32_t a, std::uint32_t b) { return rest_together(of(a), of(b)); };
     for (std::uint32_t row = 1; row < s_.joints.size(); row++) {
       const JointRecord& joint = s_.joints[row];
       if (!holds(is_closed(s_.body_ids.row(joint.body_a), s_.body_ids.row(joint.body_b)), "joint row", row,

@@ -172,8 +172,8 @@ bool is_still(const Look& body) {
   return true;
 }
 
-/// Whether its place is in the range of numbers and its velocities are numbers, however their parts are added up. (A force that the host
-/// has given may make them larger than the next step takes.)
+/// Whether its place is in the range of numbers and its velocities are numbers, however their parts are added up. (Sums of
+/// sizes round, so places may reach twice the limit; a force that the host has given may make velocities larger than the next step takes.)
 bool in_range(const WorldState& s, std::uint32_t row, const Look& body) {
   double light = 0, place = 0, speed = 0, momentum = 0;
   for (std::uint32_t c = 0; c < 3; c++) {
@@ -209,15 +209,6 @@ bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
          (asleep == 0 || (!stands && !freezes && (stirred > 0 || is_still(body))));
 }
 
-/// Whether a body sleeps, as far as what acts on it must do the same: not if it stands, nor if the next step wakes both.
-enum class Rest : std::uint8_t { awake, asleep, any };
-
-Rest rest_of(const WorldState& s, std::uint32_t row, const Look& body) {
-  const bool stands = s.bodies[row].kind == BodyKind::fixed || body.at(Buffer::motion, place::phase) == frozen_phase;
-  if (stands || body.at(Buffer::rest, rest_stirred) > 0) return Rest::any;
-  return body.at(Buffer::rest, rest_asleep) > 0 ? Rest::asleep : Rest::awake;
-}
-
 /// Of rows that name an object each: every one once.
 bool read_indices(Reader& r, const IdPool& ids, std::size_t row_bytes, std::size_t count,
                   const std::function<bool(std::uint32_t, const std::byte*)>& is_good) {
@@ -246,13 +237,12 @@ bool is_content(const WorldState& s, const Layout& layout, Reader r) {
   std::vector<Rest> rests(s.bodies.size(), Rest::any);
   const auto body = [&](std::uint32_t row, const std::byte* bytes) {
     const Look look(layout.bodies, bytes);
-    rests[row] = rest_of(s, row, look);
+    const bool stands = s.bodies[row].kind == BodyKind::fixed || look.at(Buffer::motion, place::phase) == frozen_phase;
+    rests[row] = rest_of(stands, look.at(Buffer::rest, rest_stirred) > 0, look.at(Buffer::rest, rest_asleep) > 0);
     return row > 0 && is_state(s, row, look);
   };
-  // what acts on what sleeps sleeps too
   const auto is_closed = [&](std::uint32_t body_a, std::uint32_t body_b) {
-    const Rest a = rests[s.body_ids.row(body_a)], b = rests[s.body_ids.row(body_b)];
-    return a == b || a == Rest::any || b == Rest::any;
+    return rest_together(rests[s.body_ids.row(body_a)], rests[s.body_ids.row(body_b)]);
   };
   const auto joint = [&](std::uint32_t row, const std::byte*) { return is_closed(s.joints[row].body_a, s.joints[row].body_b); };
   if (!read_indices(r, s.body_ids, layout.bodies.bytes(), s.bodies.size() - 1, body) ||

@@ -47,7 +47,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   }
   const std::size_t wide = fuzz::number_bytes(data[0]);
   if (wide == 0 || random() % 2) return LLVMFuzzerMutate(data, size, most);
-  for (unsigned left = 1 + random() % 3; left > 0; left--)
-    wide == sizeof(double) ? write_number<double>(data, size, random) : write_number<float>(data, size, random);
+  const auto write = wide == sizeof(double) ? write_number<double> : write_number<float>;
+  for (unsigned left = 1 + random() % 3; left > 0; left--) write(data, size, random);
   return size;
 }
