@@ -6,6 +6,7 @@
 #include "contact_turned.inl"
 #include "contact_calming.inl"
 #include "contact_low.inl"
+#include "contact_recalled.inl"
 
 // Where an arm has grown since the start of the step, the frozen effective masses are too large, by up to
 // (K + dK) / K with dK <= growth of arm^2 times trace I^-1; fast bodies would overshoot and gain energy.
@@ -29,6 +30,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real scale = pc_mass_scale(PC_PASS m, arms, a, b);
   Real exact = pc_select(PC_LD(contact_rows, m, ROW_K) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   PC_ST(contact_rows, m, ROW_SCALE, pc_select(far, exact, scale));
+  pc_keep_recalled(PC_PASS m, ia, ib);
   Wrench w = pc_warm_start(PC_PASS m);
   if (PC_ANY(far)) {  // lint: allow (a share of one changes nothing)
     Real calming = pc_clamp(pc_calming_share(a, b, arms, w.impulse, w.couple), PC_REAL(0.0), PC_REAL(1.0)); Real share = pc_select(far, calming, PC_REAL(1.0));

@@ -30,6 +30,7 @@ PC_INFO_FIELD(strayed_turn, "joints of a tree are seen ahead until a body has tu
 PC_INFO_FIELD(tree_damping, "of rotations too fast for the sub-step")
 PC_INFO_FIELD(lock_stiffness, "of a locked angle")
 PC_INFO_FIELD(restitution_threshold, "approach speed below which nothing bounces [m/s]")
+PC_INFO_FIELD(struck_speed, "where a body was struck, its contacts remember little: recall_share.inl [m/s]")
 PC_INFO_FIELD(rounding, "relative: what is this far below what it is a difference of is none")
 PC_INFO_FIELD(carries, "1 where there are kinematic bodies: contacts go by the arcs on which those that turn carry what they meet")
 PC_INFO_FIELD(substeps, "how many a step of the class has")

@@ -9,6 +9,7 @@
 #include "contact_meeting.inl"
 #include "tree_reach.inl"
 #include "row_approach.inl"
+#include "contact_recalled.inl"
 
 // How fast rows that may bounce approach before anything remembered acts: what that drives together has not come together.
 PC_FN void pc_keep_approach(PC_IO Way w, Slot m, Index ia, Index ib) {
@@ -28,6 +29,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m); Real zero = PC_REAL(0.0);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   pc_keep_approach(PC_PASS w, m, ia, ib);
+  pc_keep_recalled(PC_PASS m, ia, ib);
   Wrench wrench = pc_warm_start(PC_PASS m); Real size = pc_max(pc_largest(wrench.impulse), pc_largest(wrench.couple));
   Mask some = size > zero;
   if (!PC_ANY(some)) return;  // lint: allow (nothing changes nothing)

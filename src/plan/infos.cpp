@@ -58,6 +58,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.tree_damping = Scalar(constants::tree_damping);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
   biased.restitution_threshold = Scalar(from.restitution_threshold);
+  biased.struck_speed = Scalar(constants::struck_speed);
   biased.rounding = Scalar(constants::roundings * std::numeric_limits<Scalar>::epsilon());
 
   biased.carries = from.carries;

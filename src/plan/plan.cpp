@@ -182,16 +182,16 @@ Motion motion(const PlanSignature& s) {
 
 /// The kernels of contacts that bodies answer.
 struct Contacts {
-  Kernel prepare, refresh, impact, warm, solve, placed, restitution, touch, store;
+  Kernel prepare, refresh, impact, recall, warm, solve, placed, restitution, touch, store;
 };
 Contacts contacts(const PlanSignature& s) {
   if (s.frictionless())
     return {
         Kernel::contact_prepare_frictionless,     Kernel::contact_refresh_frictionless, Kernel::contact_impact_frictionless,
-        Kernel::contact_warm_frictionless,        Kernel::contact_solve_frictionless,   Kernel::contact_solve_placed_frictionless,
+        Kernel::contact_recall_frictionless,      Kernel::contact_warm_frictionless,            Kernel::contact_solve_frictionless,   Kernel::contact_solve_placed_frictionless,
         Kernel::contact_restitution_frictionless, Kernel::contact_touch_frictionless,   Kernel::contact_store_frictionless};
   return {Kernel::contact_prepare,     Kernel::contact_refresh, Kernel::contact_impact,
-          Kernel::contact_warm,        Kernel::contact_solve,   Kernel::contact_solve_placed,
+          Kernel::contact_recall,      Kernel::contact_warm,        Kernel::contact_solve,   Kernel::contact_solve_placed,
           Kernel::contact_restitution, Kernel::contact_touch,   Kernel::contact_store};
 }
 
@@ -220,6 +220,14 @@ void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32
   for (unsigned visit = 1; s.free_contacts && visit < s.visits; visit++) b.kernel(contacts(s).placed, phase, substep);
 }
 
+/// What contacts remember acts on each body by a share.
+void recall(Builder& b, const PlanSignature& s, std::uint32_t substep) {
+  if (!s.contacts()) return;
+  b.kernel(contacts(s).recall, Phase::biased, substep);
+  if (s.trees) b.kernel(Kernel::tree_recall, Phase::biased, substep);
+  b.kernel(Kernel::recall_share, Phase::biased, substep);
+}
+
 /// A sub-step; `count`: of how many.
 void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32_t k, std::uint32_t count) {
   if (k > 0) b.own(Stage::integrate, false, k, count);
@@ -244,6 +252,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
     b.kernel(contacts(s).impact, Phase::biased, k);
     b.kernel(contacts(s).impact, Phase::relax, k, constants::rounds - 1);
   }
+  recall(b, s, k);
   if (s.free_contacts) b.kernel(contacts(s).warm, Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_joint_warm, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
