@@ -107,7 +107,7 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
   }
   for (std::size_t i : unused)
     // what both sides write comes to the host in the end: the next step begins there
-    CHECK_MESSAGE(plan.entries[i].buffer == Buffer::node_pending,
+    CHECK_MESSAGE((plan.entries[i].buffer == Buffer::node_pending || plan.entries[i].buffer == Buffer::recalled),
                   "transfer " << i << " of " << std::string(buffer_name(plan.entries[i])) << " is used by nobody");
 }
 

@@ -15,6 +15,7 @@ PC_FN void pc_kernel(PC_IO Index i) {
   precise Real under = rate * rate + change * room; precise Real least = rate + pc_sqrt(pc_select(limited, under, zero));
   Real part = pc_min(pc_div(room, pc_max(least, PC_TINY)), one); Mask held = change < PC_INFO(largest_impulse);
   struck.v.z = pc_select(limited, pc_select(held, pc_snap(part), zero), one); struck.s = one;
-  PC_SCATTER(delta, i, 2u, struck);
-  PC_SCATTER(recalled, i, 0u, pc_quad(pc_zero3(), zero)); PC_SCATTER(recalled, i, 1u, pc_quad(motion_now.v, zero));
+  Mask moves = motion_now.s > zero;
+  PC_SCATTER_IF(moves, delta, i, 2u, struck);
+  PC_SCATTER_IF(moves, recalled, i, 0u, pc_quad(pc_zero3(), zero)); PC_SCATTER_IF(moves, recalled, i, 1u, pc_quad(motion_now.v, zero));
 }

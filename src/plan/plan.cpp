@@ -224,7 +224,7 @@ void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 void recall(Builder& b, const PlanSignature& s, std::uint32_t substep) {
   if (!s.contacts()) return;
   b.kernel(contacts(s).recall, Phase::biased, substep);
-  if (s.trees) b.kernel(Kernel::tree_recall, Phase::biased, substep);
+  if (s.tree_contacts) b.kernel(Kernel::tree_recall, Phase::biased, substep);
   b.kernel(Kernel::recall_share, Phase::biased, substep);
 }
 
