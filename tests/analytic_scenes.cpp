@@ -2,6 +2,7 @@
 // 1e-3 of the potential-energy range, nothing escaped or not finite, overlaps, joint gaps and limits small,
 // stacks standing. Default settings, dt = 1/60 s.
 #include <algorithm>
+#include <optional>
 
 #include "scenes/metrics.h"
 #include "support_physics.h"
@@ -24,10 +25,13 @@ struct SceneRun {
   scenes::Metrics end;
   scenes::RimWatch rim;
 
-  SceneRun(const Mode& mode, const char* name, int count, long steps = 600, double ratio = 100) : run(mode, {}, 4) {
+  SceneRun(const Mode& mode, const char* name, int count, long steps = 600, double ratio = 100,
+           std::optional<std::uint64_t> seed = {})
+      : run(mode, {}, 4) {
     scenes::SceneOptions options;
     options.count = count;
     options.ratio = ratio;
+    options.seed = seed;
     auto made = scenes::make(name, options, run.world);
     REQUIRE(made);
     scene = *made;
@@ -97,11 +101,10 @@ struct SceneRun {
   }
   void check_energy() const { CHECK(gain() <= 1e-3 * (high - low)); }
   /// What is promised of heaps of ragdolls.
-  void check_heap() const {
+  void check_heap(double deepest = 0.006) const {
     CHECK(end.separation.max <= 0.0001);
     CHECK(peak <= 0.010);
-    // of 48 heaps 11 are beyond 6 mm, with all blows remembered 10; the deepest has 10.0, and 8.2; the median 3.8, and 4.0
-    CHECK(end.penetration.max <= 0.0105);
+    CHECK(end.penetration.max <= deepest);
     CHECK(end.penetration.mean() <= 0.0002);
     CHECK(last_limit <= 6 * degree);
   }
@@ -147,9 +150,21 @@ TEST_CASE("scenes: 100 ragdolls") {
   r.tell(mode);
   r.check_sound();
   r.check_energy();
-  r.check_heap();
+  r.check_heap(0.0105);  // of one heap a lottery: of 48 the deepest has 10.0 mm; the next test has the bound
   CHECK(r.share_within(0.99) <= 1 * degree);   // of the joints; seeds 1 to 12: 0.5 to 0.9 degrees
   CHECK(r.share_within(0.999) <= 3 * degree);  // 0.9 to 2.5
+}
+
+TEST_CASE("scenes: of five heaps of 100 ragdolls the median overlaps by no more than 5 mm anywhere") {
+  std::vector<double> deepest;
+  for (std::uint64_t seed = 1; seed <= 5; seed++) {
+    const SceneRun r({Precision::f32}, "ragdolls", 100, 600, 100, seed);
+    r.check_sound();
+    deepest.push_back(r.end.penetration.max);
+  }
+  std::sort(deepest.begin(), deepest.end());
+  CHECK(deepest[2] <= 0.005);  // medians of 48: 3.8 mm, and 4.0 where blows are remembered
+  CHECK(deepest.back() <= 0.0105);
 }
 
 TEST_CASE("scenes: a stack and a pyramid stand") {

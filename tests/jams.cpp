@@ -1,5 +1,5 @@
-// Bodies made in a place that is too small for them press on each other from all sides. What their contacts remember is no load there, and
-// repeated it would be energy (docs/decisions/what-contacts-remember.md).
+// Bodies made in a place that is too small for them press on each other from all sides. What their contacts remember is no
+// load there, and repeated it would be energy (docs/decisions/what-contacts-remember.md).
 #include <algorithm>
 #include <vector>
 
@@ -49,6 +49,6 @@ TEST_CASE("a jam does not explode: of 12 half have less than 40 kJ at any time, 
   std::vector<double> most;
   for (unsigned seed = 1; seed <= 12; seed++) most.push_back(most_energy(seed));
   std::sort(most.begin(), most.end());
-  CHECK(most[6] < 40e3);  // 240e3 where all is remembered
+  CHECK(most[6] < 40e3);       // 240e3 where all is remembered
   CHECK(most.back() < 500e3);  // 9,400e3
 }

@@ -61,8 +61,8 @@ inline constexpr double settling_pace = 1.5;
 /// Where bodies that both answer move along each other by more than this share in a sub-step, or turn into each other,
 /// their contact is an impact: nothing of it lasts.
 inline constexpr double quick_share = 0.1;
-/// What contacts remember makes a body faster by no more than this squared over how much its velocity changed in the sub-step before [m/s]:
-/// a blow is no load.
+/// What contacts remember makes a body faster by no more than this squared over how much its velocity changed in the
+/// sub-step before [m/s]: a blow is no load.
 inline constexpr double struck_speed = 0.5;
 /// Contacts are kept up to a gap of this share of the smaller shape's radius (of the sphere that holds it), so that
 /// what happens is the same at any size. A manifold stands until its bodies have moved against each other by this share

@@ -35,7 +35,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   if (PC_ANY(far)) {  // lint: allow (a share of one changes nothing)
     Real calming = pc_clamp(pc_calming_share(a, b, arms, w.impulse, w.couple), PC_REAL(0.0), PC_REAL(1.0)); Real share = pc_select(far, calming, PC_REAL(1.0));
     w.impulse = pc_scale(w.impulse, share); w.couple = pc_scale(w.couple, share);
-    for (uint i = 0u; i < IMPULSES; i++) { precise Real kept = PC_LD(contact_impulses, m, i) * share; PC_ST(contact_impulses, m, i, kept); }
+    pc_keep_share(PC_PASS m, share);
   }
   pc_apply_low(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple, pc_uneven(a, b));
 }

@@ -186,13 +186,14 @@ struct Contacts {
 };
 Contacts contacts(const PlanSignature& s) {
   if (s.frictionless())
-    return {
-        Kernel::contact_prepare_frictionless,     Kernel::contact_refresh_frictionless, Kernel::contact_impact_frictionless,
-        Kernel::contact_recall_frictionless,      Kernel::contact_warm_frictionless,            Kernel::contact_solve_frictionless,   Kernel::contact_solve_placed_frictionless,
-        Kernel::contact_restitution_frictionless, Kernel::contact_touch_frictionless,   Kernel::contact_store_frictionless};
-  return {Kernel::contact_prepare,     Kernel::contact_refresh, Kernel::contact_impact,
-          Kernel::contact_recall,      Kernel::contact_warm,        Kernel::contact_solve,   Kernel::contact_solve_placed,
-          Kernel::contact_restitution, Kernel::contact_touch,   Kernel::contact_store};
+    return {Kernel::contact_prepare_frictionless,      Kernel::contact_refresh_frictionless,
+            Kernel::contact_impact_frictionless,       Kernel::contact_recall_frictionless,
+            Kernel::contact_warm_frictionless,         Kernel::contact_solve_frictionless,
+            Kernel::contact_solve_placed_frictionless, Kernel::contact_restitution_frictionless,
+            Kernel::contact_touch_frictionless,        Kernel::contact_store_frictionless};
+  return {Kernel::contact_prepare, Kernel::contact_refresh, Kernel::contact_impact,       Kernel::contact_recall,
+          Kernel::contact_warm,    Kernel::contact_solve,   Kernel::contact_solve_placed, Kernel::contact_restitution,
+          Kernel::contact_touch,   Kernel::contact_store};
 }
 
 // what acts on trees first: the floor under what lies on them comes later (see Colouring)

@@ -173,7 +173,8 @@ bool is_still(const Look& body) {
 }
 
 /// Whether its place is in the range of numbers and its velocities are numbers, however their parts are added up. (Sums of
-/// sizes round, so places may reach twice the limit; a force that the host has given may make velocities larger than the next step takes.)
+/// sizes round, so places may reach twice the limit; a force that the host has given may make velocities larger than the
+/// next step takes.)
 bool in_range(const WorldState& s, std::uint32_t row, const Look& body) {
   double light = 0, place = 0, speed = 0, momentum = 0;
   for (std::uint32_t c = 0; c < 3; c++) {
