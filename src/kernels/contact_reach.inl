@@ -1,6 +1,6 @@
 // Fills contact_reach, and sums up answers (`turns`: 1 for couples, 0 for impulses). Needs tree_reach.inl, node_operator.inl.
 PC_FN Six pc_reach_joint(PC_IO Slot s, uint row, Link n, Six x) {
-  Vec3 t = pc_on_joint(n, x); pc_st3_reach(PC_PASS s, row * 3u, pc_lower_tmul(n.factor, t)); return pc_up(n, x, t);
+  Vec3 t = pc_on_joint(n, x); pc_st3_reach(PC_PASS s, row * 3u, pc_lower_mul(n.factor, t)); return pc_up(n, x, t);
 }
 PC_FN void pc_reach_root(PC_IO Slot first, Slot second, uint row, Sym6 factor, Six x) {
   Six z = pc_lower6_tmul(factor, x); pc_st3_reach(PC_PASS first, row * 3u, z.l); pc_st3_reach(PC_PASS second, row * 3u, z.a);

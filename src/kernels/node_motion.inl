@@ -8,7 +8,7 @@ PC_FN Six pc_pending(PC_IO Way w, Slot m, uint side) {
   uint depth = pc_depth(w, side); uint levels = pc_levels(w, side);
   for (uint k = 0u; k < depth; k++) {
     Index node = PC_WAY_EACH(m, pc_entry(w, levels + k)); Quad turned = PC_GATHER(node_pending, node, 0u); Link link = pc_link(PC_PASS node);
-    x = pc_down(link, x, pc_lower_mul(link.factor, turned.v));
+    x = pc_down(link, x, pc_lower_tmul(link.factor, turned.v));
   }
   return x;
 }
@@ -19,7 +19,7 @@ PC_FN void pc_push_tree(PC_IO Way w, Slot m, uint side, Mask in_tree, Six f) {
   uint depth = pc_depth(w, side); uint levels = pc_levels(w, side);
   for (uint i = 0u; i < depth; i++) {
     Index node = PC_WAY_EACH(m, pc_entry(w, levels + (depth - 1u - i))); Link link = pc_link(PC_PASS node);
-    Vec3 t = pc_on_joint(link, f); Quad turned = PC_GATHER(node_pending, node, 0u); turned.v = pc_snap3(pc_add(turned.v, pc_lower_tmul(link.factor, t)));
+    Vec3 t = pc_on_joint(link, f); Quad turned = PC_GATHER(node_pending, node, 0u); turned.v = pc_snap3(pc_add(turned.v, pc_lower_mul(link.factor, t)));
     PC_SCATTER_IF(pc_some(node), node_pending, node, 0u, turned);
     f = pc_up(link, f, t);
   }

@@ -2,8 +2,8 @@
 // Row 0 is all zeros: it passes everything on unchanged. A root's row holds the factor of its answer H^-1. Notation:
 // tree_sweep.inl. Needs tree_math.inl.
 //
-// Motions are kept in units in which inertias are 1: with D^-1 = E E^T the joint turns by E z, and a torque t on it changes z by
-// E^T t. So how far an impulse reaches into a tree (E^T S^T F at each joint of the way) is also how what is pending there
+// Motions are kept in units in which inertias are 1: with D^-1 = F^T F the joint turns by F^T z, and a torque t on it changes z by
+// F t. So how far an impulse reaches into a tree (F t with t = S^T f at each joint of the way) is also how what is pending there
 // moves the place where it acts.
 struct Link { Vec3 w0; Vec3 w1; Vec3 w2; Vec3 w3; Vec3 w4; Vec3 w5; Sym3 factor; Vec3 d; Vec3 rc; };
 PC_FN Link pc_link(PC_IO Index node) {

@@ -23,8 +23,8 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real bias = pc_soft_bias(PC_PASS pc_little_beyond(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i))); Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-    precise Real rate = (now + bias) * wanted; Real limit = PC_REAL(0.0);
+    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    precise Real rate = now * wanted; Real limit = PC_REAL(0.0);
     if (PC_ANY(pc_throws_back(PC_PASS n))) { precise Real back = pc_lacks_rebound(PC_PASS n, i, now) * wanted; limit = back; }  // lint: allow (zero otherwise)
     PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, limit));
   }
@@ -85,9 +85,8 @@ PC_FN Real pc_push_angles(PC_IO Slot n) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
     Mask acts = PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5);
     Mask open = pc_and(slack > PC_REAL(0.0), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(1.5));
-    precise Real beyond = slack - pc_little_beyond(PC_PASS slack);
-    Real undone = pc_select(open, PC_REAL(0.0), beyond);
-    Real rate = pc_select(acts, pc_soft_bias(PC_PASS undone), PC_REAL(0.0));
+    Mask beyond = pc_and(acts, pc_abs(slack) > PC_INFO(rounding));
+    Real rate = pc_select(open, PC_REAL(0.0), pc_select(beyond, pc_soft_bias(PC_PASS slack), PC_REAL(0.0)));
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     any = pc_select(pc_nonzero(rate), PC_REAL(1.0), any);
   }
@@ -169,6 +168,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
         pc_newton_step(PC_PASS m, t, again);
       }
     }
+    if (PC_ANY(thrown > PC_REAL(0.5))) pc_tell_blow(PC_PASS m, t, pc_and(steps > PC_REAL(0.5), thrown > PC_REAL(0.5)));  // lint: allow (as above)
   }
   PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
   pc_push_gaps(PC_PASS m, t);

@@ -51,7 +51,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_MEET;
   PC_DOWN(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Index own = PC_ORDER(tree_order, n); Index up = PC_ORDER(tree_order, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-    Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); Sym3 d_inverse = pc_sym_scale(pc_lds_tree(PC_PASS n, TREE_D), share);
+    Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); Sym3 d_inverse = pc_sym_scale(pc_of_factor(pc_lds_tree(PC_PASS n, TREE_D)), share);
     pc_store_response(PC_PASS own, exists, pc_node_response(PC_PASS n, d_inverse, d, rc, pc_response(PC_PASS up)));
   }
 }

@@ -5,20 +5,20 @@
 const uint TREE_REST = TREE_PUSH;         // the angular part of TREE_A, 6
 const uint TREE_STALE = TREE_PUSH_SPEED;  // 1 where the factor must be made anew
 
-// Inverse of a joint's freedom with the springs of its angle rows: each as stiff as the joint's own inertia about its
+// The factor of a joint's freedom (pc_inverse_factor) with the springs of its angle rows: each as stiff as the joint's own inertia about its
 // axis, many times. The limit of a hinge, whose other angles are locked, is as stiff as they are: a stop. Limits of joints with
 // more freedom yield: stiff ones that meet at an angle tear trees apart.
-PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 bare, Sym3 loose) {
-  Sym3 freedom = bare; precise Real kinds = PC_LD(tree_rows, n, TREE_KIND) + PC_LD(tree_rows, n, TREE_KIND + 1u) + PC_LD(tree_rows, n, TREE_KIND + 2u);
+PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 loose) {
+  Sym3 factor = loose; precise Real kinds = PC_LD(tree_rows, n, TREE_KIND) + PC_LD(tree_rows, n, TREE_KIND + 1u) + PC_LD(tree_rows, n, TREE_KIND + 2u);
   for (uint i = 0u; i < 3u; i++) {
     Vec3 j = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
     Mask stops = pc_or(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), kinds > PC_REAL(4.5));
     Real stiffness = pc_select(stops, PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));
-    precise Real on = PC_LD(tree_rows, n, TREE_ON + i); precise Real stiff = stiffness * on * pc_inverse_or_zero(pc_dot(j, pc_sym_mul(loose, j)));
+    precise Real on = PC_LD(tree_rows, n, TREE_ON + i); precise Real stiff = stiffness * on * pc_inverse_or_zero(pc_dot(j, pc_factor_mul(loose, j)));
     Real spring = pc_select(on > PC_REAL(0.0), stiff, PC_REAL(0.0));
-    PC_ST(tree_rows, n, TREE_SPRING + i, spring); freedom = pc_sym_outer(freedom, j, spring);
+    PC_ST(tree_rows, n, TREE_SPRING + i, spring); factor = pc_factor_stiffened(factor, j, spring);
   }
-  return pc_sym_inverse(freedom);
+  return factor;
 }
 // The smallest of a body's moments of inertia.
 PC_FN Real pc_least_moment(PC_IO Slot n) {
@@ -54,21 +54,25 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   precise Real held = pc_max(lacks, PC_REAL(0.0)) * times + all * fast * PC_INFO(spin_floor);
   precise Real least = all * PC_INFO(rounding) * PC_REAL(0.03125);
   Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
-  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 loose = pc_sym_inverse(freedom);
-  Sym3 inverse = loose;
+  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 factor = pc_inverse_factor(PC_PASS freedom);
 #ifdef PC_DRIVES
   if (PC_ANY(pc_has_drive(PC_PASS n))) {  // lint: allow (others keep what they have)
-    freedom = pc_with_drives(PC_PASS n, up, freedom, loose); loose = pc_sym_select(pc_has_drive(PC_PASS n), pc_sym_inverse(freedom), loose); inverse = loose;
+    freedom = pc_with_drives(PC_PASS n, up, freedom, pc_of_factor(factor)); factor = pc_sym_select(pc_has_drive(PC_PASS n), pc_inverse_factor(PC_PASS freedom), factor);
   }
 #endif
   Mask has_rows = pc_has_rows(PC_PASS n);
-  if (PC_ANY(has_rows)) inverse = pc_sym_select(has_rows, pc_with_springs(PC_PASS n, freedom, loose), loose);  // lint: allow (others keep what they have)
-  Vec3 w0 = pc_sym_mul(inverse, u0); Vec3 w1 = pc_sym_mul(inverse, u1); Vec3 w2 = pc_sym_mul(inverse, u2); Vec3 w3 = pc_sym_mul(inverse, u3); Vec3 w4 = pc_sym_mul(inverse, u4); Vec3 w5 = pc_sym_mul(inverse, u5);
-  pc_sts_tree(PC_PASS n, TREE_D, inverse);
-  pc_stm_tree(PC_PASS n, TREE_W, pc_mat3(w0, w1, w2)); pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_mat3(w3, w4, w5));
+  if (PC_ANY(has_rows)) factor = pc_sym_select(has_rows, pc_with_springs(PC_PASS n, factor), factor);  // lint: allow (others keep what they have)
+  // W = U E^T d E, and U D^-1 U^T of the same halves
+  Vec3 y0 = pc_factor_lower(factor, u0); Vec3 y1 = pc_factor_lower(factor, u1); Vec3 y2 = pc_factor_lower(factor, u2);
+  Vec3 y3 = pc_factor_lower(factor, u3); Vec3 y4 = pc_factor_lower(factor, u4); Vec3 y5 = pc_factor_lower(factor, u5);
+  Vec3 z0 = pc_factor_scaled(factor, y0); Vec3 z1 = pc_factor_scaled(factor, y1); Vec3 z2 = pc_factor_scaled(factor, y2);
+  Vec3 z3 = pc_factor_scaled(factor, y3); Vec3 z4 = pc_factor_scaled(factor, y4); Vec3 z5 = pc_factor_scaled(factor, y5);
+  pc_sts_tree(PC_PASS n, TREE_D, factor);
+  pc_stm_tree(PC_PASS n, TREE_W, pc_mat3(pc_factor_upper(factor, z0), pc_factor_upper(factor, z1), pc_factor_upper(factor, z2)));
+  pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_mat3(pc_factor_upper(factor, z3), pc_factor_upper(factor, z4), pc_factor_upper(factor, z5)));
   // H - W U^T, and what of it the parent carries
-  Sym6 rest; rest.l = pc_sym_sub(h.l, pc_products(w0, w1, w2, u0, u1, u2)); rest.a = pc_sym_sub(h.a, pc_products(w3, w4, w5, u3, u4, u5));
-  rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(w0, u3), pc_dot(w0, u4), pc_dot(w0, u5))), pc_sub(h.c.b, Vec3(pc_dot(w1, u3), pc_dot(w1, u4), pc_dot(w1, u5))), pc_sub(h.c.c, Vec3(pc_dot(w2, u3), pc_dot(w2, u4), pc_dot(w2, u5))));
+  Sym6 rest; rest.l = pc_sym_sub(h.l, pc_products(z0, z1, z2, y0, y1, y2)); rest.a = pc_sym_sub(h.a, pc_products(z3, z4, z5, y3, y4, y5));
+  rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(z0, y3), pc_dot(z0, y4), pc_dot(z0, y5))), pc_sub(h.c.b, Vec3(pc_dot(z1, y3), pc_dot(z1, y4), pc_dot(z1, y5))), pc_sub(h.c.c, Vec3(pc_dot(z2, y3), pc_dot(z2, y4), pc_dot(z2, y5))));
   pc_sts_tree(PC_PASS n, TREE_A, rest.l); pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c); pc_sts_tree(PC_PASS n, TREE_REST, rest.a);
   pc_carry(PC_PASS n, up, parent, rest);
 }

@@ -67,3 +67,41 @@ PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
   precise Real xx = m.xx * s; precise Real xy = m.xy * s; precise Real xz = m.xz * s; precise Real yy = m.yy * s; precise Real yz = m.yz * s; precise Real zz = m.zz * s;
   return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
+// Positive matrices m by the factor of their inverse: m^-1 = E^T d E, E a lower triangle with ones on its diagonal, where d stands in
+// these. It stays positive, and a small scale beside large ones keeps its digits: cofactors are off by a rounding of the largest entry squared.
+// A pivot is known no better than to a rounding of its diagonal.
+PC_FN Sym3 pc_inverse_factor(PC_IO Sym3 m) {
+  precise Real epsilon = PC_INFO(rounding) * PC_REAL(0.03125);
+  Real dx = pc_inverse_or_zero(m.xx); precise Real yx = m.xy * dx; precise Real zx = m.xz * dx;
+  precise Real yy = m.yy - m.xy * yx; precise Real zy_rest = m.yz - m.xz * yx; precise Real least_y = m.yy * epsilon;
+  Real dy = pc_inverse_or_zero(pc_max(yy, least_y)); precise Real zy = zy_rest * dy;
+  precise Real zz = m.zz - m.xz * zx - zy_rest * zy; precise Real least_z = m.zz * epsilon;
+  precise Real corner = yx * zy - zx;
+  return pc_sym3(dx, -yx, corner, dy, -zy, pc_inverse_or_zero(pc_max(zz, least_z)));
+}
+PC_FN Vec3 pc_factor_lower(Sym3 f, Vec3 v) { precise Real y = v.y + f.xy * v.x; precise Real z = v.z + f.xz * v.x + f.yz * v.y; return Vec3(v.x, y, z); }
+PC_FN Vec3 pc_factor_upper(Sym3 f, Vec3 v) { precise Real x = v.x + f.xy * v.y + f.xz * v.z; precise Real y = v.y + f.yz * v.z; return Vec3(x, y, v.z); }
+PC_FN Vec3 pc_factor_scaled(Sym3 f, Vec3 v) { precise Real x = f.xx * v.x; precise Real y = f.yy * v.y; precise Real z = f.zz * v.z; return Vec3(x, y, z); }
+// m^-1 v, and m^-1 itself.
+PC_FN Vec3 pc_factor_mul(Sym3 f, Vec3 v) { return pc_factor_upper(f, pc_factor_scaled(f, pc_factor_lower(f, v))); }
+PC_FN Sym3 pc_of_factor(Sym3 f) {
+  precise Real zzx = f.zz * f.xz; precise Real zzy = f.zz * f.yz; precise Real yyx = f.yy * f.xy;
+  precise Real xx = f.xx + yyx * f.xy + zzx * f.xz; precise Real xy = yyx + zzx * f.yz; precise Real yy = f.yy + zzy * f.yz;
+  return pc_sym3(xx, xy, zzx, yy, zzy, f.zz);
+}
+// Of m + s v v^T, from that of m (P. E. Gill, G. H. Golub, W. Murray and M. A. Saunders, Methods for Modifying Matrix Factorizations, 1974,
+// method C1).
+PC_FN Sym3 pc_factor_stiffened(Sym3 f, Vec3 v, Real s) {
+  Real one = PC_REAL(1.0); Vec3 p = pc_factor_lower(f, v);
+  precise Real px = p.x * f.xx; precise Real tx = one + s * p.x * px; Real gx = pc_div(one, tx); precise Real bx = px * s * gx; precise Real sy = s * gx;
+  precise Real py = p.y * f.yy; precise Real ty = one + sy * p.y * py; Real gy = pc_div(one, ty); precise Real by = py * sy * gy; precise Real sz = sy * gy;
+  precise Real pz = p.z * f.zz; precise Real tz = one + sz * p.z * pz; Real gz = pc_div(one, tz);
+  precise Real dx = f.xx * gx; precise Real dy = f.yy * gy; precise Real dz = f.zz * gz;
+  precise Real yx = f.xy - p.y * bx; precise Real zy = f.yz - p.z * by; precise Real zx = f.xz - p.z * by * f.xy - p.z * bx * gy;
+  return pc_sym3(dx, yx, zx, dy, zy, dz);
+}
+// F, a lower triangle with F^T F = m^-1 scale^2.
+PC_FN Sym3 pc_root_of_factor(Sym3 f, Real scale) {
+  precise Real x = pc_sqrt(f.xx) * scale; precise Real y = pc_sqrt(f.yy) * scale; precise Real z = pc_sqrt(f.zz) * scale;
+  precise Real yx = f.xy * y; precise Real zx = f.xz * z; precise Real zy = f.yz * z; return pc_sym3(x, yx, zx, y, zy, z);
+}

@@ -22,6 +22,22 @@ PC_FN Real pc_tree_is_thrown(PC_IO Slot m, Tree t) {
   PC_MOST(most);
   return most;
 }
+// What a limit throws back is a blow to its whole tree, and no acceleration (half_changes.inl): but for gravity it counts as if it had been there
+// before.
+PC_FN void pc_tell_blow(PC_IO Slot m, Tree t, Mask these) {
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Vec3 fall = pc_scale(gravity, PC_INFO(h));
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Index body = PC_ENDS(tree_ends, n, 0u);
+    BodyState b = pc_body_state(PC_PASS body);
+    Quad linear = PC_GATHER(velocity_parts, body, 0u);
+    Quad angular = PC_GATHER(velocity_parts, body, 1u);
+    Mask moves = pc_and(these, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
+    PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(pc_sub(b.v, fall), linear.s));
+    PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(b.l, angular.s));
+  }
+}
 // The share of what came since pc_keep_motion that may stay, where a limit has thrown back.
 PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   PC_MEET;

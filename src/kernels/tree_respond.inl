@@ -1,5 +1,5 @@
 // After tree_solve, where contacts or joints of loops touch trees: hands its factor on to them, as rows of node_operator; nothing is
-// pending. The inverse inertias of joints and roots are factored once more (node_operator.inl).
+// pending. The inverse inertia of the root is factored once more (node_operator.inl).
 #include "tree_rows.inl"
 #include "tree_store.inl"
 
@@ -34,7 +34,7 @@ PC_FN void pc_hand_root(PC_IO Slot root, Index row, Mask exists, Real scale) {
   PC_SCATTER_IF(exists, node_operator, row, 5u, pc_quad(Vec3(e.a.xx, e.a.xy, e.a.xz), zero)); PC_SCATTER_IF(exists, node_operator, row, 6u, pc_quad(Vec3(e.a.yy, e.a.yz, e.a.zz), zero));
 }
 PC_FN void pc_hand_node(PC_IO Slot n, Index row, Mask exists, Real scale) {
-  Sym3 inverse = pc_lds_tree(PC_PASS n, TREE_D); Sym3 e = pc_sym_scale(pc_cholesky(PC_PASS inverse, inverse), scale);
+  Sym3 e = pc_root_of_factor(pc_lds_tree(PC_PASS n, TREE_D), scale);
   Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); pc_sts_tree(PC_PASS n, TREE_FACTOR, e);
   PC_SCATTER_IF(exists, node_operator, row, 0u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W), e.xx));
   PC_SCATTER_IF(exists, node_operator, row, 1u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 3u), e.xy));

@@ -18,7 +18,7 @@ const uint TREE_F = 39u;        // impulses: collected on the way up; afterwards
 const uint TREE_X = 45u;        // change of the velocities
 const uint TREE_H = 51u;        // articulated inertia, 21; of the root its inverse
 const uint TREE_A = 72u;        // inertia as the parent sees it: linear 6, mixed 9
-const uint TREE_D = 87u;        // inverse inertia of the joint's freedom
+const uint TREE_D = 87u;        // factor of the inverse inertia of the joint's freedom (pc_inverse_factor)
 const uint TREE_W = 93u;        // six rows U D^-1
 const uint TREE_PIN = 111u;     // impulse of the pin on the body
 const uint TREE_PUSH = 114u;    // that of a later sweep
@@ -45,7 +45,7 @@ const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
 const uint TREE_RIGID = TREE_SLACK;    // inverse inertia about the centre, 6
 const uint TREE_ENERGY = TREE_REBOUND; // twice that of the motion before the solve, where a limit throws back (tree_rebound.inl)
-// what contacts see, from tree_respond on: factors of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
+// what contacts see, from tree_respond on: roots of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
 const uint TREE_FACTOR = 168u;       // 6
 const uint TREE_ROOT_FACTOR = TREE_D;  // 21; a root has no joint
 

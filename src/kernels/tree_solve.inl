@@ -14,15 +14,18 @@
 #include "tree_momentum.inl"
 #include "tree_predict.inl"
 
-// Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
+// Rates of the angle rows' slacks that the solve must undo; what is beyond its limit turns back by poses alone (tree_again). Run after
+// pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
-    Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack)), open);
-    precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + wanted;
+    precise Real room = slack * PC_INFO(inverse_h);
+    Real spare = pc_select(open, room, PC_REAL(0.0));
+    precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + spare;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     Real on = PC_LD(tree_rows, n, TREE_ON + i);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(pc_and(kind > PC_REAL(0.5), rate < PC_REAL(0.0)), PC_REAL(1.0), on));

@@ -13,25 +13,39 @@
 namespace pcphys {
 namespace {
 
+/// What a joint asks of the turning of its bodies.
+enum class Angles : std::uint8_t { none, hinge, weld, own };
+Angles angles_of(const AngleFreedom& f) {
+  if (f.kind == AngleFreedom::Kind::free) return Angles::none;
+  const auto locked = [](double lower, double upper) { return lower == 0 && upper == 0; };
+  if (f.kind != AngleFreedom::Kind::pitch_yaw_roll || !locked(f.lower.y, f.upper.y) || !locked(f.lower.z, f.upper.z)) return Angles::own;
+  return locked(f.lower.x, f.upper.x) ? Angles::weld : Angles::hinge;
+}
+bool is_limited(const AngleFreedom& f) {
+  const Angles angles = angles_of(f);
+  return angles == Angles::own || (angles == Angles::hinge && (std::isfinite(f.lower.x) || std::isfinite(f.upper.x)));
+}
+
 struct Link {
   std::uint64_t bodies;  // pair_key
-  bool driven;
+  bool own;              // with a motor, a spring or limits: of such joints one can stand for all
   std::uint32_t id, row;
 };
 
-/// By bodies; of each two first the joint that will stand for all: the driven one, else the oldest.
+/// By bodies; of each two first the joint that will stand for all: that with something of its own, else the oldest.
 std::vector<Link> links_by_bodies(const WorldState& state) {
   std::vector<Link> links;
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& j = state.joints[row];
-    if (!j.spring) links.push_back({WorldState::pair_key(j.body_a, j.body_b), j.driven(), j.index, row});
+    if (j.spring) continue;
+    links.push_back({WorldState::pair_key(j.body_a, j.body_b), j.driven() || is_limited(j.def.freedom), j.index, row});
   }
   const auto bodies = [](const Link& l) { return l.bodies; };
   std::vector<Link> scratch(links.size());
   if (radix_sort(links.data(), scratch.data(), links.size(), 0, 64, bodies) != links.data()) links.swap(scratch);
   for (auto begin = links.begin(); begin != links.end();) {
     const auto end = std::find_if(begin, links.end(), [&](const Link& l) { return l.bodies != begin->bodies; });
-    std::ranges::sort(begin, end, {}, [](const Link& l) { return std::tuple(!l.driven, l.id); });
+    std::ranges::sort(begin, end, {}, [](const Link& l) { return std::tuple(!l.own, l.id); });
     begin = end;
   }
   return links;
@@ -49,51 +63,80 @@ double size_of(const WorldState& state, const JointRecord& joint) {
   return size;
 }
 
-/// The pins of both bodies about their means.
-struct Pins {
-  Eigen::Matrix3Xd a, b;
+/// What holds two bodies together, in each of them: pins about their means, and axes that joints keep parallel.
+struct Held {
   Eigen::Vector3d mean_a, mean_b;
+  Eigen::Matrix3Xd a, b;
 };
-Pins pins_of(const WorldState& state, std::span<const Link> links) {
+/// `axis`: how long axes are beside pins [m].
+Held held_by(const WorldState& state, std::span<const Link> links, double axis) {
   const std::uint32_t first = state.joints[links[0].row].body_a;
-  Pins p{Eigen::Matrix3Xd(3, links.size()), Eigen::Matrix3Xd(3, links.size()), {}, {}};
-  for (std::size_t i = 0; i < links.size(); i++) {
-    const JointRecord& j = state.joints[links[i].row];
-    const bool turned = j.body_a != first;
-    p.a.col(Eigen::Index(i)) = Eigen::Vector3d((turned ? j.def.frame_b : j.def.frame_a).position);
-    p.b.col(Eigen::Index(i)) = Eigen::Vector3d((turned ? j.def.frame_a : j.def.frame_b).position);
+  std::vector<Eigen::Vector3d> a, b;
+  Held held{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}};
+  const auto frames = [&](const Link& l) {
+    const JointRecord& j = state.joints[l.row];
+    return j.body_a == first ? std::pair(j.def.frame_a, j.def.frame_b) : std::pair(j.def.frame_b, j.def.frame_a);
+  };
+  for (const Link& l : links) {
+    const auto [frame_a, frame_b] = frames(l);
+    held.mean_a += Eigen::Vector3d(frame_a.position) / double(links.size());
+    held.mean_b += Eigen::Vector3d(frame_b.position) / double(links.size());
   }
-  p.mean_a = p.a.rowwise().mean();
-  p.mean_b = p.b.rowwise().mean();
-  p.a.colwise() -= p.mean_a;
-  p.b.colwise() -= p.mean_b;
-  return p;
+  for (const Link& l : links) {
+    const auto [frame_a, frame_b] = frames(l);
+    a.push_back(Eigen::Vector3d(frame_a.position) - held.mean_a);
+    b.push_back(Eigen::Vector3d(frame_b.position) - held.mean_b);
+    const Angles angles = angles_of(state.joints[l.row].def.freedom);
+    for (int i = 0; i < (angles == Angles::hinge ? 1 : angles == Angles::weld ? 3 : 0); i++) {
+      const Vec3 along = Vec3(Eigen::Vector3d(axis * Eigen::Vector3d::Unit(i)));
+      a.push_back(Eigen::Vector3d(rotate(frame_a.orientation, along)));
+      b.push_back(Eigen::Vector3d(rotate(frame_b.orientation, along)));
+    }
+  }
+  held.a.resize(3, Eigen::Index(a.size()));
+  held.b.resize(3, Eigen::Index(b.size()));
+  for (std::size_t i = 0; i < a.size(); i++) {
+    held.a.col(Eigen::Index(i)) = a[i];
+    held.b.col(Eigen::Index(i)) = b[i];
+  }
+  return held;
 }
 
-Quat from_x(const Eigen::Vector3d& axis) { return Quat(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), axis)); }
+Quat turned_to(const Quat& frame, const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d x(rotate(frame, Vec3{1, 0, 0}));
+  return Quat(Eigen::Quaterniond::FromTwoVectors(x, axis)) * frame;
+}
 
-/// All as one: means meet, and of the rest the turn of b against a that brings it nearest, where the pins tell it (W. Kabsch, Acta
+/// All as one: means meet, and of the rest the turn of b against a that brings it nearest, where pins and axes tell it (W. Kabsch, Acta
 /// Cryst. A32, 1976).
 std::optional<JointDef> merge(const WorldState& state, std::span<const Link> links) {
-  if (links.size() < 2 || links[1].driven) return {};
+  if (links.size() < 2 || links[1].own) return {};
   for (const Link& l : links)
-    if (state.joints[l.row].def.freedom.kind != AngleFreedom::Kind::free || state.joints[l.row].def.yields()) return {};
-  const Pins pins = pins_of(state, links);
-  const Eigen::Matrix3d together = pins.a * pins.b.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(together, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    if (state.joints[l.row].def.yields() || (!l.own && angles_of(state.joints[l.row].def.freedom) == Angles::own)) return {};
   const double least = constants::apart_pins * size_of(state, state.joints[links[0].row]);
+  // (axes less than largest_give apart are one)
+  const Held held = held_by(state, links, least / constants::largest_give);
+  const Eigen::Matrix3d together = held.a * held.b.transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(together, Eigen::ComputeFullU | Eigen::ComputeFullV);
   JointDef def = state.joints[links[0].row].def;
-  def.frame_a = {Vec3(pins.mean_a), {}};
-  def.frame_b = {Vec3(pins.mean_b), {}};
-  const auto directions = (svd.singularValues().array() > least * least).count();
+  def.frame_a.position = Vec3(held.mean_a);
+  def.frame_b.position = Vec3(held.mean_b);
+  const Eigen::Vector3d sizes = svd.singularValues();  // the largest first
+  const int directions = sizes.y() > least * least ? 2 : sizes.x() > least * least ? 1 : 0;
   if (directions == 0) return def;
   if (directions == 1) {
-    def.freedom = AngleFreedom::hinge();
-    def.frame_a.orientation = from_x(svd.matrixU().col(0));
-    def.frame_b.orientation = from_x(svd.matrixV().col(0));
+    const Eigen::Vector3d axis_a = svd.matrixU().col(0), axis_b = svd.matrixV().col(0);
+    const double along = axis_a.dot(Eigen::Vector3d(rotate(def.frame_a.orientation, Vec3{1, 0, 0})));
+    // what is of its own turns about an axis of its own
+    if (links[0].own && std::abs(along) < std::cos(constants::largest_give)) return {};
+    if (angles_of(def.freedom) == Angles::own) return {};
+    if (angles_of(def.freedom) == Angles::none) def.freedom = AngleFreedom::hinge();
+    def.frame_a.orientation = turned_to(def.frame_a.orientation, along < 0 ? Eigen::Vector3d(-axis_a) : axis_a);
+    def.frame_b.orientation = turned_to(def.frame_b.orientation, along < 0 ? Eigen::Vector3d(-axis_b) : axis_b);
     return def;
   }
   def.freedom = AngleFreedom::locked();
+  def.frame_a.orientation = {};
   Eigen::Matrix3d u = svd.matrixU();
   if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);
   def.frame_b.orientation = Quat(Eigen::Quaterniond(Eigen::Matrix3d(svd.matrixV() * u.transpose())).normalized());

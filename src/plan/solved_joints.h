@@ -1,4 +1,4 @@
-// What the solver holds of joints: each as it was made, but of several pins between the same two bodies one joint in their place.
+// What the solver holds of joints: each as it was made, but of several between the same two bodies one joint in their place.
 #pragma once
 #include <cstdint>
 #include <unordered_map>
@@ -12,8 +12,9 @@ namespace pcphys {
 class SolvedJoints {
  public:
   /// Two pins are a hinge about the line through them, three that stand on no line hold the bodies rigidly, pins in one place are
-  /// one. Where the pins of the two bodies do not match, the joint is the one that leaves them apart by the least squares. Joints
-  /// with angles of their own stay as they are, those that yield, and two of which both have a motor or a spring.
+  /// one; two hinges on one line are a hinge, a hinge and a pin beside its axis hold rigidly. Where the two bodies' pins and axes do not
+  /// match, the joint is the one that leaves them apart by the least squares. As they are stay joints that yield, two of which both have a
+  /// motor, a spring or limits, and limits about other axes than that of the hinge that all make.
   void build(const WorldState& state);
 
   /// The joint that is solved for; of rows that `stands_back` it is none.
