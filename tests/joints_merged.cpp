@@ -132,8 +132,8 @@ TEST_CASE("merged joints: a hinge and a pin beside its axis hold as a weld") {
   }
 }
 
-/// Two bodies at rest without gravity, held by a hinge and a pin whose distances differ by centimetres: 2,600 times the energy of what
-/// moved came of it in one step, when the second was a row.
+/// Two bodies at rest without gravity, held by a hinge and a pin whose distances differ by centimetres. When the second was a row 2,600 times
+/// the energy of such a scene came of it in one step.
 TEST_CASE("merged joints: what contradicts comes to rest in the middle, and makes no energy") {
   for (const Mode& mode : precisions()) {
     Run run(mode, {});

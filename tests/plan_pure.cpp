@@ -141,7 +141,9 @@ TEST_CASE("left out: no joints, nothing touching, and what comes when they do") 
   CHECK(reason(stepper.plan(), "joint rows") == "no joint closes a loop");
   CHECK(runs(stepper.plan(), "tree_solve") == 4);
   CHECK(runs(stepper.plan(), "joint_prepare") == 0);
-  joint.freedom = AngleFreedom::cone_and_twist(1, 1);  // a second hold on the same body, which is no pin: a loop
+  joint.frame_a.position = {0.1, 0.5, 0};  // a second hold on the same body, which is no pin, elsewhere: a loop
+  joint.frame_b.position = {0.1, 0, 0};
+  joint.freedom = AngleFreedom::cone_and_twist(1, 1);
   (void)must(world.create_joint(joint));
   run(world, stepper, 1);
   CHECK(reason(stepper.plan(), "joint rows") == "");

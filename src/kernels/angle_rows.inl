@@ -11,3 +11,9 @@ PC_FN NearerLimit pc_nearer_limit(Real angle, Real lower, Real upper, Mask exist
 // sub-step.
 PC_FN Real pc_soft_bias(PC_IO Real slack) { precise Real rate = slack * PC_INFO(soft_rate); return pc_clamp(rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)); }
 PC_FN Real pc_angle_bias(PC_IO Real slack, Mask open) { precise Real gap_rate = slack * PC_INFO(inverse_h); return pc_select(open, gap_rate, pc_soft_bias(PC_PASS slack)); }
+// Of how far an angle is beyond its limit in a tree, what the velocity undoes. What is beyond that is a push, which moves poses alone
+// (tree_again.inl): by velocities a limb that the host turned far out of its limits would leave them with up to joint_push_speed. Of a locked
+// angle that is all, since it does not give.
+PC_FN Real pc_little_beyond(PC_IO Real slack, Real kind) {
+  return pc_select(kind > PC_REAL(1.5), PC_REAL(0.0), pc_clamp(slack, -PC_INFO(limit_give), PC_INFO(limit_give)));
+}

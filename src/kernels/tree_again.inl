@@ -12,25 +12,22 @@
 #include "tree_gap.inl"
 #include "tree_trust.inl"
 #include "tree_rebound.inl"
-#include "tree_crossing.inl"
 
 // Of a limit that is met and throws back, how far its rate lacks of that at which it is to be left; else 0.
 PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
   Real away = PC_LD(tree_rows, n, TREE_REBOUND + i); Mask rebounds = pc_and(pc_throws_back(PC_PASS n), pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), away > PC_REAL(0.0)));
   precise Real lack = rate - away; return pc_select(rebounds, pc_min(lack, PC_REAL(0.0)), PC_REAL(0.0));
 }
-// Limits that act are not crossed, and else keep what they carry, unless they throw back; locked rows are corrected like pins.
+// Limits keep what they carry, unless they throw back; locked rows are corrected like pins.
 PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-    precise Real rate = now * wanted;
-    Mask on = PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5);
-    Real over = pc_select(on, pc_min(pc_crossing(PC_PASS n, i, now), PC_REAL(0.0)), PC_REAL(0.0));
-    if (PC_ANY(pc_throws_back(PC_PASS n))) over = pc_min(over, pc_lacks_rebound(PC_PASS n, i, now));  // lint: allow (zero otherwise)
-    precise Real limit = over * wanted;
-    PC_ST(tree_rows, n, TREE_RATE + i, pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), rate, limit));
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Real bias = pc_soft_bias(PC_PASS pc_little_beyond(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i), kind)); Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    precise Real rate = (now + bias) * wanted; Real limit = PC_REAL(0.0);
+    if (PC_ANY(pc_throws_back(PC_PASS n))) { precise Real back = pc_lacks_rebound(PC_PASS n, i, now) * wanted; limit = back; }  // lint: allow (zero otherwise)
+    PC_ST(tree_rows, n, TREE_RATE + i, pc_select(kind > PC_REAL(1.5), rate, limit));
   }
 }
 // Speed at which a gap closes: within the sub-step, but not faster than joint_push_speed.
@@ -80,21 +77,23 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
   pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
 }
 
-// What the push undoes of a joint's angles, as rates of its rows that act. Returns the fastest.
+// What the push undoes of a joint's angles, as rates of its rows. 1 where there is any.
 PC_FN Real pc_push_angles(PC_IO Slot n) {
-  Real fastest = PC_REAL(0.0);
+  Real any = PC_REAL(0.0);
   pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
-  if (!PC_ANY(pc_has_rows(PC_PASS n))) return fastest;  // lint: allow (zeros otherwise)
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return any;  // lint: allow (zeros otherwise)
   for (uint i = 0u; i < 3u; i++) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
     Mask acts = PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5);
-    Mask closed = pc_or(slack < PC_REAL(0.0), PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5));
-    Mask beyond = pc_and(acts, pc_and(closed, pc_abs(slack) > PC_INFO(rounding)));
-    Real rate = pc_select(beyond, pc_soft_bias(PC_PASS slack), PC_REAL(0.0));
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
+    precise Real beyond = slack - pc_little_beyond(PC_PASS slack, kind);
+    Real undone = pc_select(pc_or(open, pc_abs(beyond) < PC_INFO(rounding)), PC_REAL(0.0), beyond);
+    Real rate = pc_select(acts, pc_soft_bias(PC_PASS undone), PC_REAL(0.0));
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
-    fastest = pc_max(fastest, pc_abs(rate));
+    any = pc_select(pc_nonzero(rate), PC_REAL(1.0), any);
   }
-  return fastest;
+  return any;
 }
 // What a sweep from TREE_C and TREE_RATE gives, to the bodies and to the push.
 PC_FN void pc_push(PC_IO Slot m, Tree t) {
@@ -110,8 +109,8 @@ PC_FN void pc_push(PC_IO Slot m, Tree t) {
     pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
   }
 }
-// The push that closes gaps of more than 32 epsilon of the arm and turns back what is beyond its limits. Where it turns so far that the arms'
-// arcs open gaps again, those are closed with it.
+// The push that closes gaps of more than 32 epsilon of the arm and turns back what is beyond its limits. Where it turns, the arms' arcs open
+// gaps again: those are closed with it.
 PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0); Real turned = PC_REAL(0.0); Vec3 zero = pc_zero3();
   PC_NODES(k, 0u, t) {
@@ -123,10 +122,7 @@ PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here)); turned = pc_max(turned, pc_push_angles(PC_PASS n));
   }
   if (pc_is_pivot(PC_PASS t) == 1u) { open = PC_REAL(0.0); turned = PC_REAL(0.0); }  // pivot_turn closes it
-  PC_MOST(open); PC_MOST(turned);
-  open = pc_select(turned > PC_REAL(0.0), PC_REAL(1.0), open);
-  precise Real arc = turned * PC_INFO(h); precise Real bulge = arc * arc;
-  turned = pc_select(bulge > PC_INFO(rounding), PC_REAL(1.0), PC_REAL(0.0));
+  open = pc_max(open, turned); PC_MOST(open); PC_MOST(turned);
   if (PC_ANY(open > PC_REAL(0.5))) pc_push(PC_PASS m, t);  // lint: allow (a push of nothing changes nothing)
   if (PC_ANY(turned > PC_REAL(0.5))) {  // lint: allow (selected below)
     pc_tree_residual(PC_PASS m, t, turned);
@@ -150,7 +146,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
   PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
   pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
-  wanted = pc_max(wanted, PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENTERED));
   Real steps = wanted;
   if (PC_ANY(steps > PC_REAL(0.5))) pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
   for (uint turn = 0u; turn < 4u; turn++) {

@@ -13,20 +13,16 @@
 #include "tree_energy.inl"
 #include "tree_momentum.inl"
 #include "tree_predict.inl"
-#include "tree_crossing.inl"
 
-// Rates of the angle rows' slacks that the solve must undo; what is beyond its limit turns back by poses alone (tree_again). Run after
-// pc_tree_residual, whose TREE_X holds velocities.
+// Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
-    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
-    precise Real room = slack * PC_INFO(inverse_h);
-    Real spare = pc_select(open, room, PC_REAL(0.0));
-    precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + spare;
+    Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack, kind)), open);
+    precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     Real on = PC_LD(tree_rows, n, TREE_ON + i);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(pc_and(kind > PC_REAL(0.5), rate < PC_REAL(0.0)), PC_REAL(1.0), on));
@@ -51,7 +47,7 @@ PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
     precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
     Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
     Mask leaves = pc_and(is_limit, pc_and(on > PC_REAL(0.5), impulse < PC_REAL(0.0)));
-    Mask enters = pc_and(may_enter > PC_REAL(0.5), pc_is_crossed(PC_PASS n, i, rate));
+    Mask enters = pc_and(pc_and(is_limit, may_enter > PC_REAL(0.5)), pc_and(on < PC_REAL(0.5), rate < PC_REAL(-0.05)));
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(leaves, PC_REAL(0.0), pc_select(enters, one, on)));
     changed = pc_select(pc_or(leaves, enters), one, changed);
   }
@@ -116,11 +112,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_NODES(k, 1u, t) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #endif
   pc_tree_damping(PC_PASS m, t, load > PC_REAL(0.0));
-  PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_ENTERED, PC_REAL(0.0));
   for (uint round = 0u; round < 4u; round++) {
     pc_factor(PC_PASS m, t, round == 0u);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
-    if (round == 3u) break;  // what acts is what the factor knows of
     Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one); PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
     PC_NODES(k, 1u, t) {
       Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Real here = pc_tree_revise(PC_PASS n, up, may_enter);

@@ -48,6 +48,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.push_speed = Scalar(from.push_speed);
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
+  biased.limit_give = Scalar(constants::largest_give);
   biased.loop_give = Scalar(constants::loop_give);
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.rounds = constants::rounds;
