@@ -21,6 +21,12 @@ Angles angles_of(const AngleFreedom& f) {
   if (f.kind != AngleFreedom::Kind::pitch_yaw_roll || !locked(f.lower.y, f.upper.y) || !locked(f.lower.z, f.upper.z)) return Angles::own;
   return locked(f.lower.x, f.upper.x) ? Angles::weld : Angles::hinge;
 }
+/// The axes of its frames that it keeps parallel.
+std::span<const Vec3> axes_kept(const AngleFreedom& f) {
+  static constexpr Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Angles angles = angles_of(f);
+  return std::span(axes).first(angles == Angles::hinge ? 1 : angles == Angles::weld ? 3 : 0);
+}
 bool is_limited(const AngleFreedom& f) {
   const Angles angles = angles_of(f);
   return angles == Angles::own || (angles == Angles::hinge && (std::isfinite(f.lower.x) || std::isfinite(f.upper.x)));
@@ -63,20 +69,20 @@ double size_of(const WorldState& state, const JointRecord& joint) {
   return size;
 }
 
-/// What holds two bodies together, in each of them: pins about their means, and axes that joints keep parallel.
+/// What holds two bodies together: the means of the pins in each, and the sum of a b^T over the pins about these and over the axes that
+/// joints keep parallel.
 struct Held {
-  Eigen::Vector3d mean_a, mean_b;
-  Eigen::Matrix3Xd a, b;
+  Eigen::Vector3d mean_a = Eigen::Vector3d::Zero(), mean_b = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d together = Eigen::Matrix3d::Zero();
 };
 /// `axis`: how long axes are beside pins [m].
 Held held_by(const WorldState& state, std::span<const Link> links, double axis) {
-  const std::uint32_t first = state.joints[links[0].row].body_a;
-  std::vector<Eigen::Vector3d> a, b;
-  Held held{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), {}, {}};
   const auto frames = [&](const Link& l) {
     const JointRecord& j = state.joints[l.row];
-    return j.body_a == first ? std::pair(j.def.frame_a, j.def.frame_b) : std::pair(j.def.frame_b, j.def.frame_a);
+    const bool turned = j.body_a != state.joints[links[0].row].body_a;
+    return turned ? std::pair(j.def.frame_b, j.def.frame_a) : std::pair(j.def.frame_a, j.def.frame_b);
   };
+  Held held;
   for (const Link& l : links) {
     const auto [frame_a, frame_b] = frames(l);
     held.mean_a += Eigen::Vector3d(frame_a.position) / double(links.size());
@@ -84,24 +90,17 @@ Held held_by(const WorldState& state, std::span<const Link> links, double axis) 
   }
   for (const Link& l : links) {
     const auto [frame_a, frame_b] = frames(l);
-    a.push_back(Eigen::Vector3d(frame_a.position) - held.mean_a);
-    b.push_back(Eigen::Vector3d(frame_b.position) - held.mean_b);
-    const Angles angles = angles_of(state.joints[l.row].def.freedom);
-    for (int i = 0; i < (angles == Angles::hinge ? 1 : angles == Angles::weld ? 3 : 0); i++) {
-      const Vec3 along = Vec3(Eigen::Vector3d(axis * Eigen::Vector3d::Unit(i)));
-      a.push_back(Eigen::Vector3d(rotate(frame_a.orientation, along)));
-      b.push_back(Eigen::Vector3d(rotate(frame_b.orientation, along)));
-    }
-  }
-  held.a.resize(3, Eigen::Index(a.size()));
-  held.b.resize(3, Eigen::Index(b.size()));
-  for (std::size_t i = 0; i < a.size(); i++) {
-    held.a.col(Eigen::Index(i)) = a[i];
-    held.b.col(Eigen::Index(i)) = b[i];
+    const Eigen::Vector3d a = Eigen::Vector3d(frame_a.position) - held.mean_a;
+    const Eigen::Vector3d b = Eigen::Vector3d(frame_b.position) - held.mean_b;
+    held.together += a * b.transpose();
+    for (const Vec3 along : axes_kept(state.joints[l.row].def.freedom))
+      held.together += Eigen::Vector3d(rotate(frame_a.orientation, axis * along)) *
+                       Eigen::Vector3d(rotate(frame_b.orientation, axis * along)).transpose();
   }
   return held;
 }
 
+/// The frame turned the shortest way, so that its x axis is this one.
 Quat turned_to(const Quat& frame, const Eigen::Vector3d& axis) {
   const Eigen::Vector3d x(rotate(frame, Vec3{1, 0, 0}));
   return Quat(Eigen::Quaterniond::FromTwoVectors(x, axis)) * frame;
@@ -111,13 +110,11 @@ Quat turned_to(const Quat& frame, const Eigen::Vector3d& axis) {
 /// Cryst. A32, 1976).
 std::optional<JointDef> merge(const WorldState& state, std::span<const Link> links) {
   if (links.size() < 2 || links[1].own) return {};
-  for (const Link& l : links)
-    if (state.joints[l.row].def.yields() || (!l.own && angles_of(state.joints[l.row].def.freedom) == Angles::own)) return {};
+  if (std::ranges::any_of(links, [&](const Link& l) { return state.joints[l.row].def.yields(); })) return {};
   const double least = constants::apart_pins * size_of(state, state.joints[links[0].row]);
   // (axes less than largest_give apart are one)
   const Held held = held_by(state, links, least / constants::largest_give);
-  const Eigen::Matrix3d together = held.a * held.b.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(together, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(held.together, Eigen::ComputeFullU | Eigen::ComputeFullV);
   JointDef def = state.joints[links[0].row].def;
   def.frame_a.position = Vec3(held.mean_a);
   def.frame_b.position = Vec3(held.mean_b);
@@ -125,14 +122,13 @@ std::optional<JointDef> merge(const WorldState& state, std::span<const Link> lin
   const int directions = sizes.y() > least * least ? 2 : sizes.x() > least * least ? 1 : 0;
   if (directions == 0) return def;
   if (directions == 1) {
-    const Eigen::Vector3d axis_a = svd.matrixU().col(0), axis_b = svd.matrixV().col(0);
-    const double along = axis_a.dot(Eigen::Vector3d(rotate(def.frame_a.orientation, Vec3{1, 0, 0})));
-    // what is of its own turns about an axis of its own
-    if (links[0].own && std::abs(along) < std::cos(constants::largest_give)) return {};
     if (angles_of(def.freedom) == Angles::own) return {};
     if (angles_of(def.freedom) == Angles::none) def.freedom = AngleFreedom::hinge();
-    def.frame_a.orientation = turned_to(def.frame_a.orientation, along < 0 ? Eigen::Vector3d(-axis_a) : axis_a);
-    def.frame_b.orientation = turned_to(def.frame_b.orientation, along < 0 ? Eigen::Vector3d(-axis_b) : axis_b);
+    // (a hinge with limits turns about this axis as it did, and says where its angles begin)
+    const Eigen::Vector3d axis_a = svd.matrixU().col(0), axis_b = svd.matrixV().col(0);
+    const double sign = axis_a.dot(Eigen::Vector3d(rotate(def.frame_a.orientation, Vec3{1, 0, 0}))) < 0 ? -1 : 1;
+    def.frame_a.orientation = turned_to(def.frame_a.orientation, sign * axis_a);
+    def.frame_b.orientation = turned_to(def.frame_b.orientation, sign * axis_b);
     return def;
   }
   def.freedom = AngleFreedom::locked();
