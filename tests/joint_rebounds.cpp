@@ -39,7 +39,8 @@ AngleFreedom with(AngleFreedom freedom, double restitution) {
 
 }  // namespace
 
-/// Limits that are met in any sub-step of a step: what a throw in the last one changed is not read as if it went on, at four times the energy.
+/// Limits that are met in any sub-step of a step: what a throw in the last one changed is not read as if it went on, at
+/// four times the energy.
 TEST_CASE("velocities that are read in the step of a throw have its energy") {
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (int i = 0; i < 40; i++) {

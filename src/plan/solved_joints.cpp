@@ -18,7 +18,8 @@ enum class Angles : std::uint8_t { none, hinge, weld, own };
 Angles angles_of(const AngleFreedom& f) {
   if (f.kind == AngleFreedom::Kind::free) return Angles::none;
   const auto locked = [](double lower, double upper) { return lower == 0 && upper == 0; };
-  if (f.kind != AngleFreedom::Kind::pitch_yaw_roll || !locked(f.lower.y, f.upper.y) || !locked(f.lower.z, f.upper.z)) return Angles::own;
+  if (f.kind != AngleFreedom::Kind::pitch_yaw_roll || !locked(f.lower.y, f.upper.y) || !locked(f.lower.z, f.upper.z))
+    return Angles::own;
   return locked(f.lower.x, f.upper.x) ? Angles::weld : Angles::hinge;
 }
 /// The axes of its frames that it keeps parallel.
@@ -69,8 +70,8 @@ double size_of(const WorldState& state, const JointRecord& joint) {
   return size;
 }
 
-/// What holds two bodies together: the means of the pins in each, and the sum of a b^T over the pins about these and over the axes that
-/// joints keep parallel.
+/// What holds two bodies together: the means of the pins in each, and the sum of a b^T over the pins about these and over
+/// the axes that joints keep parallel.
 struct Held {
   Eigen::Vector3d mean_a = Eigen::Vector3d::Zero(), mean_b = Eigen::Vector3d::Zero();
   Eigen::Matrix3d together = Eigen::Matrix3d::Zero();
@@ -106,8 +107,8 @@ Quat turned_to(const Quat& frame, const Eigen::Vector3d& axis) {
   return Quat(Eigen::Quaterniond::FromTwoVectors(x, axis)) * frame;
 }
 
-/// All as one: means meet, and of the rest the turn of b against a that brings it nearest, where pins and axes tell it (W. Kabsch, Acta
-/// Cryst. A32, 1976).
+/// All as one: means meet, and of the rest the turn of b against a that brings it nearest, where pins and axes tell it
+/// (W. Kabsch, Acta Cryst. A32, 1976).
 std::optional<JointDef> merge(const WorldState& state, std::span<const Link> links) {
   if (links.size() < 2 || links[1].own) return {};
   if (std::ranges::any_of(links, [&](const Link& l) { return state.joints[l.row].def.yields(); })) return {};
