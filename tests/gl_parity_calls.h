@@ -41,6 +41,7 @@ inline constexpr Call step_calls[] = {
     {Kernel::tree_contact_solve, 0},
     {Kernel::tree_flush, 0},
     {Kernel::contact_solve, 0},
+    {Kernel::tree_limits, 0},
     {Kernel::tree_again, 0},
     {Kernel::remember, 0},
     {Kernel::pivot_turn, 0},
@@ -89,6 +90,7 @@ inline constexpr Call smooth_calls[] = {{Kernel::smooth_prepare, 0}, {Kernel::sm
 /// The kernel that stands in where joints have motors or springs.
 inline Kernel driven(Kernel kernel) {
   if (kernel == Kernel::tree_solve) return Kernel::tree_solve_driven;
+  if (kernel == Kernel::tree_limits) return Kernel::tree_limits_driven;
   if (kernel == Kernel::tree_joint_mass) return Kernel::tree_joint_mass_driven;
   if (kernel == Kernel::tree_joint_solve) return Kernel::tree_joint_solve_driven;
   return kernel == Kernel::joint_solve ? Kernel::joint_solve_driven : kernel;

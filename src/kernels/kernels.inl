@@ -70,6 +70,8 @@ PC_KERNEL(tree_drive_rates, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tre
 PC_KERNEL(tree_drives, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(pose) PC_READ(joint_frame) PC_READ(joint_drive) PC_READ(tree_rows) PC_WRITE(tree_drive_rows))
 PC_KERNEL(tree_solve, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion))
 PC_KERNEL(tree_solve_driven, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(tree_drive_rows) PC_WRITE(motion))
+PC_KERNEL(tree_limits, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_WRITE(tree_rows))
+PC_KERNEL(tree_limits_driven, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_WRITE(tree_rows) PC_WRITE(tree_drive_rows))
 PC_KERNEL(tree_again, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(inertia) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(joint_impulse) PC_WRITE(velocity_parts))
 PC_KERNEL(tree_relax, tree_nodes, joints, PC_READ(tree_blocks) PC_READ(tree_parents) PC_READ(tree_ends) PC_READ(joint_solved) PC_WRITE(tree_rows) PC_WRITE(motion) PC_WRITE(pose))
 PC_KERNEL(tree_keep, tree, joints, PC_READ(tree_blocks) PC_READ(tree_ends) PC_WRITE(joint_impulse))

@@ -1,6 +1,6 @@
 // After the contacts: the pins at the new prediction, with the same factor (Newton's second step, and what the contacts
-// have undone), again where a gap is left, and of limits that throw back; then the push that closes the gaps left over, which the relax phase takes back once the
-// bodies have moved by it.
+// have undone), again where a gap is left, a limit is crossed or one throws back; then the push that closes the gaps left over, which the relax
+// phase takes back once the bodies have moved by it.
 #include "body_state.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
@@ -18,16 +18,23 @@ PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
   Real away = PC_LD(tree_rows, n, TREE_REBOUND + i); Mask rebounds = pc_and(pc_throws_back(PC_PASS n), pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), away > PC_REAL(0.0)));
   precise Real lack = rate - away; return pc_select(rebounds, pc_min(lack, PC_REAL(0.0)), PC_REAL(0.0));
 }
-// Limits keep what they carry, unless they throw back; locked rows are corrected like pins.
+// How fast a limit that acts is crossed by the end of the sub-step, below 0; `rate`: that of its slack. What is beyond it already is not asked back
+// here: velocities of that would meet the contacts of the relax phase.
+PC_FN Real pc_crosses(PC_IO Slot n, uint i, Real rate) {
+  Mask acts = pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(1.5));
+  precise Real over = rate + pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
+  return pc_select(acts, pc_min(over, PC_REAL(0.0)), PC_REAL(0.0));
+}
+// Limits are not crossed and else keep what they carry, unless they throw back; locked rows are corrected like pins.
 PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
-    Real bias = pc_soft_bias(PC_PASS pc_little_beyond(PC_PASS PC_LD(tree_rows, n, TREE_SLACK + i), kind)); Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-    precise Real rate = (now + bias) * wanted; Real limit = PC_REAL(0.0);
-    if (PC_ANY(pc_throws_back(PC_PASS n))) { precise Real back = pc_lacks_rebound(PC_PASS n, i, now) * wanted; limit = back; }  // lint: allow (zero otherwise)
-    PC_ST(tree_rows, n, TREE_RATE + i, pc_select(kind > PC_REAL(1.5), rate, limit));
+    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    Real over = pc_crosses(PC_PASS n, i, now);
+    if (PC_ANY(pc_throws_back(PC_PASS n))) over = pc_min(over, pc_lacks_rebound(PC_PASS n, i, now));  // lint: allow (zero otherwise)
+    precise Real rate = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), now, over) * wanted;
+    PC_ST(tree_rows, n, TREE_RATE + i, rate);
   }
 }
 // Speed at which a gap closes: within the sub-step, but not faster than joint_push_speed.
@@ -35,12 +42,18 @@ PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
   precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_share_within(size, most); return pc_scale(v, share);
 }
-// 1 where a limit that throws back is left too slowly, by more than 1e-5 of its rate.
-PC_FN Real pc_rebound_lacks(PC_IO Slot n, Slot up) {
-  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real lacks = PC_REAL(0.0);
+// 1 where a limit is crossed by more than rounding, or one that throws back is left too slowly, by more than 1e-5 of its rate.
+PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
+  Real lacks = PC_REAL(0.0);
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return lacks;  // lint: allow (zero otherwise)
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * PC_REAL(-1e-5);
-    lacks = pc_select(pc_lacks_rebound(PC_PASS n, i, pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn)) < much, PC_REAL(1.0), lacks);
+    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    lacks = pc_select(pc_crosses(PC_PASS n, i, now) < PC_REAL(-0.05), PC_REAL(1.0), lacks);
+    if (PC_ANY(pc_throws_back(PC_PASS n))) {  // lint: allow (none otherwise)
+      precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * PC_REAL(-1e-5);
+      lacks = pc_select(pc_lacks_rebound(PC_PASS n, i, now) < much, PC_REAL(1.0), lacks);
+    }
   }
   return lacks;
 }
@@ -48,10 +61,13 @@ PC_FN Real pc_rebound_lacks(PC_IO Slot n, Slot up) {
 PC_FN Real pc_left(PC_IO Slot m, Tree t, Real share_squared) {
   Real left = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
-    Slot n = PC_NODE(m, t.first + k); left = pc_max(left, pc_gap_over(PC_PASS n, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h)), share_squared));
-    if (PC_ANY(pc_throws_back(PC_PASS n))) left = pc_max(left, pc_rebound_lacks(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k))));  // lint: allow (zero otherwise)
+    Slot n = PC_NODE(m, t.first + k);
+    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    left = pc_max(left, pc_gap_over(PC_PASS n, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h)), share_squared));
+    left = pc_max(left, pc_limit_lacks(PC_PASS n, up));
   }
-  PC_MOST(left); return left;
+  PC_MOST(left);
+  return left;
 }
 // 1 where a joint has angles that are locked, or its body turns about it: those are corrected whatever the pins.
 PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {

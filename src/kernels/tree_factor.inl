@@ -67,6 +67,9 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   Vec3 y3 = pc_factor_lower(factor, u3); Vec3 y4 = pc_factor_lower(factor, u4); Vec3 y5 = pc_factor_lower(factor, u5);
   Vec3 z0 = pc_factor_scaled(factor, y0); Vec3 z1 = pc_factor_scaled(factor, y1); Vec3 z2 = pc_factor_scaled(factor, y2);
   Vec3 z3 = pc_factor_scaled(factor, y3); Vec3 z4 = pc_factor_scaled(factor, y4); Vec3 z5 = pc_factor_scaled(factor, y5);
+#ifdef PC_SEEN
+  pc_keep_seen(PC_PASS n);
+#endif
   pc_sts_tree(PC_PASS n, TREE_D, factor);
   pc_stm_tree(PC_PASS n, TREE_W, pc_mat3(pc_factor_upper(factor, z0), pc_factor_upper(factor, z1), pc_factor_upper(factor, z2)));
   pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_mat3(pc_factor_upper(factor, z3), pc_factor_upper(factor, z4), pc_factor_upper(factor, z5)));

@@ -12,7 +12,7 @@ PC_FN void pc_flush_node(PC_IO Slot m, Tree t, uint k) {
   } else {
     Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Six above = pc_ld6_tree(PC_PASS up, TREE_X); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
     precise Vec3 l = above.l + pc_cross(above.a, pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc));
-    precise Vec3 q = pc_lower_tmul(pc_lds_tree(PC_PASS n, TREE_FACTOR), turned.v) - pc_w_tmul(PC_PASS n, pc_six(l, above.a));
+    precise Vec3 q = pc_lower_tmul(pc_lds_tree(PC_PASS n, TREE_FACTOR), turned.v) - pc_w_tmul(PC_PASS n, TREE_SEEN, pc_six(l, above.a));
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(pc_add(l, pc_cross(rc, q)), pc_add(above.a, q)));
   }
   pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));

@@ -98,7 +98,7 @@ PC_FN void pc_take_back(PC_IO Slot m, Tree t, Real share, Mask these) {
     PC_SCATTER_IF(moves, motion, body, 0u, pc_quad(pc_share_since(kept.l, linear.v, share), linear.s));
     PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_share_since(kept.a, angular.v, share), angular.s));
     if (k > 0u) {
-      Six pushes = pc_ld6_tree(PC_PASS n, TREE_KEPT_PUSHES);
+      Six pushes = pc_six(pc_ld3_tree(PC_PASS n, TREE_KEPT_PIN), pc_ld3_tree(PC_PASS n, TREE_KEPT_LIMIT));
       Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN);
       Vec3 limit = pc_ld3_tree(PC_PASS n, TREE_LIMIT);
       pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(these, pc_share_since(pushes.l, pin, share), pin));

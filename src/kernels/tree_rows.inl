@@ -45,8 +45,9 @@ const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
 const uint TREE_RIGID = TREE_SLACK;    // inverse inertia about the centre, 6
 const uint TREE_ENERGY = TREE_REBOUND; // twice that of the motion before the solve, where a limit throws back (tree_rebound.inl)
-// what contacts see, from tree_respond on: roots of the joint's D^-1 and of the root's H^-1 (node_operator.inl)
+// what contacts see, from tree_respond to the end of the sub-step: roots of the joint's D^-1 and of the root's H^-1 (node_operator.inl), and W
 const uint TREE_FACTOR = 168u;       // 6
+const uint TREE_SEEN = TREE_H;       // 18
 const uint TREE_ROOT_FACTOR = TREE_D;  // 21; a root has no joint
 
 PC_FN Vec3 pc_ld3_tree(PC_IO Slot n, uint f) { return Vec3(PC_LD(tree_rows, n, f), PC_LD(tree_rows, n, f + 1u), PC_LD(tree_rows, n, f + 2u)); }
@@ -56,13 +57,20 @@ PC_FN Sym3 pc_lds_tree(PC_IO Slot n, uint f) {
 }
 PC_FN Mat3 pc_ldm_tree(PC_IO Slot n, uint f) { return pc_mat3(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u), pc_ld3_tree(PC_PASS n, f + 6u)); }
 PC_FN Sym6 pc_ldh_tree(PC_IO Slot n, uint f) { Sym6 h; h.l = pc_lds_tree(PC_PASS n, f); h.c = pc_ldm_tree(PC_PASS n, f + 6u); h.a = pc_lds_tree(PC_PASS n, f + 15u); return h; }
-// W^T times a motion, with the six rows of W at TREE_W (tree_sweep.inl).
-PC_FN Vec3 pc_w_tmul(PC_IO Slot n, Six a) {
-  Vec3 l = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W), a.l.x, pc_ld3_tree(PC_PASS n, TREE_W + 3u), a.l.y, pc_ld3_tree(PC_PASS n, TREE_W + 6u), a.l.z);
-  Vec3 r = pc_combine(pc_ld3_tree(PC_PASS n, TREE_W + 9u), a.a.x, pc_ld3_tree(PC_PASS n, TREE_W + 12u), a.a.y, pc_ld3_tree(PC_PASS n, TREE_W + 15u), a.a.z);
+// W^T times a motion, with the six rows of W at w (tree_sweep.inl).
+PC_FN Vec3 pc_w_tmul(PC_IO Slot n, uint w, Six a) {
+  Vec3 l = pc_combine(pc_ld3_tree(PC_PASS n, w), a.l.x, pc_ld3_tree(PC_PASS n, w + 3u), a.l.y, pc_ld3_tree(PC_PASS n, w + 6u), a.l.z);
+  Vec3 r = pc_combine(pc_ld3_tree(PC_PASS n, w + 9u), a.a.x, pc_ld3_tree(PC_PASS n, w + 12u), a.a.y, pc_ld3_tree(PC_PASS n, w + 15u), a.a.z);
   return pc_add(l, r);
 }
 // Whether any lane's joint has angle rows. Skipping them changes no bit: where there are none they are zeros.
 PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(0.5); }
+// Whether a limit that does not act is crossed, by more than rounding, when the joint turns by `turn` faster than TREE_RATE says.
+PC_FN Mask pc_is_crossed(PC_IO Slot n, uint i, Vec3 turn) {
+  precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+  Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
+  return pc_and(is_limit, pc_and(PC_LD(tree_rows, n, TREE_ON + i) < PC_REAL(0.5), rate < PC_REAL(-0.05)));
+}
 // Whether any lane's joint has limits with a restitution: TREE_REBOUND holds something there alone.
 PC_FN Mask pc_throws_back(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(1.5); }

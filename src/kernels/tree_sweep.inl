@@ -48,7 +48,7 @@ PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
     Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
     precise Vec3 l = above.l + pc_cross(above.a, d) - pc_ld3_tree(PC_PASS n, c); Six a = pc_six(l, above.a);
     Vec3 push = pc_joint_push(PC_PASS n, f, rc, limits);
-    Vec3 q = pc_sub(pc_factor_mul(pc_lds_tree(PC_PASS n, TREE_D), push), pc_w_tmul(PC_PASS n, a));
+    Vec3 q = pc_sub(pc_factor_mul(pc_lds_tree(PC_PASS n, TREE_D), push), pc_w_tmul(PC_PASS n, TREE_W, a));
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(pc_add(l, pc_cross(rc, q)), pc_add(above.a, q)));
     Six w = pc_w_mul(PC_PASS n, push);
     precise Vec3 impulse = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), l) + pc_mat_mul(pc_ldm_tree(PC_PASS n, TREE_A + 6u), above.a) + w.l - f.l;

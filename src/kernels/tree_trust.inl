@@ -4,7 +4,8 @@
 #include "tree_energy.inl"
 
 const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other
-const uint TREE_KEPT_PUSHES = TREE_H;        // impulses of the pin and of the angle rows; of a root it is the factor
+const uint TREE_KEPT_PIN = TREE_PUSH_SPEED;    // impulses of the pin and of the angle rows, beside TREE_SEEN
+const uint TREE_KEPT_LIMIT = TREE_H + 18u;
 
 PC_FN void pc_keep(PC_IO Slot n, Mask these, uint f, Vec3 v) { pc_st3_tree(PC_PASS n, f, pc_select3(these, v, pc_ld3_tree(PC_PASS n, f))); }
 PC_FN void pc_keep_motion(PC_IO Slot m, Tree t, Mask these) {
@@ -13,8 +14,8 @@ PC_FN void pc_keep_motion(PC_IO Slot m, Tree t, Mask these) {
     BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
     pc_keep(PC_PASS n, these, TREE_KEPT_MOTION, b.v);
     pc_keep(PC_PASS n, these, TREE_KEPT_MOTION + 3u, b.l);
-    if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_PUSHES, pc_ld3_tree(PC_PASS n, TREE_PIN));
-    if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_PUSHES + 3u, pc_ld3_tree(PC_PASS n, TREE_LIMIT));
+    if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_PIN, pc_ld3_tree(PC_PASS n, TREE_PIN));
+    if (k > 0u) pc_keep(PC_PASS n, these, TREE_KEPT_LIMIT, pc_ld3_tree(PC_PASS n, TREE_LIMIT));
   }
 }
 // 1 where the steps have not found their way.
