@@ -4,6 +4,13 @@
 #include "tree_store.inl"
 #include "tree_momentum.inl"
 
+// W^T times a motion, with W as contacts see it.
+PC_FN Vec3 pc_seen_w_tmul(PC_IO Slot n, Slot root, Six x) {
+  Vec3 seen = pc_w_tmul(PC_PASS n, TREE_W, x);
+  Mask anew = PC_LD(tree_rows, root, TREE_ANEW) > PC_REAL(0.5);
+  if (PC_ANY(anew)) seen = pc_select3(anew, pc_w_tmul(PC_PASS n, TREE_SEEN, x), seen);  // lint: allow (selected)
+  return seen;
+}
 // A node follows its parent; what was pending is no more.
 PC_FN void pc_flush_node(PC_IO Slot m, Tree t, uint k) {
   Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); Quad turned = PC_GATHER(node_pending, row, 0u);
@@ -12,7 +19,7 @@ PC_FN void pc_flush_node(PC_IO Slot m, Tree t, uint k) {
   } else {
     Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Six above = pc_ld6_tree(PC_PASS up, TREE_X); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
     precise Vec3 l = above.l + pc_cross(above.a, pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc));
-    precise Vec3 q = pc_lower_tmul(pc_lds_tree(PC_PASS n, TREE_FACTOR), turned.v) - pc_w_tmul(PC_PASS n, TREE_SEEN, pc_six(l, above.a));
+    precise Vec3 q = pc_lower_tmul(pc_lds_tree(PC_PASS n, TREE_FACTOR), turned.v) - pc_seen_w_tmul(PC_PASS n, PC_NODE(m, t.first), pc_six(l, above.a));
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(pc_add(l, pc_cross(rc, q)), pc_add(above.a, q)));
   }
   pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));

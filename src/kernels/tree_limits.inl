@@ -31,6 +31,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     entered = pc_max(entered, pc_enter_limits(PC_PASS PC_NODE(m, t.first + k), up));
   }
   PC_MOST(entered);
+  PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_ANEW, entered);
   if (!PC_ANY(entered > PC_REAL(0.5))) return;  // lint: allow (other lanes compute the same again)
   pc_factor(PC_PASS m, t, true);
 }

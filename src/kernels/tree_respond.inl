@@ -36,7 +36,6 @@ PC_FN void pc_hand_root(PC_IO Slot root, Index row, Mask exists, Real scale) {
 PC_FN void pc_hand_node(PC_IO Slot n, Index row, Mask exists, Real scale) {
   Sym3 e = pc_root_of_factor(pc_lds_tree(PC_PASS n, TREE_D), scale);
   Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); pc_sts_tree(PC_PASS n, TREE_FACTOR, e);
-  pc_keep_seen(PC_PASS n);
   PC_SCATTER_IF(exists, node_operator, row, 0u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W), e.xx));
   PC_SCATTER_IF(exists, node_operator, row, 1u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 3u), e.xy));
   PC_SCATTER_IF(exists, node_operator, row, 2u, pc_quad(pc_ld3_tree(PC_PASS n, TREE_W + 6u), e.xz));
@@ -51,6 +50,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // the factor is in units of the tree's mass
   Real total = PC_LD(tree_rows, root, TREE_TOTAL); Mask exists = total > none; Real share = pc_inverse_or_zero(total); Real scale = pc_sqrt(share);
   PC_ONE {
+    PC_ST(tree_rows, root, TREE_ANEW, none);
     Index row = PC_ORDER(tree_order, root);
     pc_hand_root(PC_PASS root, row, exists, scale);
     pc_nothing_pending(PC_PASS row);

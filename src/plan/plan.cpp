@@ -270,7 +270,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
   if (s.nets && s.contacts()) b.kernel(Kernel::net_solve, Phase::biased, k);
-  if (s.tree_joints || s.tree_contacts) b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
+  if (s.limits_after_contacts()) b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);

@@ -34,6 +34,7 @@ struct PlanSignature {
   bool free_joints = false;                 // joints that close a loop, of bodies whose trees do not answer
   bool tree_joints = false;                 // and of bodies whose trees do
   bool tree_drives = false;                 // motors or springs of joints that stand in a tree
+  bool tree_limits = false;                 // limits of their angles
   bool joint_drives = false;                // of others, or springs between two points
   bool nets = false;                        // springs between points of bodies that no pin holds
   bool shapes = false;                      // some pair could ever touch
@@ -53,6 +54,8 @@ struct PlanSignature {
   bool frictionless() const { return free_contacts && !tree_contacts && !friction; }
   /// Pins of pivots that nothing else acts on have nothing to solve.
   bool solves_trees() const { return trees && (!pivots_bare || tree_contacts || tree_joints); }
+  /// Contacts and loops may turn joints of trees over their limits.
+  bool limits_after_contacts() const { return tree_limits && (tree_contacts || tree_joints); }
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 

@@ -36,6 +36,7 @@ inline PlanSignature signature(const StepSettings& settings, const WorldState& w
   s.free_joints = schedule.joints.any_without_trees();
   s.tree_joints = schedule.joints.any_with_trees();
   s.tree_drives = schedule.trees.drives();
+  s.tree_limits = schedule.trees.limits();
   s.nets = schedule.nets.nets().count() > 0;
   s.joint_drives = schedule.trees.closing_drives();
   return s;

@@ -150,6 +150,8 @@ void TreeSlots::build(const WorldState& state, const Nets& nets) {
   pivots_ = find_pivots(forest_, state, solved_);
   for (const Pivot& pivot : pivots_) forest_.set_pivot(pivot.tree);
   bare_pivots_ = pivots_.size() == forest_.trees() && std::ranges::none_of(pivots_, &Pivot::limited);
+  limits_ = false;
+  for (std::uint32_t i = 0; i < forest_.trees() && !limits_; i++) limits_ = has_limits(state, forest_.tree(i));
   shapes_.build(forest_);
   alike_ = shapes_.most_alike();
   loop_nodes_.build(forest_, masses, closings_of_trees(forest_, closing_, links, masses));

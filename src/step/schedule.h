@@ -118,6 +118,8 @@ class TreeSlots {
   std::span<const std::uint32_t> closing() const { return closing_; }
   /// Whether some joint has a motor or a spring: of those in trees, and of the others.
   bool drives() const { return drives_; }
+  /// Whether some joint of a tree has angles that have limits.
+  bool limits() const { return limits_; }
   bool closing_drives() const { return closing_drives_; }
   /// Springs between two points of which neither stands in a tree that answers them.
   std::uint32_t free_springs() const { return free_springs_; }
@@ -140,7 +142,7 @@ class TreeSlots {
   TreeNodes nodes_, loop_nodes_;
   std::vector<char> parallel_;
   std::vector<std::uint32_t> closing_;
-  bool drives_ = false, closing_drives_ = false, bare_pivots_ = false;
+  bool drives_ = false, closing_drives_ = false, bare_pivots_ = false, limits_ = false;
   std::uint32_t free_springs_ = 0, alike_ = 0;
   std::vector<Pivot> pivots_;
   TreeShapes shapes_;
