@@ -155,15 +155,15 @@ TEST_CASE("scenes: 100 ragdolls") {
   CHECK(r.share_within(0.999) <= 3 * degree);  // 0.9 to 2.5
 }
 
-TEST_CASE("scenes: of five heaps of 100 ragdolls the median overlaps by no more than 5 mm anywhere") {
+TEST_CASE("scenes: of nine heaps of 100 ragdolls the median overlaps by no more than 5 mm anywhere") {
   std::vector<double> deepest;
-  for (std::uint64_t seed = 1; seed <= 5; seed++) {
+  for (std::uint64_t seed = 1; seed <= 9; seed++) {
     const SceneRun r({Precision::f32}, "ragdolls", 100, 600, 100, seed);
     r.check_sound();
     deepest.push_back(r.end.penetration.max);
   }
   std::sort(deepest.begin(), deepest.end());
-  CHECK(deepest[2] <= 0.005);  // medians of 48: 3.8 mm, and 4.0 where blows are remembered
+  CHECK(deepest[4] <= 0.005);  // median of 48: 4.2 mm; 4.0 without limits after the contacts
   CHECK(deepest.back() <= 0.0105);
 }
 
