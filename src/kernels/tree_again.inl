@@ -49,7 +49,7 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-    lacks = pc_select(pc_crosses(PC_PASS n, i, now) < PC_REAL(-0.05), PC_REAL(1.0), lacks);
+    lacks = pc_select(pc_is_crossed(pc_crosses(PC_PASS n, i, now)), PC_REAL(1.0), lacks);
     if (PC_ANY(pc_throws_back(PC_PASS n))) {  // lint: allow (none otherwise)
       precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * PC_REAL(-1e-5);
       lacks = pc_select(pc_lacks_rebound(PC_PASS n, i, now) < much, PC_REAL(1.0), lacks);
@@ -88,7 +88,7 @@ PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
     pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
-    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k, PC_REAL(1.0))));
+    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k)));
   }
   pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
 }

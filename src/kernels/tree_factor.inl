@@ -1,9 +1,11 @@
 // The factor of a tree, leaves to root (see tree_sweep.inl). Where an active set has changed, it is made anew of the joints that changed and of those
 // between them and the root.
 
-// while tree_solve lasts, in places that are free by then
+// while tree_solve and tree_limits last, in places that are free by then
 const uint TREE_REST = TREE_PUSH;         // the angular part of TREE_A, 6
 const uint TREE_STALE = TREE_PUSH_SPEED;  // 1 where the factor must be made anew
+
+PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > PC_REAL(0.5); }
 
 // The factor of a joint's freedom (pc_inverse_factor) with the springs of its angle rows: each as stiff as the joint's own inertia about its
 // axis, many times. The limit of a hinge, whose other angles are locked, is as stiff as they are: a stop. Limits of joints with
@@ -25,6 +27,14 @@ PC_FN Real pc_least_moment(PC_IO Slot n) {
   Vec3 inverse = pc_ld3_tree(PC_PASS n, TREE_MOMENTS); precise Real light = pc_max(inverse.x, pc_max(inverse.y, inverse.z)) * PC_LD(tree_rows, n, TREE_TOTAL);
   return pc_inverse_or_zero(light);
 }
+#ifdef PC_SEEN
+// Where W is made anew after the contacts they go on seeing it as it was.
+PC_FN void pc_keep_seen(PC_IO Slot n) {
+  Mask anew = pc_is_stale(PC_PASS n);
+  for (uint i = 0u; i < 18u; i++)
+    PC_ST(tree_rows, n, TREE_SEEN + i, pc_select(anew, PC_LD(tree_rows, n, TREE_W + i), PC_LD(tree_rows, n, TREE_SEEN + i)));
+}
+#endif
 // What of a node's inertia its parent carries, at the parent's place.
 PC_FN void pc_carry(PC_IO Slot n, Slot up, uint parent, Sym6 rest) {
   Mask free = PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0);
@@ -76,10 +86,13 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
   // H - W U^T, and what of it the parent carries
   Sym6 rest; rest.l = pc_sym_sub(h.l, pc_products(z0, z1, z2, y0, y1, y2)); rest.a = pc_sym_sub(h.a, pc_products(z3, z4, z5, y3, y4, y5));
   rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(z0, y3), pc_dot(z0, y4), pc_dot(z0, y5))), pc_sub(h.c.b, Vec3(pc_dot(z1, y3), pc_dot(z1, y4), pc_dot(z1, y5))), pc_sub(h.c.c, Vec3(pc_dot(z2, y3), pc_dot(z2, y4), pc_dot(z2, y5))));
-  pc_sts_tree(PC_PASS n, TREE_A, rest.l); pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c); pc_sts_tree(PC_PASS n, TREE_REST, rest.a);
+  pc_sts_tree(PC_PASS n, TREE_A, rest.l);
+  pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c);
+#ifndef PC_SEEN
+  pc_sts_tree(PC_PASS n, TREE_REST, rest.a);
+#endif
   pc_carry(PC_PASS n, up, parent, rest);
 }
-PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > PC_REAL(0.5); }
 // `all`: of every node; else of those that are stale, and what others hand to them.
 PC_FN void pc_factor(PC_IO Slot m, Tree t, bool all) {
   Vec3 z = pc_zero3();

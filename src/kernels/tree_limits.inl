@@ -6,7 +6,7 @@
 #ifdef PC_DRIVES
 #include "tree_drive.inl"
 #endif
-#define PC_SEEN  // pc_factor_node keeps what contacts see
+#define PC_SEEN  // contacts have looked at the factor
 #include "tree_factor.inl"
 #undef PC_SEEN
 
@@ -16,7 +16,7 @@ PC_FN Real pc_enter_limits(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return any;  // lint: allow (zero otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Mask enters = pc_is_crossed(PC_PASS n, i, turn);
+    Mask enters = pc_enters(PC_PASS n, i, turn);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(enters, PC_REAL(1.0), PC_LD(tree_rows, n, TREE_ON + i)));
     any = pc_select(enters, PC_REAL(1.0), any);
   }
@@ -32,6 +32,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   PC_MOST(entered);
   PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_ANEW, entered);
+  PC_NODES(k, 0u, t) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_STALE, entered);
   if (!PC_ANY(entered > PC_REAL(0.5))) return;  // lint: allow (other lanes compute the same again)
   pc_factor(PC_PASS m, t, true);
 }

@@ -66,12 +66,19 @@ PC_FN Vec3 pc_w_tmul(PC_IO Slot n, uint w, Six a) {
 }
 // Whether any lane's joint has angle rows. Skipping them changes no bit: where there are none they are zeros.
 PC_FN Mask pc_has_rows(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(0.5); }
-// Whether a limit that does not act is crossed, by more than rounding, when the joint turns by `turn` faster than TREE_RATE says.
-PC_FN Mask pc_is_crossed(PC_IO Slot n, uint i, Vec3 turn) {
+// TREE_RATE of row i, once the joint turns by `turn` faster.
+PC_FN Real pc_rate_after(PC_IO Slot n, uint i, Vec3 turn) {
   precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  return rate;
+}
+// Whether a limit is crossed at more than rounding.
+PC_FN Mask pc_is_crossed(Real rate) { return rate < PC_REAL(-0.05); }
+// The same of a limit that does not act, once the joint turns by `turn` faster.
+PC_FN Mask pc_enters(PC_IO Slot n, uint i, Vec3 turn) {
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
-  return pc_and(is_limit, pc_and(PC_LD(tree_rows, n, TREE_ON + i) < PC_REAL(0.5), rate < PC_REAL(-0.05)));
+  Mask waits = pc_and(is_limit, PC_LD(tree_rows, n, TREE_ON + i) < PC_REAL(0.5));
+  return pc_and(waits, pc_is_crossed(pc_rate_after(PC_PASS n, i, turn)));
 }
 // Whether any lane's joint has limits with a restitution: TREE_REBOUND holds something there alone.
 PC_FN Mask pc_throws_back(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(1.5); }

@@ -43,10 +43,10 @@ PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return PC_REAL(0.0);  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real changed = PC_REAL(0.0); Real one = PC_REAL(1.0);
   for (uint i = 0u; i < 3u; i++) {
-    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Real on = PC_LD(tree_rows, n, TREE_ON + i); Real impulse = pc_row_impulse(PC_PASS n, i, turn, one);
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Real on = PC_LD(tree_rows, n, TREE_ON + i); Real impulse = pc_row_impulse(PC_PASS n, i, turn);
     Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
     Mask leaves = pc_and(is_limit, pc_and(on > PC_REAL(0.5), impulse < PC_REAL(0.0)));
-    Mask enters = pc_and(may_enter > PC_REAL(0.5), pc_is_crossed(PC_PASS n, i, turn));
+    Mask enters = pc_and(may_enter > PC_REAL(0.5), pc_enters(PC_PASS n, i, turn));
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(leaves, PC_REAL(0.0), pc_select(enters, one, on)));
     changed = pc_select(pc_or(leaves, enters), one, changed);
   }
@@ -56,10 +56,7 @@ PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
 PC_FN void pc_rates_left(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-  for (uint i = 0u; i < 3u; i++) {
-    precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-    PC_ST(tree_rows, n, TREE_RATE + i, rate);
-  }
+  for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_RATE + i, pc_rate_after(PC_PASS n, i, turn));
 }
 
 // Share of what a sub-step cannot resolve that is damped, 0 to 1; `fast` = x / (1 + x) of a body's pins. Alone a tree needs it near the
@@ -141,7 +138,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k, one));
+    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k));
     pc_rates_left(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
   }
   pc_tree_apply(PC_PASS m, t, push, turn);

@@ -5,9 +5,4 @@ PC_FN void pc_sts_tree(PC_IO Slot n, uint f, Sym3 m) {
   PC_ST(tree_rows, n, f, m.xx); PC_ST(tree_rows, n, f + 1u, m.xy); PC_ST(tree_rows, n, f + 2u, m.xz); PC_ST(tree_rows, n, f + 3u, m.yy); PC_ST(tree_rows, n, f + 4u, m.yz); PC_ST(tree_rows, n, f + 5u, m.zz);
 }
 PC_FN void pc_stm_tree(PC_IO Slot n, uint f, Mat3 m) { pc_st3_tree(PC_PASS n, f, m.a); pc_st3_tree(PC_PASS n, f + 3u, m.b); pc_st3_tree(PC_PASS n, f + 6u, m.c); }
-// Contacts go on seeing W as it is, whatever it is made anew to.
-PC_FN void pc_keep_seen(PC_IO Slot n) {
-  pc_stm_tree(PC_PASS n, TREE_SEEN, pc_ldm_tree(PC_PASS n, TREE_W));
-  pc_stm_tree(PC_PASS n, TREE_SEEN + 9u, pc_ldm_tree(PC_PASS n, TREE_W + 9u));
-}
 PC_FN void pc_sth_tree(PC_IO Slot n, uint f, Sym6 h) { pc_sts_tree(PC_PASS n, f, h.l); pc_stm_tree(PC_PASS n, f + 6u, h.c); pc_sts_tree(PC_PASS n, f + 15u, h.a); }

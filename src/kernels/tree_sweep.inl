@@ -57,14 +57,14 @@ PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
 }
 
 // Impulse of angle row i after a sweep, along its axis: -spring (rate + change of rate).
-PC_FN Real pc_row_impulse(PC_IO Slot n, uint i, Vec3 turn, Real limits) {
-  precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) * limits + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-  precise Real impulse = -PC_LD(tree_rows, n, TREE_SPRING + i) * rate; return impulse;
+PC_FN Real pc_row_impulse(PC_IO Slot n, uint i, Vec3 turn) {
+  precise Real impulse = -PC_LD(tree_rows, n, TREE_SPRING + i) * pc_rate_after(PC_PASS n, i, turn);
+  return impulse;
 }
 
 // Impulses of the three angle rows after a sweep.
-PC_FN Vec3 pc_row_impulses(PC_IO Tree t, Slot n, uint k, Real limits) {
+PC_FN Vec3 pc_row_impulses(PC_IO Tree t, Slot n, uint k) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return pc_zero3();  // lint: allow (zeros otherwise)
   Slot up = PC_NODE(n, t.first + pc_parent(PC_PASS t, k)); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-  return Vec3(pc_row_impulse(PC_PASS n, 0u, turn, limits), pc_row_impulse(PC_PASS n, 1u, turn, limits), pc_row_impulse(PC_PASS n, 2u, turn, limits));
+  return Vec3(pc_row_impulse(PC_PASS n, 0u, turn), pc_row_impulse(PC_PASS n, 1u, turn), pc_row_impulse(PC_PASS n, 2u, turn));
 }
