@@ -58,19 +58,31 @@ PC_FN Spin pc_body_turn(Spin s, Vec3 axis, Real rate, Real time) {
 PC_FN Real pc_parts(Real angle) {
   precise Real wanted = pc_min(angle, PC_REAL(8.0)) * PC_REAL(2.0) + PC_REAL(0.5); return pc_min(pc_round(wanted), PC_REAL(16.0));
 }
-PC_FN Spin pc_strang(Spin s, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_time, Real time) {
-  return pc_body_turn(pc_body_turn(pc_body_turn(s, a, rate_a, half_time), c, rate_c, time), a, rate_a, half_time);
-}
-// Fourth order, in five turns about a and four about c (I. Omelyan, I. Mryglod and R. Folk, Computer Physics Communications 146,
-// 2002, 188: the position extended Forest-Ruth-like one), 1/26 of the error of the shortest such composition.
-PC_FN Spin pc_fourth_order(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_h, Real h) {
+// The turns about a and c, one after the other. Where `fine`, in fourth order, five about a and four about c (I. Omelyan, I. Mryglod and R. Folk,
+// Computer Physics Communications 146, 2002, 188: the position extended Forest-Ruth-like one), 1/26 of the error of the shortest such composition;
+// else `parts` times half a, c, half a, of `time` each.
+PC_FN Spin pc_composed(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_h, Real h, Mask fine, Real parts, Real time) {
   precise Real a1 = h * PC_REAL(0.1786178958448091); precise Real a2 = h * PC_REAL(-0.06626458266981849); precise Real a3 = h - (a1 + a2) * PC_REAL(2.0);
   precise Real c2 = h * PC_REAL(-0.2123418310626054); precise Real c1 = half_h - c2;
-  Spin s = pc_body_turn(pc_body_turn(start, a, rate_a, a1), c, rate_c, c1);
-  s = pc_body_turn(pc_body_turn(s, a, rate_a, a2), c, rate_c, c2);
-  s = pc_body_turn(pc_body_turn(s, a, rate_a, a3), c, rate_c, c2);
-  s = pc_body_turn(pc_body_turn(s, a, rate_a, a2), c, rate_c, c1);
-  return pc_body_turn(s, a, rate_a, a1);
+  precise Real half_time = time * PC_REAL(0.5);
+  Real zero = PC_REAL(0.0);
+  precise Real twice = parts + parts;
+  Real left = pc_select(fine, PC_REAL(5.0), twice);
+  Spin s = start;
+  for (uint i = 0u; i < 32u; i++) {
+    if (!PC_ANY(left > PC_REAL(0.5))) break;  // lint: allow (nothing turns any more)
+    Real fine_a = a2; Real fine_c = zero; Real plain_c = zero;
+    if (i == 0u || i == 4u) fine_a = a1;
+    if (i == 2u) fine_a = a3;
+    if (i == 0u || i == 3u) fine_c = c1;
+    if (i == 1u || i == 2u) fine_c = c2;
+    if ((i & 1u) == 0u) plain_c = time;
+    Mask on = left > PC_REAL(0.5);
+    s = pc_body_turn(s, a, rate_a, pc_select(on, pc_select(fine, fine_a, half_time), zero));
+    s = pc_body_turn(s, c, rate_c, pc_select(on, pc_select(fine, fine_c, plain_c), zero));
+    precise Real rest = left - PC_REAL(1.0); left = rest;
+  }
+  return s;
 }
 PC_FN Vec3 pc_times(Vec3 a, Vec3 b) { precise Real x = a.x * b.x; precise Real y = a.y * b.y; precise Real z = a.z * b.z; return Vec3(x, y, z); }
 // The direction of the momentum `before` as the body sees it after a turn: by one rotation, since a slender body's energy
@@ -102,17 +114,6 @@ PC_FN Turn pc_keep_energy(Turn turn, Vec3 inverse, Vec3 before, Real h, Mask the
   }
   return kept;
 }
-// The turn by `angle`, more than a radian, in its parts.
-PC_FN Spin pc_fast_turn(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real angle, Real h) {
-  Real parts = pc_parts(angle); precise Real span = h * pc_div(PC_REAL(8.0), pc_max(angle, PC_REAL(8.0)));
-  Real time = pc_div(span, parts); precise Real half_time = time * PC_REAL(0.5); Real left = parts; Spin s = start;
-  for (uint i = 0u; i < 16u; i++) {
-    s = pc_spin_select(left > PC_REAL(0.5), pc_strang(s, a, c, rate_a, rate_c, half_time, time), s);
-    precise Real rest = left - PC_REAL(1.0); left = rest;
-  }
-  return s;
-}
-
 PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   Vec3 inverse = moments.v;
   Mask first = moments.s < PC_REAL(0.5);
@@ -131,20 +132,21 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   precise Real half_h = h * PC_REAL(0.5);
   Spin start; start.turn.q = pc_quaternion(pc_zero3(), PC_REAL(1.0)); start.turn.fall = PC_REAL(0.0); start.pi = pc_rotate(pc_conjugate(q), l);
   precise Real world_time = im * h; Turn world = pc_turn(pc_scale(l, world_time));
-  if (!PC_ANY(pc_abs(rate_a) > PC_REAL(0.0))) return pc_change(world, q, pc_body_turn(start, c, rate_c, h).turn);  // lint: allow (what the rest makes of it)
   // how far the two turns go, squared (twice the energy bounds each momentum: Pi_c^2 <= 2 E I_c)
   precise Real twice = pc_dot(start.pi, pc_times(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
   Real inverse_a = pc_dot(a, inverse); Real inverse_c = pc_dot(c, inverse);
   Mask splits = pc_and(pc_abs(rate_a) > PC_REAL(0.0), pc_abs(rate_c) > PC_REAL(0.0));  // where not, the motion is exact
   Mask fast = pc_and(pc_or(square_a > inverse_a, square_c > inverse_c), splits);
   precise Real least_a = inverse_a * PC_FINE_TURN; precise Real least_c = inverse_c * PC_FINE_TURN;
-  Mask fine = pc_and(square_a > least_a, square_c > least_c); Mask plain = pc_select(fine, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); Spin s = start;
-  if (PC_ANY(fine)) s = pc_fourth_order(start, a, c, rate_a, rate_c, half_h, h);  // lint: allow (selected below)
-  if (PC_ANY(plain)) s = pc_spin_select(fine, s, pc_strang(start, a, c, rate_a, rate_c, half_h, h));  // lint: allow (other lanes keep what they have)
+  Mask turns = pc_and(square_a > least_a, square_c > least_c);
+  Mask fine = pc_select(fast, PC_REAL(0.0), pc_select(turns, PC_REAL(1.0), PC_REAL(0.0))) > PC_REAL(0.5);
+  Real parts = PC_REAL(1.0); Real time = h;
   if (PC_ANY(fast)) {  // lint: allow (other lanes keep what they have)
     precise Real a2 = square_a * pc_inverse_or_zero(inverse_a); precise Real c2 = square_c * pc_inverse_or_zero(inverse_c); Real angle = pc_sqrt(pc_max(a2, c2));
-    s = pc_spin_select(fast, pc_fast_turn(start, a, c, rate_a, rate_c, angle, h), s);
+    precise Real span = h * pc_div(PC_REAL(8.0), pc_max(angle, PC_REAL(8.0)));
+    parts = pc_select(fast, pc_parts(angle), parts); time = pc_select(fast, pc_div(span, parts), time);
   }
+  Spin s = pc_composed(start, a, c, rate_a, rate_c, half_h, h, fine, parts, time);
   precise Real kept_a = inverse_a * PC_KEPT_TURN; precise Real kept_c = inverse_c * PC_KEPT_TURN;
   Mask kept = pc_and(splits, pc_or(square_a > kept_a, square_c > kept_c)); Turn turn = s.turn;
   if (PC_ANY(kept)) turn = pc_keep_energy(turn, inverse, start.pi, h, kept);  // lint: allow (other lanes keep what they have)

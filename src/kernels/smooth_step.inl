@@ -68,30 +68,30 @@ PC_FN Real pc_smooth_rate(PC_IO Slot n, Slot up) {
   Vec3 c = pc_add(pc_sub(v, v_up), swung); pc_st3_tree(PC_PASS n, TREE_C, c);
   precise Real noise = (pc_length(v) + pc_length(v_up)) * PC_INFO(rounding); return pc_select(pc_length(c) > noise, PC_REAL(1.0), PC_REAL(0.0));
 }
-// Brings the velocities onto the pins, with the factor at the start.
-PC_FN void pc_smooth_onto_pins(PC_IO Slot m, Tree t) {
+// What brings the velocities onto the pins, with the factor at the start; 1 where any does.
+PC_FN Real pc_smooth_off_pins(PC_IO Slot m, Tree t) {
   Real open = PC_REAL(0.0);
   PC_NODES(k, 1u, t) { Slot n = PC_NODE(m, t.first + k); open = pc_max(open, pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)))); }
   PC_MOST(open);
-  if (PC_ANY(open > PC_REAL(0.5))) {  // lint: allow (a rate of nothing changes nothing)
-    PC_NODES(k, 0u, t) pc_smooth_restart(PC_PASS PC_NODE(m, t.first + k), open > PC_REAL(0.5));
-    PC_MEET;
-    PC_NODES(k, 1u, t) {
-      Slot n = PC_NODE(m, t.first + k); pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-      pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), open));
-    }
-    pc_tree_sweep(PC_PASS m, t, TREE_C, SMOOTH_V_SUM, PC_REAL(0.0));
-    PC_NODES(k, 0u, t) {
-      Slot n = PC_NODE(m, t.first + k); Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
-      pc_smooth_add(PC_PASS n, SMOOTH_V, SMOOTH_V_LOW, pc_ld3_tree(PC_PASS n, TREE_X)); pc_smooth_add(PC_PASS n, SMOOTH_L, SMOOTH_L_LOW, pc_scale(spun, PC_LD(tree_rows, n, TREE_TOTAL)));
-      pc_st3_tree(PC_PASS n, SMOOTH_W, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
-    }
-  }
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k); Vec3 zero = pc_zero3(); pc_st3_tree(PC_PASS n, SMOOTH_START, pc_ld3_tree(PC_PASS n, SMOOTH_L)); pc_st3_tree(PC_PASS n, SMOOTH_TURN, zero);
-    pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_TURN_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, zero);
-  }
+  if (!PC_ANY(open > PC_REAL(0.5))) return open;  // lint: allow (a rate of nothing changes nothing)
+  PC_NODES(k, 0u, t) pc_smooth_restart(PC_PASS PC_NODE(m, t.first + k), open > PC_REAL(0.5));
   PC_MEET;
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k); pc_smooth_rate(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), open));
+  }
+  return open;
+}
+// What that sweep has changed.
+PC_FN void pc_smooth_onto_pins(PC_IO Slot n) {
+  Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
+  pc_smooth_add(PC_PASS n, SMOOTH_V, SMOOTH_V_LOW, pc_ld3_tree(PC_PASS n, TREE_X)); pc_smooth_add(PC_PASS n, SMOOTH_L, SMOOTH_L_LOW, pc_scale(spun, PC_LD(tree_rows, n, TREE_TOTAL)));
+  pc_st3_tree(PC_PASS n, SMOOTH_W, pc_add(pc_ld3_tree(PC_PASS n, SMOOTH_W), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
+}
+// Where the first stage begins.
+PC_FN void pc_smooth_begin(PC_IO Slot n) {
+  Vec3 zero = pc_zero3(); pc_st3_tree(PC_PASS n, SMOOTH_START, pc_ld3_tree(PC_PASS n, SMOOTH_L)); pc_st3_tree(PC_PASS n, SMOOTH_TURN, zero);
+  pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_TURN_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, zero); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, zero);
 }
 
 // What acts on a node from outside of its pins, and what turning makes its pin open with.
@@ -184,19 +184,30 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_NODES(k, 0u, t) pc_smooth_start(PC_PASS PC_NODE(m, t.first + k));
   uint from = 1u;
   if (PC_ANY(pc_smooth_moves(PC_PASS root))) from = 0u;  // lint: allow (what stands stays as it is)
-  for (uint stage = 0u; stage < 4u; stage++) {
-    if (stage > 0u) PC_NODES(k, from, t) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
+  for (uint pass = 0u; pass < 5u; pass++) {  // onto the pins, and the four stages
+    if (pass > 1u) PC_NODES(k, from, t) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
     PC_MEET;
-    PC_NODES(k, 1u, t) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-    pc_factor(PC_PASS m, t, true);
-    if (stage == 0u) pc_smooth_onto_pins(PC_PASS m, t);
-    PC_NODES(k, from, t) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
-    PC_NODES(k, 1u, t) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-    pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, PC_REAL(0.0));
+    if (pass != 1u) {  // the first stage is where the pass before it was
+      PC_NODES(k, 1u, t) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+      pc_factor(PC_PASS m, t, true);
+    }
+    Real acts = one;
+    if (pass == 0u) {
+      acts = pc_smooth_off_pins(PC_PASS m, t);
+    } else {
+      PC_NODES(k, from, t) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
+      PC_NODES(k, 1u, t) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    }
+    if (PC_ANY(acts > PC_REAL(0.5))) pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, PC_REAL(0.0));  // lint: allow (as in pc_smooth_off_pins)
+    if (pass == 0u) {
+      if (PC_ANY(acts > PC_REAL(0.5))) PC_NODES(k, 0u, t) pc_smooth_onto_pins(PC_PASS PC_NODE(m, t.first + k));  // lint: allow (as above)
+      PC_NODES(k, 0u, t) pc_smooth_begin(PC_PASS PC_NODE(m, t.first + k));
+      continue;
+    }
     Real weight = one; Real way = one; Real next = half_h;
-    if (stage == 1u || stage == 2u) weight = two;
-    if (stage == 2u) next = h;
-    if (stage == 3u) way = PC_REAL(0.0);
+    if (pass == 2u || pass == 3u) weight = two;
+    if (pass == 3u) next = h;
+    if (pass == 4u) way = PC_REAL(0.0);
     PC_NODES(k, from, t) pc_smooth_gain(PC_PASS PC_NODE(m, t.first + k), weight, way, next);
   }
   // the root's way, and its velocity at the end

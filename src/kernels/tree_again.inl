@@ -1,6 +1,6 @@
 // After the contacts: the pins at the new prediction, with the same factor (Newton's second step, and what the contacts
 // have undone), again where a gap is left, a limit is crossed or one throws back; then the push that closes the gaps left over, which the relax
-// phase takes back once the bodies have moved by it.
+// phase takes back once the bodies have moved by it. All are rounds of one loop, so that compilers translate what they share once.
 #include "body_state.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
@@ -57,16 +57,22 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   }
   return lacks;
 }
-// 1 where some gap of the tree at the prediction is, or a limit has not thrown back yet. Run after pc_tree_residual.
-PC_FN Real pc_left(PC_IO Slot m, Tree t, Real share_squared) {
-  Real left = PC_REAL(0.0);
+// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit has not thrown back yet.
+struct Left { Real some; Real much; };
+// Run after pc_tree_residual.
+PC_FN Left pc_left(PC_IO Slot m, Tree t) {
+  precise Real share = PC_INFO(rounding) * PC_REAL(0.25);
+  precise Real noise = share * share;
+  Left left; left.some = PC_REAL(0.0); left.much = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    left = pc_max(left, pc_gap_over(PC_PASS n, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h)), share_squared));
-    left = pc_max(left, pc_limit_lacks(PC_PASS n, up));
+    Vec3 gap = pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h));
+    Real lacks = pc_limit_lacks(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    left.some = pc_max(left.some, pc_max(pc_gap_over(PC_PASS n, gap, noise), lacks));
+    left.much = pc_max(left.much, pc_max(pc_gap_over(PC_PASS n, gap, PC_REAL(2e-9)), lacks));
   }
-  PC_MOST(left);
+  PC_MOST(left.some);
+  PC_MOST(left.much);
   return left;
 }
 // 1 where a joint has angles that are locked, or its body turns about it: those are corrected whatever the pins.
@@ -77,22 +83,6 @@ PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
     for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
   PC_MOST(kind); return pc_select(kind > PC_REAL(1.5), PC_REAL(1.0), PC_REAL(0.0));
 }
-// One step of Newton's method on the pins at the prediction, where `wanted` is 1; nothing elsewhere.
-PC_FN void pc_newton_step(PC_IO Slot m, Tree t, Real wanted) {
-  PC_NODES(k, 1u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_again_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), wanted);
-    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
-  }
-  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
-  PC_NODES(k, 1u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
-    pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k)));
-  }
-  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
-}
-
 // What the push undoes of a joint's angles, as rates of its rows. 1 where there is any.
 PC_FN Real pc_push_angles(PC_IO Slot n) {
   Real any = PC_REAL(0.0);
@@ -111,84 +101,145 @@ PC_FN Real pc_push_angles(PC_IO Slot n) {
   }
   return any;
 }
-// What a sweep from TREE_C and TREE_RATE gives, to the bodies and to the push.
-PC_FN void pc_push(PC_IO Slot m, Tree t) {
+// What the push begins with: gaps of more than 32 epsilon of the arm are closed, and what is beyond its limits is turned back.
+struct Push { Real open; Real turned; };
+PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise) {
+  Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0);
+  Vec3 zero = pc_zero3();
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_ld3_tree(PC_PASS n, TREE_CHANGE));
-  }
-  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
-  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), pc_ld3_tree(PC_PASS n, TREE_X)));
-    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
-  }
-}
-// The push that closes gaps of more than 32 epsilon of the arm and turns back what is beyond its limits. Where it turns, the arms' arcs open
-// gaps again: those are closed with it.
-PC_FN void pc_push_gaps(PC_IO Slot m, Tree t) {
-  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0); Real turned = PC_REAL(0.0); Vec3 zero = pc_zero3();
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, zero); pc_st3_tree(PC_PASS n, TREE_CHANGE, zero);
-  }
-  PC_NODES(k, 1u, t) {
-    Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real here = pc_gap_over(PC_PASS n, gap, noise); open = pc_max(open, here);
-    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here)); turned = pc_max(turned, pc_push_angles(PC_PASS n));
-  }
-  if (pc_is_pivot(PC_PASS t) == 1u) { open = PC_REAL(0.0); turned = PC_REAL(0.0); }  // pivot_turn closes it
-  open = pc_max(open, turned); PC_MOST(open); PC_MOST(turned);
-  if (PC_ANY(open > PC_REAL(0.5))) pc_push(PC_PASS m, t);  // lint: allow (a push of nothing changes nothing)
-  if (PC_ANY(turned > PC_REAL(0.5))) {  // lint: allow (selected below)
-    pc_tree_residual(PC_PASS m, t, turned);
-    PC_NODES(k, 1u, t) {
-      Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP); Real here = pc_gap_over(PC_PASS n, gap, noise);
-      Vec3 left = pc_madd(pc_ld3_tree(PC_PASS n, TREE_C), pc_closing(PC_PASS gap), here);
-      pc_st3_tree(PC_PASS n, TREE_C, pc_scale(left, turned)); pc_st3_tree(PC_PASS n, TREE_RATE, zero);
+    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, zero);
+    pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, zero);
+    if (k > 0u) {
+      Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
+      Real here = pc_gap_over(PC_PASS n, gap, noise);
+      push.open = pc_max(push.open, here);
+      pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here));
+      push.turned = pc_max(push.turned, pc_push_angles(PC_PASS n));
     }
-    pc_push(PC_PASS m, t);
   }
-  PC_NODES(k, 0u, t) {  // the same whether other lanes pushed
-    Slot n = PC_NODE(m, t.first + k); Six none = pc_six(zero, zero);
-    pc_st6_tree(PC_PASS n, TREE_F, none); pc_st6_tree(PC_PASS n, TREE_X, none); pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, zero);
-    if (k > 0u) { pc_st3_tree(PC_PASS n, TREE_C, zero); pc_st3_tree(PC_PASS n, TREE_RATE, zero); pc_st3_tree(PC_PASS n, TREE_PUSH, zero); }
+  if (pc_is_pivot(PC_PASS t) == 1u) { push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0); }  // pivot_turn closes it
+  push.open = pc_max(push.open, push.turned);
+  PC_MOST(push.open);
+  PC_MOST(push.turned);
+  return push;
+}
+// Where it turns, the arms' arcs open gaps again: those are closed with it. Run after pc_tree_residual.
+PC_FN void pc_push_on(PC_IO Slot m, Tree t, Real noise, Real turned) {
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
+    Real here = pc_gap_over(PC_PASS n, gap, noise);
+    Vec3 left = pc_madd(pc_ld3_tree(PC_PASS n, TREE_C), pc_closing(PC_PASS gap), here);
+    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(left, turned));
+    pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
   }
 }
+// The same whether other lanes pushed.
+PC_FN void pc_end_push(PC_IO Slot m, Tree t) {
+  Vec3 zero = pc_zero3();
+  Six none = pc_six(zero, zero);
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN));
+    pc_st6_tree(PC_PASS n, TREE_F, none);
+    pc_st6_tree(PC_PASS n, TREE_X, none);
+    pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, zero);
+    if (k > 0u) {
+      pc_st3_tree(PC_PASS n, TREE_C, zero);
+      pc_st3_tree(PC_PASS n, TREE_RATE, zero);
+      pc_st3_tree(PC_PASS n, TREE_PUSH, zero);
+    }
+  }
+}
+
+// Rates of the angle rows, and pins where `wanted` is 1; nothing elsewhere.
+PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted) {
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_again_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), wanted);
+    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
+  }
+}
+// What a sweep gives, to the bodies, and to their joints or to the push.
+PC_FN void pc_give(PC_IO Slot m, Tree t, bool pushes) {
+  pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
+  if (!pushes) {
+    PC_NODES(k, 1u, t) {
+      Slot n = PC_NODE(m, t.first + k);
+      pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
+      pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k)));
+    }
+  }
+  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
+  if (pushes) {
+    PC_NODES(k, 0u, t) {
+      Slot n = PC_NODE(m, t.first + k);
+      pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), pc_ld3_tree(PC_PASS n, TREE_X)));
+      pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
+    }
+  }
+}
+// After Newton's steps where `steps` is 1: 1 where they have not found their way, or have thrown back more than there was; what is too much is
+// taken back. `thrown`: 1 where a limit threw back.
+PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps, Real thrown) {
+  Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
+  if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
+  // (of what is thrown back the energy before the solve tells, not what a stop has left of it)
+  strayed = pc_select(thrown > PC_REAL(0.5), PC_REAL(0.0), strayed);
+  Real kept = pc_select(strayed > PC_REAL(0.5), PC_REAL(0.0), PC_REAL(1.0));
+  if (PC_ANY(thrown > PC_REAL(0.5))) kept = pc_select(thrown > PC_REAL(0.5), pc_rebound_share(PC_PASS m, t), kept);  // lint: allow (nothing changes otherwise)
+  Real again = pc_select(kept < PC_REAL(1.0), steps, PC_REAL(0.0));
+  if (PC_ANY(again > PC_REAL(0.5))) pc_take_back(PC_PASS m, t, kept, again > PC_REAL(0.5));  // lint: allow (as above)
+  return again;
+}
+
+const uint ROUND_AGAIN = 4u;  // the first of two after what was taken back, and of two of the push; before, Newton's steps
+const uint ROUND_PUSH = 6u;
 
 // What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
 // 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m); precise Real share = PC_INFO(rounding) * PC_REAL(0.25); precise Real noise = share * share;
+  Tree t = pc_tree(PC_PASS m);
+  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
   PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
-  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0)); Real wanted = pc_max(pc_always_again(PC_PASS m, t), pc_left(PC_PASS m, t, noise));
-  Real steps = wanted;
-  if (PC_ANY(steps > PC_REAL(0.5))) pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
-  for (uint turn = 0u; turn < 4u; turn++) {
-    if (!PC_ANY(wanted > PC_REAL(0.5))) break;  // lint: allow (steps of nothing change nothing)
-    if (turn > 0u) pc_tree_residual(PC_PASS m, t, wanted);
-    Real left = pc_left(PC_PASS m, t, PC_REAL(2e-9));
-    pc_newton_step(PC_PASS m, t, wanted);
-    wanted = pc_min(wanted, left);
-  }
-  if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (as above)
-    Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
-    if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
-    // (of what is thrown back the energy before the solve tells, not what a stop has left of it)
-    Real thrown = pc_tree_is_thrown(PC_PASS m, t);
-    strayed = pc_select(thrown > PC_REAL(0.5), PC_REAL(0.0), strayed);
-    Real kept = pc_select(strayed > PC_REAL(0.5), PC_REAL(0.0), PC_REAL(1.0));
-    if (PC_ANY(thrown > PC_REAL(0.5))) kept = pc_select(thrown > PC_REAL(0.5), pc_rebound_share(PC_PASS m, t), kept);  // lint: allow (as above)
-    Real again = pc_select(kept < PC_REAL(1.0), steps, PC_REAL(0.0));
-    if (PC_ANY(again > PC_REAL(0.5))) {  // lint: allow (as above)
-      pc_take_back(PC_PASS m, t, kept, again > PC_REAL(0.5));
-      for (uint turn = 0u; turn < 2u; turn++) {
-        pc_tree_residual_to(PC_PASS m, t, again, PC_INFO(strayed_turn));
-        pc_newton_step(PC_PASS m, t, again);
+  Real wanted = PC_REAL(1.0);
+  Real steps = PC_REAL(0.0);
+  Real thrown = PC_REAL(0.0);
+  Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0);
+  for (uint round = 0u; round < 8u; round++) {
+    if (round == ROUND_AGAIN) {
+      wanted = PC_REAL(0.0);
+      if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
+        thrown = pc_min(pc_tree_is_thrown(PC_PASS m, t), steps);
+        wanted = pc_judge_steps(PC_PASS m, t, steps, thrown);
       }
     }
-    if (PC_ANY(thrown > PC_REAL(0.5))) pc_tell_blow(PC_PASS m, t, pc_and(steps > PC_REAL(0.5), thrown > PC_REAL(0.5)));  // lint: allow (as above)
+    if (round == ROUND_PUSH) {
+      if (PC_ANY(thrown > PC_REAL(0.5))) pc_tell_blow(PC_PASS m, t, thrown > PC_REAL(0.5));  // lint: allow (as above)
+      PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
+      push = pc_begin_push(PC_PASS m, t, noise);
+      wanted = push.open;
+    }
+    if (round > ROUND_PUSH) wanted = push.turned;
+    if (!PC_ANY(wanted > PC_REAL(0.5))) continue;  // lint: allow (rounds of nothing change nothing)
+    if (round != ROUND_PUSH) {
+      Real most = PC_REAL(1.0);
+      if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(strayed_turn);
+      pc_tree_residual_to(PC_PASS m, t, wanted, most);
+    }
+    Left left; left.some = PC_REAL(1.0); left.much = PC_REAL(1.0);
+    if (round < ROUND_AGAIN) left = pc_left(PC_PASS m, t);
+    if (round == 0u) {
+      wanted = pc_max(pc_always_again(PC_PASS m, t), left.some);
+      steps = wanted;
+      if (!PC_ANY(steps > PC_REAL(0.5))) continue;  // lint: allow (as above)
+      pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));
+    }
+    if (round < ROUND_PUSH) pc_newton_rates(PC_PASS m, t, wanted);
+    if (round > ROUND_PUSH) pc_push_on(PC_PASS m, t, noise, wanted);
+    pc_give(PC_PASS m, t, round >= ROUND_PUSH);
+    wanted = pc_min(wanted, left.much);
   }
-  PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
-  pc_push_gaps(PC_PASS m, t);
+  pc_end_push(PC_PASS m, t);
 }

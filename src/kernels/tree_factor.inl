@@ -35,14 +35,15 @@ PC_FN void pc_keep_seen(PC_IO Slot n) {
     PC_ST(tree_rows, n, TREE_SEEN + i, pc_select(anew, PC_LD(tree_rows, n, TREE_W + i), PC_LD(tree_rows, n, TREE_SEEN + i)));
 }
 #endif
-// What of a node's inertia its parent carries, at the parent's place.
+// Of that the parent takes its part, at its own place.
 PC_FN void pc_carry(PC_IO Slot n, Slot up, uint parent, Sym6 rest) {
   Mask free = PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0);
   if (parent == 0u && !PC_ANY(free)) return;  // lint: allow (of a fixed root it is not used)
   Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), pc_ld3_tree(PC_PASS n, TREE_RC));
   pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
 }
-PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
+// What of a node's inertia its parent carries.
+PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
   Real fast = pc_max(PC_LD(tree_rows, n, TREE_FAST), PC_LD(tree_rows, up, TREE_FAST));
   Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
   Mat3 ct = pc_transpose(h.c);
@@ -91,7 +92,7 @@ PC_FN void pc_factor_node(PC_IO Slot n, Slot up, uint parent) {
 #ifndef PC_SEEN
   pc_sts_tree(PC_PASS n, TREE_REST, rest.a);
 #endif
-  pc_carry(PC_PASS n, up, parent, rest);
+  return rest;
 }
 // `all`: of every node; else of those that are stale, and what others hand to them.
 PC_FN void pc_factor(PC_IO Slot m, Tree t, bool all) {
@@ -106,12 +107,14 @@ PC_FN void pc_factor(PC_IO Slot m, Tree t, bool all) {
   PC_MEET;
   PC_UP(k, t) {
     uint parent = pc_parent(PC_PASS t, k); Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + parent);
-    if (all || PC_ANY(pc_is_stale(PC_PASS n))) {  // lint: allow (others keep what they have)
-      pc_factor_node(PC_PASS n, up, parent);
-    } else if (PC_ANY(pc_is_stale(PC_PASS up))) {  // lint: allow (others keep what they have)
-      Sym6 rest; rest.l = pc_lds_tree(PC_PASS n, TREE_A); rest.c = pc_ldm_tree(PC_PASS n, TREE_A + 6u); rest.a = pc_lds_tree(PC_PASS n, TREE_REST);
-      pc_carry(PC_PASS n, up, parent, rest);
+    if (!all && !PC_ANY(pc_is_stale(PC_PASS up))) continue;  // lint: allow (others keep what they have)
+    Sym6 rest;
+    if (all || PC_ANY(pc_is_stale(PC_PASS n))) {  // lint: allow (as above)
+      rest = pc_factor_node(PC_PASS n, up);
+    } else {
+      rest.l = pc_lds_tree(PC_PASS n, TREE_A); rest.c = pc_ldm_tree(PC_PASS n, TREE_A + 6u); rest.a = pc_lds_tree(PC_PASS n, TREE_REST);
     }
+    pc_carry(PC_PASS n, up, parent, rest);
   }
   // a fixed root answers nothing
   Slot root = PC_NODE(m, t.first); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);

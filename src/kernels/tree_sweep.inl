@@ -32,7 +32,8 @@ PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
   PC_UP(k, t) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 gap = pc_ld3_tree(PC_PASS n, c);
-    Six w = pc_w_mul(PC_PASS n, pc_joint_push(PC_PASS n, f, rc, limits));
+    Vec3 push = pc_joint_push(PC_PASS n, f, rc, limits); Six w = pc_w_mul(PC_PASS n, push);
+    pc_st3_tree(PC_PASS n, TREE_F + 3u, push); pc_st3_tree(PC_PASS n, TREE_X, w.l);  // for the way down
     precise Vec3 l = f.l - w.l + pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), gap);
     precise Vec3 a = f.a - w.a + pc_mat_tmul(pc_ldm_tree(PC_PASS n, TREE_A + 6u), gap);
     Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc); Six sum = pc_ld6_tree(PC_PASS up, TREE_F);
@@ -44,14 +45,13 @@ PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
   PC_MEET;
   PC_DOWN(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Six above = pc_ld6_tree(PC_PASS up, TREE_X);
+    Six f = pc_ld6_tree(PC_PASS n, TREE_F); Vec3 w = pc_ld3_tree(PC_PASS n, TREE_X);
+    Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC); Six above = pc_ld6_tree(PC_PASS up, TREE_X);
     Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);
     precise Vec3 l = above.l + pc_cross(above.a, d) - pc_ld3_tree(PC_PASS n, c); Six a = pc_six(l, above.a);
-    Vec3 push = pc_joint_push(PC_PASS n, f, rc, limits);
-    Vec3 q = pc_sub(pc_factor_mul(pc_lds_tree(PC_PASS n, TREE_D), push), pc_w_tmul(PC_PASS n, TREE_W, a));
+    Vec3 q = pc_sub(pc_factor_mul(pc_lds_tree(PC_PASS n, TREE_D), f.a), pc_w_tmul(PC_PASS n, TREE_W, a));
     pc_st6_tree(PC_PASS n, TREE_X, pc_six(pc_add(l, pc_cross(rc, q)), pc_add(above.a, q)));
-    Six w = pc_w_mul(PC_PASS n, push);
-    precise Vec3 impulse = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), l) + pc_mat_mul(pc_ldm_tree(PC_PASS n, TREE_A + 6u), above.a) + w.l - f.l;
+    precise Vec3 impulse = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), l) + pc_mat_mul(pc_ldm_tree(PC_PASS n, TREE_A + 6u), above.a) + w - f.l;
     pc_st3_tree(PC_PASS n, pin, impulse);
   }
 }
