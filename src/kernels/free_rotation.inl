@@ -60,14 +60,13 @@ PC_FN Real pc_parts(Real angle) {
 }
 // The turns about a and c, one after the other. Where `fine`, in fourth order, five about a and four about c (I. Omelyan, I. Mryglod and R. Folk,
 // Computer Physics Communications 146, 2002, 188: the position extended Forest-Ruth-like one), 1/26 of the error of the shortest such composition;
-// else `parts` times half a, c, half a, of `time` each.
-PC_FN Spin pc_composed(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_h, Real h, Mask fine, Real parts, Real time) {
+// else `pairs` of a turn about each: half of `time` about a, all of it or none about c. One pair is what c alone needs.
+PC_FN Spin pc_composed(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_h, Real h, Mask fine, Real pairs, Real time) {
   precise Real a1 = h * PC_REAL(0.1786178958448091); precise Real a2 = h * PC_REAL(-0.06626458266981849); precise Real a3 = h - (a1 + a2) * PC_REAL(2.0);
   precise Real c2 = h * PC_REAL(-0.2123418310626054); precise Real c1 = half_h - c2;
   precise Real half_time = time * PC_REAL(0.5);
   Real zero = PC_REAL(0.0);
-  precise Real twice = parts + parts;
-  Real left = pc_select(fine, PC_REAL(5.0), twice);
+  Real left = pc_select(fine, PC_REAL(5.0), pairs);
   Spin s = start;
   for (uint i = 0u; i < 32u; i++) {
     if (!PC_ANY(left > PC_REAL(0.5))) break;  // lint: allow (nothing turns any more)
@@ -132,23 +131,29 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   precise Real half_h = h * PC_REAL(0.5);
   Spin start; start.turn.q = pc_quaternion(pc_zero3(), PC_REAL(1.0)); start.turn.fall = PC_REAL(0.0); start.pi = pc_rotate(pc_conjugate(q), l);
   precise Real world_time = im * h; Turn world = pc_turn(pc_scale(l, world_time));
-  // how far the two turns go, squared (twice the energy bounds each momentum: Pi_c^2 <= 2 E I_c)
-  precise Real twice = pc_dot(start.pi, pc_times(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
-  Real inverse_a = pc_dot(a, inverse); Real inverse_c = pc_dot(c, inverse);
   Mask splits = pc_and(pc_abs(rate_a) > PC_REAL(0.0), pc_abs(rate_c) > PC_REAL(0.0));  // where not, the motion is exact
-  Mask fast = pc_and(pc_or(square_a > inverse_a, square_c > inverse_c), splits);
-  precise Real least_a = inverse_a * PC_FINE_TURN; precise Real least_c = inverse_c * PC_FINE_TURN;
-  Mask turns = pc_and(square_a > least_a, square_c > least_c);
-  Mask fine = pc_select(fast, PC_REAL(0.0), pc_select(turns, PC_REAL(1.0), PC_REAL(0.0))) > PC_REAL(0.5);
-  Real parts = PC_REAL(1.0); Real time = h;
-  if (PC_ANY(fast)) {  // lint: allow (other lanes keep what they have)
-    precise Real a2 = square_a * pc_inverse_or_zero(inverse_a); precise Real c2 = square_c * pc_inverse_or_zero(inverse_c); Real angle = pc_sqrt(pc_max(a2, c2));
-    precise Real span = h * pc_div(PC_REAL(8.0), pc_max(angle, PC_REAL(8.0)));
-    parts = pc_select(fast, pc_parts(angle), parts); time = pc_select(fast, pc_div(span, parts), time);
+  Mask fine = PC_IS(0u); Mask kept = fine;
+  Real pairs = pc_select(pc_abs(rate_a) > PC_REAL(0.0), PC_REAL(2.0), PC_REAL(1.0)); Real time = h;
+  if (PC_ANY(splits)) {  // lint: allow (what the rest makes of others)
+    // how far the two turns go, squared (twice the energy bounds each momentum: Pi_c^2 <= 2 E I_c)
+    precise Real twice = pc_dot(start.pi, pc_times(start.pi, inverse)) * h * h; precise Real square_a = twice * rate_a * rate_a; precise Real square_c = twice * rate_c * rate_c;
+    Real inverse_a = pc_dot(a, inverse); Real inverse_c = pc_dot(c, inverse);
+    Mask fast = pc_and(pc_or(square_a > inverse_a, square_c > inverse_c), splits);
+    precise Real least_a = inverse_a * PC_FINE_TURN; precise Real least_c = inverse_c * PC_FINE_TURN;
+    Mask turns = pc_and(square_a > least_a, square_c > least_c);
+    fine = pc_select(fast, PC_REAL(0.0), pc_select(turns, PC_REAL(1.0), PC_REAL(0.0))) > PC_REAL(0.5);
+    if (PC_ANY(fast)) {  // lint: allow (other lanes keep what they have)
+      precise Real a2 = square_a * pc_inverse_or_zero(inverse_a); precise Real c2 = square_c * pc_inverse_or_zero(inverse_c); Real angle = pc_sqrt(pc_max(a2, c2));
+      precise Real span = h * pc_div(PC_REAL(8.0), pc_max(angle, PC_REAL(8.0)));
+      Real parts = pc_parts(angle);
+      precise Real all = parts + parts;
+      pairs = pc_select(fast, all, pairs); time = pc_select(fast, pc_div(span, parts), time);
+    }
+    precise Real kept_a = inverse_a * PC_KEPT_TURN; precise Real kept_c = inverse_c * PC_KEPT_TURN;
+    kept = pc_and(splits, pc_or(square_a > kept_a, square_c > kept_c));
   }
-  Spin s = pc_composed(start, a, c, rate_a, rate_c, half_h, h, fine, parts, time);
-  precise Real kept_a = inverse_a * PC_KEPT_TURN; precise Real kept_c = inverse_c * PC_KEPT_TURN;
-  Mask kept = pc_and(splits, pc_or(square_a > kept_a, square_c > kept_c)); Turn turn = s.turn;
+  Spin s = pc_composed(start, a, c, rate_a, rate_c, half_h, h, fine, pairs, time);
+  Turn turn = s.turn;
   if (PC_ANY(kept)) turn = pc_keep_energy(turn, inverse, start.pi, h, kept);  // lint: allow (other lanes keep what they have)
   return pc_change(world, q, turn);
 }
