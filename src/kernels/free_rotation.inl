@@ -61,7 +61,7 @@ PC_FN Real pc_parts(Real angle) {
 // The turns about a and c, one after the other. Where `fine`, in fourth order, five about a and four about c (I. Omelyan, I. Mryglod and R. Folk,
 // Computer Physics Communications 146, 2002, 188: the position extended Forest-Ruth-like one), 1/26 of the error of the shortest such composition;
 // else `pairs` of a turn about each: half of `time` about a, all of it or none about c. One pair is what c alone needs.
-PC_FN Spin pc_composed(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_h, Real h, Mask fine, Real pairs, Real time) {
+PC_FN Spin pc_composed_turns(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_h, Real h, Mask fine, Real pairs, Real time) {
   precise Real a1 = h * PC_REAL(0.1786178958448091); precise Real a2 = h * PC_REAL(-0.06626458266981849); precise Real a3 = h - (a1 + a2) * PC_REAL(2.0);
   precise Real c2 = h * PC_REAL(-0.2123418310626054); precise Real c1 = half_h - c2;
   precise Real half_time = time * PC_REAL(0.5);
@@ -113,6 +113,7 @@ PC_FN Turn pc_keep_energy(Turn turn, Vec3 inverse, Vec3 before, Real h, Mask the
   }
   return kept;
 }
+
 PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   Vec3 inverse = moments.v;
   Mask first = moments.s < PC_REAL(0.5);
@@ -152,7 +153,7 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
     precise Real kept_a = inverse_a * PC_KEPT_TURN; precise Real kept_c = inverse_c * PC_KEPT_TURN;
     kept = pc_and(splits, pc_or(square_a > kept_a, square_c > kept_c));
   }
-  Spin s = pc_composed(start, a, c, rate_a, rate_c, half_h, h, fine, pairs, time);
+  Spin s = pc_composed_turns(start, a, c, rate_a, rate_c, half_h, h, fine, pairs, time);
   Turn turn = s.turn;
   if (PC_ANY(kept)) turn = pc_keep_energy(turn, inverse, start.pi, h, kept);  // lint: allow (other lanes keep what they have)
   return pc_change(world, q, turn);

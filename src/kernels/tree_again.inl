@@ -57,7 +57,8 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   }
   return lacks;
 }
-// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit has not thrown back yet.
+// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit
+// has not thrown back yet.
 struct Left { Real some; Real much; };
 // Run after pc_tree_residual.
 PC_FN Left pc_left(PC_IO Slot m, Tree t) {
@@ -125,7 +126,7 @@ PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise) {
   return push;
 }
 // Where it turns, the arms' arcs open gaps again: those are closed with it. Run after pc_tree_residual.
-PC_FN void pc_push_on(PC_IO Slot m, Tree t, Real noise, Real turned) {
+PC_FN void pc_continue_push(PC_IO Slot m, Tree t, Real noise, Real turned) {
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
     Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
@@ -161,8 +162,8 @@ PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted) {
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
   }
 }
-// What a sweep gives, to the bodies, and to their joints or to the push.
-PC_FN void pc_give(PC_IO Slot m, Tree t, bool pushes) {
+// A sweep from TREE_C and TREE_RATE: what it changes goes to the bodies, its impulses to the joints, or its velocities to the push.
+PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool pushes) {
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
   if (!pushes) {
     PC_NODES(k, 1u, t) {
@@ -194,7 +195,8 @@ PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps, Real thrown) {
   return again;
 }
 
-const uint ROUND_AGAIN = 4u;  // the first of two after what was taken back, and of two of the push; before, Newton's steps
+// Rounds 0 to 3 are Newton's steps; two more follow where they were taken back, and two of the push.
+const uint ROUND_AGAIN = 4u;
 const uint ROUND_PUSH = 6u;
 
 // What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
@@ -237,8 +239,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
       pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));
     }
     if (round < ROUND_PUSH) pc_newton_rates(PC_PASS m, t, wanted);
-    if (round > ROUND_PUSH) pc_push_on(PC_PASS m, t, noise, wanted);
-    pc_give(PC_PASS m, t, round >= ROUND_PUSH);
+    if (round > ROUND_PUSH) pc_continue_push(PC_PASS m, t, noise, wanted);
+    pc_solve_round(PC_PASS m, t, round >= ROUND_PUSH);
     wanted = pc_min(wanted, left.much);
   }
   pc_end_push(PC_PASS m, t);

@@ -35,14 +35,14 @@ PC_FN void pc_keep_seen(PC_IO Slot n) {
     PC_ST(tree_rows, n, TREE_SEEN + i, pc_select(anew, PC_LD(tree_rows, n, TREE_W + i), PC_LD(tree_rows, n, TREE_SEEN + i)));
 }
 #endif
-// Of that the parent takes its part, at its own place.
+// The parent carries `rest` of a node's inertia (pc_factor_node), shifted to its own place.
 PC_FN void pc_carry(PC_IO Slot n, Slot up, uint parent, Sym6 rest) {
   Mask free = PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0);
   if (parent == 0u && !PC_ANY(free)) return;  // lint: allow (of a fixed root it is not used)
   Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), pc_ld3_tree(PC_PASS n, TREE_RC));
   pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
 }
-// What of a node's inertia its parent carries.
+// Factors a node; what is left of its inertia, H - W U^T, its parent carries.
 PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
   Real fast = pc_max(PC_LD(tree_rows, n, TREE_FAST), PC_LD(tree_rows, up, TREE_FAST));
   Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H); Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
