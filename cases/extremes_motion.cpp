@@ -7,7 +7,7 @@
 namespace pcphys::cases {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // ---- C3 ------------------------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@
 namespace pcphys::cases {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using Path = std::vector<Vec3>;
 
 /// Where all bodies are after each of these many steps, less `offset`, over `size`.

@@ -11,7 +11,7 @@
 namespace pcphys::cases {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // ---- A9 ------------------------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@
 namespace pcphys::cases {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 // ---- B5 ------------------------------------------------------------------------------------------------
 

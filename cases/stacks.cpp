@@ -8,7 +8,7 @@
 namespace pcphys::cases {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const std::vector<double> fine{1.0 / 240};
 
 Simulated& tower(Trial& trial, int count, double top_mass) {

@@ -14,7 +14,6 @@ namespace {
 
 using Arguments = const std::function<bool(const OwnArgument&)>&;
 
-std::string number(std::uint64_t value) { return std::to_string(value); }
 bool any(const OwnArgument&) { return true; }
 bool of_other(const OwnArgument& a) { return a.kind == OwnArgument::Kind::other; }
 bool not_of_other(const OwnArgument& a) { return !of_other(a); }
@@ -41,7 +40,7 @@ std::string store_changed(const OwnKernel& k, const OwnText& own, const std::str
 
 std::string element_main(const OwnKernel& k) {
   const OwnText own(k);
-  std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  std::string text = "layout(local_size_x = " + std::to_string(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint pc_k = gl_GlobalInvocationID.x + pc_range.x;\n  if (pc_k >= pc_range.y) return;\n";
   text += k.table == Table::body ? "  uint pc_row = io_bodies[pc_k];\n" : "  uint pc_row = pc_k;\n";
   text += own.load(any, "pc_row") + load_changed(k, own, "pc_row") + "  " + own.call();
@@ -51,7 +50,7 @@ std::string element_main(const OwnKernel& k) {
 // ---- what mains begin with -----------------------------------------------------------------------------
 const std::string uniforms = "uniform uvec2 pc_range;\nuniform uvec4 pc_work;\n";
 std::string begin_main(std::uint32_t local_size) {
-  return "layout(local_size_x = " + number(local_size) + ") in;\n" + uniforms + "void main() {\n";
+  return "layout(local_size_x = " + std::to_string(local_size) + ") in;\n" + uniforms + "void main() {\n";
 }
 const std::string own_row = "  uint pc_k = gl_GlobalInvocationID.x + pc_range.x;\n  bool pc_here = pc_k < pc_range.y;\n";
 std::string row_of(const OwnKernel& k, Buffer list) {
@@ -74,7 +73,7 @@ class Tile {
     std::string text;
     for (const auto& [type, count] : counts)
       for (std::uint32_t four = 0; four * 4 < count; four++)
-        text += "shared " + four_of(type) + " " + array(type, four) + "[" + number(KernelPairs::tile) + "];\n";
+        text += "shared " + four_of(type) + " " + array(type, four) + "[" + std::to_string(KernelPairs::tile) + "];\n";
     return text;
   }
   /// Component c of an argument, of row `index` of the tile.
@@ -87,7 +86,7 @@ class Tile {
   }
 
  private:
-  static std::string array(const std::string& type, std::uint32_t four) { return "pc_tile_" + type + "_" + number(four); }
+  static std::string array(const std::string& type, std::uint32_t four) { return "pc_tile_" + type + "_" + std::to_string(four); }
   template <class Function> void each(const Function& function) const {
     std::map<std::string, std::uint32_t> next;
     for (const OwnArgument& a : k_.arguments)
@@ -113,10 +112,10 @@ std::string sum_tile(const OwnKernel& k, const Tile& tile) {
   pair += clear(k, "") + "  " + own.call() + combine(k, "pc_part_", "");
   const std::uint32_t unrolled =
       k.real_bytes == 8 ? 1 : 8;  // what one pair waits for others fill; in double they only make the text long
-  const std::string full = number(KernelPairs::tile) + "u";
+  const std::string full = std::to_string(KernelPairs::tile) + "u";
   std::string text = "  if (pc_count == " + full + " && pc_self >= " + full + ") {\n";
-  text += "  for (uint pc_i = 0u; pc_i < " + full + "; pc_i += " + number(unrolled) + "u) {\n";
-  for (std::uint32_t i = 0; i < unrolled; i++) text += "  { uint pc_j = pc_i + " + number(i) + "u;\n" + pair + "  }\n";
+  text += "  for (uint pc_i = 0u; pc_i < " + full + "; pc_i += " + std::to_string(unrolled) + "u) {\n";
+  for (std::uint32_t i = 0; i < unrolled; i++) text += "  { uint pc_j = pc_i + " + std::to_string(i) + "u;\n" + pair + "  }\n";
   text += "  }\n  } else {\n  for (uint pc_j = 0u; pc_j < pc_count; pc_j++) {\n  if (pc_j == pc_self) continue;\n" + pair;
   return text + "  }\n  }\n";
 }
@@ -126,7 +125,7 @@ std::string all_pairs_main(const OwnKernel& k) {
   const OwnText own(k);
   const Tile shared(k);
   const bool bodies = k.table == Table::body;
-  const std::string tile = number(KernelPairs::tile) + "u";
+  const std::string tile = std::to_string(KernelPairs::tile) + "u";
   std::string text = shared.declarations() + begin_main(KernelPairs::tile) + own_row + row_of(k, Buffer::bodies);
   text += own.load(not_of_other, "pc_row") + declare_sums(k, "pc_sum_") + declare_sums(k, "pc_part_") + clear(k, "pc_sum_");
   text += bodies ? "  uint pc_place = io_bodies_by_id[pc_row];\n" : "  uint pc_place = pc_row - 1u;\n";
@@ -147,7 +146,7 @@ std::string all_pairs_main(const OwnKernel& k) {
 
 std::string near_pairs_main(const OwnKernel& k) {
   const OwnText own(k);
-  const std::string length = number(quads(Buffer::pose)) + "u";
+  const std::string length = std::to_string(quads(Buffer::pose)) + "u";
   std::string text = "uniform Real pc_cutoff_squared;\n" + begin_main(KernelPairs::tile) + own_row + "  if (!pc_here) return;\n";
   text += row_of(k, Buffer::bodies) + own.load(not_of_other, "pc_row") + declare_sums(k, "pc_sum_") + clear(k, "pc_sum_");
   text += "  Real4 pc_centre = io_pose[pc_row * " + length + "];\n";
@@ -185,7 +184,7 @@ std::string joined_main(const OwnKernel& k) {
   constexpr const char* rows[] = {"pc_row", "pc_row_a", "pc_row_b"};
   std::string text = begin_main(gl_work_group) + own_row + "  if (!pc_here) return;\n";
   for (std::uint8_t i = 0; i < 3; i++)
-    text += std::string("  uint ") + rows[i] + " = io_joined[3u * pc_k + " + number(i) + "u];\n";
+    text += std::string("  uint ") + rows[i] + " = io_joined[3u * pc_k + " + std::to_string(i) + "u];\n";
   for (std::uint8_t i = 0; i < 3; i++) text += own.load([&](const OwnArgument& a) { return a.of_three() == i; }, rows[i]);
   text += load_changed(k, own, "pc_row") + clear(k, "") + "  " + own.call() + store_changed(k, own, "pc_row");
   return text + "  pc_stride = pc_work.z;\n" + put(k, "", "pc_row") + "}\n";
@@ -212,7 +211,7 @@ std::string ends_main(const OwnKernel& k) {
 // ---- all rows to one value ----------------------------------------------------------------------------
 std::string shared_values(const OwnKernel& k) {
   return for_sums(k, [&](const OwnArgument& a, const std::string&, const std::string& word) {
-    return "shared " + OwnText::number_type(a.type) + " pc_shared_" + word + "[" + number(reduction_block) + "];\n";
+    return "shared " + OwnText::number_type(a.type) + " pc_shared_" + word + "[" + std::to_string(reduction_block) + "];\n";
   });
 }
 /// A value of each invocation of the first `count` to one, that of the first; in `sum_`.
@@ -220,7 +219,7 @@ std::string reduce_block(const OwnKernel& k) {
   std::string text = for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
     return "  pc_shared_" + word + "[pc_lane] = pc_sum_" + a.name + part + ";\n";
   });
-  text += "  for (uint pc_step = 1u; pc_step < " + number(reduction_block) + "u; pc_step *= 2u) {\n  barrier();\n";
+  text += "  for (uint pc_step = 1u; pc_step < " + std::to_string(reduction_block) + "u; pc_step *= 2u) {\n  barrier();\n";
   text += "  if (pc_lane % (2u * pc_step) == 0u && pc_lane + pc_step < pc_count) {\n";
   text += for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string& word) {
     const std::string sum = "pc_sum_" + a.name + part, values = "pc_shared_" + word;
@@ -236,13 +235,13 @@ std::string values_main(const OwnKernel& k) {
   const Buffer list = k.table == Table::joint ? Buffer::joints_by_id : Buffer::moving_by_id;
   std::string text = shared_values(k) + begin_main(reduction_block) + own_row + row_of(k, list);
   text += "  uint pc_lane = gl_LocalInvocationID.x;\n  uint pc_count = min(pc_range.y - (pc_k - pc_lane), " +
-          number(reduction_block) + "u);\n";
+          std::to_string(reduction_block) + "u);\n";
   text += own.load(any, "pc_row") + declare_sums(k, "pc_sum_") + clear(k, "") + "  " + own.call();
   text += for_sums(k, [&](const OwnArgument& a, const std::string& part, const std::string&) {
     return "  pc_sum_" + a.name + part + " = " + a.name + part + ";\n";
   });
   text += reduce_block(k) + "  pc_stride = pc_work.z;\n  if (pc_lane == 0u) {\n";
-  return text + put(k, "pc_sum_", "(pc_k - pc_work.w) / " + number(reduction_block) + "u") + "  }\n}\n";
+  return text + put(k, "pc_sum_", "(pc_k - pc_work.w) / " + std::to_string(reduction_block) + "u") + "  }\n}\n";
 }
 
 /// pc_work: the first value, how many, room for values, where the next level goes. pc_range.y: not 0 of the last level.
@@ -250,7 +249,7 @@ std::string levels_main(const OwnKernel& k) {
   const OwnText own(k);
   std::string text = shared_values(k) + begin_main(reduction_block);
   text += "  uint pc_k = gl_GlobalInvocationID.x, pc_lane = gl_LocalInvocationID.x;\n";
-  text += "  uint pc_count = min(pc_work.y - min(pc_k - pc_lane, pc_work.y), " + number(reduction_block) + "u);\n";
+  text += "  uint pc_count = min(pc_work.y - min(pc_k - pc_lane, pc_work.y), " + std::to_string(reduction_block) + "u);\n";
   text += "  pc_stride = pc_work.z;\n" + declare_sums(k, "pc_sum_") + clear(k, "pc_sum_");
   text += "  if (pc_lane < pc_count) {\n" + get(k, "pc_sum_", "pc_work.x + pc_k") + "  }\n" + reduce_block(k);
   text +=
@@ -280,7 +279,7 @@ std::string second_main(const OwnKernel& k) {
 /// A joined text has no lines to speak of: its statements are counted instead.
 Status add_body(const OwnKernel& k, SourceText& text) {
   if (k.own_lines) return text.add_text(k.body, k.file, std::uint32_t(k.line));
-  return text.add_text(by_statement(k.body), k.file + ":" + number(std::uint64_t(k.line)) + std::string(counted_by_statement), 1);
+  return text.add_text(by_statement(k.body), k.file + ":" + std::to_string(k.line) + std::string(counted_by_statement), 1);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 namespace pcphys {
 namespace {
 
-std::string number(std::uint64_t value) { return std::to_string(value); }
 bool wide(const OwnKernel& k, PropertyType type) { return number_words(type, k.real_bytes) == 2; }
 
 }  // namespace
@@ -18,7 +17,7 @@ std::string for_sums(const OwnKernel& k, const EachNumber& each) {
   for (const OwnArgument& a : k.arguments) {
     if (!a.summed()) continue;
     text += OwnText::for_parts(a.type, [&](std::uint32_t, const std::string& part) {
-      const std::string at = number(word) + "u";
+      const std::string at = std::to_string(word) + "u";
       word += number_words(a.type, k.real_bytes);
       return each(a, part, at);
     });
@@ -89,7 +88,7 @@ std::string apply(const OwnKernel& k, const OwnText& own) {
 }
 
 std::string sums_block(const OwnKernel& k, std::size_t binding) {
-  std::string text = "layout(std430, binding = " + number(binding) + ") restrict buffer Block_sums { uint io_sums[]; };\n";
+  std::string text = "layout(std430, binding = " + std::to_string(binding) + ") restrict buffer Block_sums { uint io_sums[]; };\n";
   text += "uint pc_stride;\n";
   text += "void pc_put(uint word, uint pc_i, uint x) { io_sums[word * pc_stride + pc_i] = x; }\n";
   text += "void pc_put(uint word, uint pc_i, int x) { io_sums[word * pc_stride + pc_i] = uint(x); }\n";

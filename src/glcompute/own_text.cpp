@@ -7,7 +7,6 @@
 namespace pcphys {
 namespace {
 
-std::string number(std::uint64_t value) { return std::to_string(value); }
 /// Of one element of a buffer that holds nothing but such numbers.
 bool single(PropertyType type) { return components(type) == 1; }
 
@@ -61,7 +60,7 @@ std::string OwnText::blocks(std::span<const Access> accesses) const {
     if (is_own(access.buffer) && single(user_of(access.buffer).type)) element = type(user_of(access.buffer).type);
     if (!of_table(access.buffer)) element = "uint";
     const std::string name = label(access.buffer);
-    text += "layout(std430, binding = " + number(binding++) + ") restrict " + (access.write ? "" : "readonly ") +
+    text += "layout(std430, binding = " + std::to_string(binding++) + ") restrict " + (access.write ? "" : "readonly ") +
             "buffer Block_" + name + " { " + element + " io_" + name + "[]; };\n";
   }
   return text;
@@ -72,7 +71,7 @@ std::string OwnText::variables() const {
   for (const OwnArgument& a : k_.arguments) {
     if (!a.of_property() && !a.given)
       for (std::uint32_t c = 0; c < components(a.type); c++)
-        text += "uniform " + number_type(a.type) + " pc_" + a.name + "_" + number(c) + ";\n";
+        text += "uniform " + number_type(a.type) + " pc_" + a.name + "_" + std::to_string(c) + ";\n";
     if (a.writes()) text += precise(a) + type(a.type) + " " + a.name + ";\n";
   }
   return text;
@@ -94,7 +93,7 @@ std::string OwnText::call() const {
 
 std::string OwnText::place(const OwnArgument& a, std::uint32_t c, const std::string& row) const {
   if (!a.of_property()) {
-    if (!a.given) return "pc_" + a.name + "_" + number(c);
+    if (!a.given) return "pc_" + a.name + "_" + std::to_string(c);
     constexpr const char* gravity[] = {"gravity_x", "gravity_y", "gravity_z"};
     const char* const h = k_.once_a_step ? "step" : "h";
     return std::string("pc_info.") + (a.name == "h" ? h : gravity[c]);
@@ -102,7 +101,7 @@ std::string OwnText::place(const OwnArgument& a, std::uint32_t c, const std::str
   const std::string array = "io_" + label(a.buffer), at_row = a.single ? "1u" : row;
   if (is_own(a.buffer) && single(a.type)) return array + "[" + at_row + "]";
   const std::uint32_t at = a.offset / std::uint32_t(k_.real_bytes) + c, quad_bytes = std::uint32_t(k_.real_bytes << 2);
-  return array + "[PC_QUAD_AT(" + at_row + ", " + number(a.row_bytes / quad_bytes) + "u, " + number(at / 4) + "u)]." +
+  return array + "[PC_QUAD_AT(" + at_row + ", " + std::to_string(a.row_bytes / quad_bytes) + "u, " + std::to_string(at / 4) + "u)]." +
          "xyzw"[at % 4];
 }
 

@@ -166,6 +166,7 @@ Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, c
     glDeleteProgram(*program);
     return status.error();
   }
+  glProgramUniform1i(*program, glGetUniformLocation(*program, "pc_scattered"), options.scattered);  // none where nothing is shared
   return KernelProgram{*program, glGetUniformLocation(*program, "pc_range")};
 }
 

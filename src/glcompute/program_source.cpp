@@ -7,7 +7,6 @@
 namespace pcphys {
 namespace {
 
-std::string number(std::uint64_t value) { return std::to_string(value); }
 
 /// Elements as the prelude's macros take them.
 std::string element(Buffer buffer, Precision precision) {
@@ -22,12 +21,12 @@ std::string buffer_declarations(const KernelSchema& kernel, Precision precision,
   for (const Access& access : kernel.accesses) {
     const BufferSchema& buffer = schema(access.buffer);
     const std::string label(buffer.name);
-    text += "layout(std430, binding = " + number(binding++) + ") restrict " +
+    text += "layout(std430, binding = " + std::to_string(binding++) + ") restrict " +
             (!access.write ? "readonly "
              : shared      ? "coherent "
                            : "") +
             "buffer Block_" + label + " { " + element(access.buffer, precision) + " io_" + label + "[]; };\n";
-    if (buffer.reals != 0) text += "#define quads_" + label + " " + number(quads(access.buffer)) + "u\n";
+    if (buffer.reals != 0) text += "#define quads_" + label + " " + std::to_string(quads(access.buffer)) + "u\n";
   }
   return text;
 }
@@ -36,7 +35,7 @@ std::string main_text(Domain domain, bool shared) {
   if (shared)
     return "layout(local_size_x = PC_TEAM) in;\nuniform uvec2 pc_range;\nvoid main() { pc_kernel(Slot(gl_WorkGroupID.x + "
            "pc_range.x, 0u)); }\n";
-  std::string text = "layout(local_size_x = " + number(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  std::string text = "layout(local_size_x = " + std::to_string(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
   text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n"
           : one_by_one(domain)   ? "  pc_kernel(k);\n"
@@ -61,7 +60,7 @@ Result<ProgramSource> kernel_source(Kernel kernel, const SourceOptions& options)
   const bool shared = is_shared(kernel, options);
   SourceText text(options.precision);
   text.add(source_head(options));
-  if (shared) text.add("#define PC_TEAM " + number(options.team) + "u\n" + (options.scattered ? "#define PC_SCATTERED\n" : ""));
+  if (shared) text.add("#define PC_TEAM " + std::to_string(options.team) + "u\n");
   if (Status status = text.include("prelude.glsl"); !status) return status.error();
   text.add("#line 1 0\n" + buffer_declarations(what, options.precision, shared) + info_declaration());
   if (shared)

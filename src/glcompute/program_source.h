@@ -26,7 +26,7 @@ struct SourceOptions {
   RoundingForm square_root = RoundingForm::builtin;
   std::uint32_t lanes = gl_width;  // of a block
   std::uint32_t team = 1;          // invocations that share a block of one lane, where a kernel's text says how
-  bool scattered = false;          // in another order, see GlTeam
+  bool scattered = false;          // in another order, see GlTeam; of no text: a uniform of the programs says it
 };
 
 struct ProgramSource {

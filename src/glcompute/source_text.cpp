@@ -10,7 +10,6 @@
 namespace pcphys {
 namespace {
 
-std::string number(std::uint64_t value) { return std::to_string(value); }
 
 const char* form_suffix(RoundingForm form) { return form == RoundingForm::none ? "builtin" : name(form); }
 
@@ -62,7 +61,7 @@ Status SourceText::constants(std::string_view text, std::string_view file, std::
     double value = 0;
     const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (code != std::errc() || end == text.data() + text.size() || *end != ')')
-      return Error{ErrorCode::bad_argument, "PC_REAL at " + std::string(file) + ":" + number(at) +
+      return Error{ErrorCode::bad_argument, "PC_REAL at " + std::string(file) + ":" + std::to_string(at) +
                                                 " holds no decimal number; write one, such as PC_REAL(0.5)."};
     text_ += literal(value);
     text.remove_prefix(std::size_t(end - text.data()) + 1);
@@ -96,7 +95,7 @@ std::string SourceText::literal(double value) const {
 std::string source_head(const SourceOptions& options) {
   std::string text = "#version 430\n";
   if (options.precision == Precision::f64) text += "#define PC_DOUBLE\n";
-  text += "#define PC_W " + number(options.lanes) + "u\n";
+  text += "#define PC_W " + std::to_string(options.lanes) + "u\n";
   text += std::string("#define pc_div pc_div_") + form_suffix(options.division) + "\n";
   text += std::string("#define pc_sqrt pc_sqrt_") + form_suffix(options.square_root) + "\n";
   return text;

@@ -1,10 +1,7 @@
 // The loops of nodes.inl where the PC_TEAM invocations of a work group share a tree. Lists of the tree stand at t.at of tree_blocks (plan/forest.h,
 // Levels): spans of nodes, levels one after the other, and groups of brothers. A span that is not shared (a chain) is of one invocation.
-#ifdef PC_SCATTERED
-#define PC_RANK ((gl_LocalInvocationIndex * 13u + 7u) % PC_TEAM)
-#else
-#define PC_RANK gl_LocalInvocationIndex
-#endif
+uniform bool pc_scattered;  // not in the order of the invocations
+#define PC_RANK (pc_scattered ? (gl_LocalInvocationIndex * 13u + 7u) % PC_TEAM : gl_LocalInvocationIndex)
 shared Real pc_found[PC_TEAM];
 
 void pc_meet() { groupMemoryBarrier(); barrier(); }

@@ -11,10 +11,6 @@ using namespace pcphys;
 
 namespace {
 
-Outcome of(const Status& status) {
-  if (status) return {};
-  return {status.error().code, {}, status.error().message};
-}
 /// What was made has a place among the host's ids, whether it was refused or not: so places agree.
 template <class Id> Outcome keep(std::vector<Id>& ids, const Result<Id>& made) {
   ids.push_back(made ? *made : Id{});

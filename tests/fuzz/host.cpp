@@ -8,6 +8,11 @@ namespace fuzz {
 
 using namespace pcphys;
 
+Outcome of(const Status& status) {
+  if (status) return {};
+  return {status.error().code, {}, status.error().message};
+}
+
 bool same(const Outcome& a, const Outcome& b) {
   const auto alike = [](double x, double y) {
     return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || x == y || (std::isnan(x) && std::isnan(y));
@@ -38,13 +43,6 @@ void Host::renew() {
     for (const KernelDef& def : kernels_) (void)steppers_.back().add_kernel(world, def);
   }
 }
-
-namespace {
-Outcome of(const Status& status) {
-  if (status) return {};
-  return {status.error().code, {}, status.error().message};
-}
-}  // namespace
 
 Outcome Host::configure(const StepSettings& settings) {
   const StepSettings before = settings_;

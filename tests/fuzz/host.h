@@ -29,6 +29,7 @@ struct Outcome {
 };
 /// Whether both are the same, to the bit; the sign of zero is none.
 bool same(const Outcome& a, const Outcome& b);
+Outcome of(const pcphys::Status& status);
 
 class Host {
  public:

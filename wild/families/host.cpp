@@ -353,21 +353,21 @@ constexpr Host::Act of_settings[] = {&Host::configure, &Host::fall_otherwise, &H
 constexpr Host::Act of_forces[] = {&Host::drive,     &Host::retune,       &Host::weigh,
                                    &Host::add_force, &Host::remove_force, &Host::push};
 constexpr Host::Act of_pairs[] = {&Host::filter, &Host::part, &Host::coat, &Host::make_joint, &Host::destroy_joint};
-constexpr Host::Act all[] = {
+constexpr Host::Act all_acts[] = {
     &Host::place,      &Host::push,  &Host::stop,        &Host::make,          &Host::destroy_body,
     &Host::make_joint, &Host::drive, &Host::make_spring, &Host::destroy_joint, &Host::destroy_spring,
     &Host::add_force,  &Host::weigh, &Host::coat,        &Host::remove_force,  &Host::drag,
     &Host::filter,     &Host::part,  &Host::retune,      &Host::configure,     &Host::fall_otherwise,
     &Host::keep_awake, &Host::wake,  &Host::save,        &Host::restore,
 };
-constexpr std::span<const Host::Act> kinds[] = {all, all, of_state, of_structure, of_settings, of_forces, of_pairs};
+constexpr std::span<const Host::Act> kinds_of_calls[] = {all_acts, all_acts, of_state, of_structure, of_settings, of_forces, of_pairs};
 
 }  // namespace
 
 void draw_host(Builder& b) {
   Host host(b);
   host.build();
-  host.play(kinds[b.dice.one_of(int(std::size(kinds)))]);
+  host.play(kinds_of_calls[b.dice.one_of(int(std::size(kinds_of_calls)))]);
 }
 
 }  // namespace pcphys::wild

@@ -13,7 +13,7 @@
 namespace pcphys::wild {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// None, that of the Earth, or any other.
 void draw_gravity(Builder& b, double none) {
@@ -374,7 +374,7 @@ void draw_cart(Builder& b) {
 }
 
 /// Trees and ropes, which have the most to vary, twice.
-constexpr void (*kinds[])(Builder&) = {
+constexpr void (*kinds_of_joints[])(Builder&) = {
     draw_free_tree, draw_hung_tree, draw_held_rope, draw_dropped_rope, draw_spun_rope,
     draw_loop,      draw_net,       draw_hub,       draw_bridge,       draw_contradiction,
     draw_stops,     draw_cart,      draw_free_tree, draw_hung_tree,    draw_held_rope,
@@ -383,8 +383,8 @@ constexpr void (*kinds[])(Builder&) = {
 }  // namespace
 
 void draw_joints(Builder& b) {
-  const int kind = b.dice.one_of(int(std::size(kinds)));
-  kinds[kind](b);
+  const int kind = b.dice.one_of(int(std::size(kinds_of_joints)));
+  kinds_of_joints[kind](b);
 }
 
 }  // namespace pcphys::wild

@@ -13,7 +13,7 @@
 namespace pcphys::wild {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// A sphere about the middle of the human's height that holds all of it [m].
 constexpr double middle = 0.95, outer = 1.08;
 constexpr int bones = 12;
@@ -250,14 +250,14 @@ void draw_crushed(Builder& b) {
   b.steps(steps - steps / 3, dt);
 }
 
-constexpr void (*kinds[])(Builder&) = {draw_dropped, draw_thrown, draw_drum,   draw_on_bridge,
+constexpr void (*kinds_of_ragdolls[])(Builder&) = {draw_dropped, draw_thrown, draw_drum,   draw_on_bridge,
                                        draw_by_hand, draw_pulled, draw_crushed};
 
 }  // namespace
 
 void draw_ragdolls(Builder& b) {
-  const int kind = b.dice.one_of(int(std::size(kinds)));
-  kinds[kind](b);
+  const int kind = b.dice.one_of(int(std::size(kinds_of_ragdolls)));
+  kinds_of_ragdolls[kind](b);
 }
 
 }  // namespace pcphys::wild

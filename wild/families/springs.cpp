@@ -13,7 +13,7 @@
 namespace pcphys::wild {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Of all springs of a scene.
 struct Law {
@@ -292,14 +292,14 @@ void draw_parallel(Builder& b) {
   play(b, 2000);
 }
 
-constexpr void (*kinds[])(Builder&) = {draw_web,     draw_web,  draw_lattice, draw_dragged_chain, draw_hung,
+constexpr void (*kinds_of_springs[])(Builder&) = {draw_web,     draw_web,  draw_lattice, draw_dragged_chain, draw_hung,
                                        draw_in_room, draw_star, draw_ring,    draw_parallel};
 
 }  // namespace
 
 void draw_springs(Builder& b) {
-  const int kind = b.dice.one_of(int(std::size(kinds)));
-  kinds[kind](b);
+  const int kind = b.dice.one_of(int(std::size(kinds_of_springs)));
+  kinds_of_springs[kind](b);
 }
 
 }  // namespace pcphys::wild
