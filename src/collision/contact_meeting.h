@@ -194,22 +194,20 @@ template <class Scalar> struct Detector::Meeting {
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
     c.touches = c.gap <= (!quick && (c.acts || settles(m)) ? seam_share * thick : near);
-    double t = 0;
+    double t = 0, seen = 0;
     bool meets = c.touches;
     if (!c.touches) {
       if (c.gap > goes) return stand_aside();
       const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
         look_at(x, y, z);
       };
-      Manifold<Scalar> met = m;
-      t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, met);
+      t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, m, &seen);
       meets = t >= 0;
       if (!meets && c.gap > sent) return stand_aside();
-      if (meets) m = met;  // else the rows stop what others send them beyond the gap of now
     }
     find_together(m, c.touches ? seam_share * thick : near);
     to_light_side(m, share);
-    if (!c.touches && meets) back_to_start(ta, tb, apart, share, t, m);
+    if (!c.touches) back_to_start(ta, tb, apart, share, seen, m);
     c.struck = !c.jointed && (!c.touches || quick);
     write(m, std::max(t, 0.0), c.jointed ? -1 : c.struck ? std::max(t, 1e-9 * h) : 0);
   }

@@ -120,7 +120,7 @@ enum class Advanced { apart, together, creeps };
 /// there. As long as they are apart along the normal that was found last they need no look for another. Bounded: it creeps where shapes turn
 /// fast for how they come together.
 template <class Scalar, class Find>
-Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m) {
+Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m, double& seen) {
   constexpr int looks = 16, along = 8;
   for (int k = 0; k < looks; k++) {
     double gap = way.gap(m);
@@ -134,6 +134,7 @@ Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, 
       gap = double(support_gap(way.here, way.there, m.normal));
     }
     if (!way.look(t, m)) return Advanced::apart;
+    seen = t;
   }
   return Advanced::creeps;
 }
@@ -152,7 +153,8 @@ template <class Scalar, class Find> double cores_meet(const Approach<Scalar, Fin
   Approach<Scalar, Find> way{movers[0], movers[1], of.apart, of.find, {}, {}};
   Manifold<Scalar> m;
   if (!way.look(t, m)) return -1;
-  return advance(way, near, h, t, m) == Advanced::together ? t : -1;
+  double seen = t;
+  return advance(way, near, h, t, m, seen) == Advanced::together ? t : -1;
 }
 
 /// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there;
@@ -160,13 +162,14 @@ template <class Scalar, class Find> double cores_meet(const Approach<Scalar, Fin
 /// inside of them meets. What is missed all the same the next sub-step sees.
 template <class Scalar, class Find>
 double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h,
-                   Find&& find, Manifold<Scalar>& m) {
+                   Find&& find, Manifold<Scalar>& m, double* seen = nullptr) {
   constexpr int halvings = 20;
   Approach<Scalar, std::remove_reference_t<Find>> way{a, b, apart, find, {}, {}};
-  double t = from;
+  double t = from, at = from;
   if (from > 0 && !way.look(t, m)) return -1;
   if (from == 0) way.go_to(t);  // what is there is known
-  const Advanced advanced = advance(way, near, h, t, m);
+  const Advanced advanced = advance(way, near, h, t, m, at);
+  if (seen) *seen = advanced == Advanced::together ? t : at;
   if (advanced != Advanced::creeps) return advanced == Advanced::together ? t : -1;
   double late = cores_meet(way, t, near, h);
   if (late < 0) late = h;
@@ -174,11 +177,12 @@ double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar*
   if (!way.look(late, end) || way.gap(end) > near) return -1;
   for (int k = 0; k < halvings; k++) {
     const double middle = t + (late - t) / 2;
-    Manifold<Scalar> seen = m;
-    const bool together = way.look(middle, seen) && way.gap(seen) <= near;
+    Manifold<Scalar> there = m;
+    const bool together = way.look(middle, there) && way.gap(there) <= near;
     (together ? late : t) = middle;
-    if (!together) m = seen;
+    if (!together) m = there;
   }
+  if (seen) *seen = t;
   return t;
 }
 
