@@ -26,11 +26,11 @@ PC_FN Real pc_crosses(PC_IO Slot n, uint i, Real rate) {
   return pc_select(acts, pc_min(over, PC_REAL(0.0)), PC_REAL(0.0));
 }
 // Limits are not crossed and else keep what they carry, unless they throw back; locked rows are corrected like pins.
-PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted) {
+PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted, Real most) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    Real now = pc_row_rate(PC_PASS n, up, i, turn, most);
     Real over = pc_crosses(PC_PASS n, i, now);
     if (PC_ANY(pc_throws_back(PC_PASS n))) over = pc_min(over, pc_lacks_rebound(PC_PASS n, i, now));  // lint: allow (zero otherwise)
     precise Real rate = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), now, over) * wanted;
@@ -48,7 +48,7 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return lacks;  // lint: allow (zero otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
     lacks = pc_select(pc_is_crossed(pc_crosses(PC_PASS n, i, now)), PC_REAL(1.0), lacks);
     if (PC_ANY(pc_throws_back(PC_PASS n))) {  // lint: allow (none otherwise)
       precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * PC_REAL(-1e-5);
@@ -155,10 +155,10 @@ PC_FN void pc_end_push(PC_IO Slot m, Tree t) {
 }
 
 // Rates of the angle rows, and pins where `wanted` is 1; nothing elsewhere.
-PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted) {
+PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted, Real most) {
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    pc_again_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), wanted);
+    pc_again_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), wanted, most);
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
   }
 }
@@ -225,8 +225,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     }
     if (round > ROUND_PUSH) wanted = push.turned;
     if (!PC_ANY(wanted > PC_REAL(0.5))) continue;  // lint: allow (rounds of nothing change nothing)
+    Real most = PC_REAL(1.0);
     if (round != ROUND_PUSH) {
-      Real most = PC_REAL(1.0);
       if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(strayed_turn);
       pc_tree_residual_to(PC_PASS m, t, wanted, most);
     }
@@ -238,7 +238,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
       if (!PC_ANY(steps > PC_REAL(0.5))) continue;  // lint: allow (as above)
       pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));
     }
-    if (round < ROUND_PUSH) pc_newton_rates(PC_PASS m, t, wanted);
+    if (round < ROUND_PUSH) pc_newton_rates(PC_PASS m, t, wanted, most);
     if (round > ROUND_PUSH) pc_continue_push(PC_PASS m, t, noise, wanted);
     pc_solve_round(PC_PASS m, t, round >= ROUND_PUSH);
     wanted = pc_min(wanted, left.much);

@@ -13,6 +13,32 @@ PC_FN Vec3 pc_swing_rate(PC_IO Slot n, Vec3 arm, Real most) {
   return pc_scale(pc_swing(PC_PASS n, arm), rate);
 }
 
+// How fast the angle of a cone grows until the foreseen pose, as a mean. (What moves along a cone's rim leaves it on a tangent: by its rate of now
+// it would go beyond the limit in each sub-step.)
+PC_FN Real pc_cone_rate(PC_IO Slot n, Slot up) {
+  Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
+  Vec3 outer = pc_ld3_tree(PC_PASS n, TREE_CONE + 3u);
+  Vec3 inner_moves = pc_swing(PC_PASS n, inner);
+  Vec3 outer_moves = pc_swing(PC_PASS up, outer);
+  precise Real cosine_grows = pc_dot(outer_moves, inner) + pc_dot(outer, inner_moves) + pc_dot(outer_moves, inner_moves);
+  precise Real sines = pc_length(pc_cross(outer, inner)) + pc_length(pc_cross(pc_add(outer, outer_moves), pc_add(inner, inner_moves)));
+  // the tangent of half of what the angle grows by
+  precise Real rate = pc_angle(pc_abs(cosine_grows), sines) * PC_REAL(2.0) * PC_INFO(inverse_h);
+  return pc_select(cosine_grows < PC_REAL(0.0), rate, -rate);
+}
+// Rate of an angle row's slack until the foreseen pose, where both bodies are seen that far; else of now. `turn`: the relative angular velocity.
+PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
+  Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+  Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
+  Mask is_cone = pc_and(is_limit, pc_nonzero(pc_dot(pc_ld3_tree(PC_PASS n, TREE_CONE), pc_ld3_tree(PC_PASS n, TREE_CONE))));
+  if (i != 1u || !PC_ANY(is_cone)) return now;  // lint: allow (as it is otherwise)
+  Real seen = pc_min(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most), pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS up, TREE_X + 3u), most));
+  Mask foreseen = pc_and(is_cone, pc_and(seen > PC_REAL(0.999), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5)));
+  precise Real rate = PC_LD(tree_rows, n, TREE_SIGN + i) * pc_cone_rate(PC_PASS n, up);
+  return pc_select(foreseen, rate, now);
+}
+
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
 PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted, Real most) {
   Real h = PC_INFO(h);

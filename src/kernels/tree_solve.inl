@@ -22,7 +22,7 @@ PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
     Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack, kind)), open);
-    precise Real rate = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn) + wanted;
+    precise Real rate = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0)) + wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     Real on = PC_LD(tree_rows, n, TREE_ON + i);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(pc_and(kind > PC_REAL(0.5), rate < PC_REAL(0.0)), PC_REAL(1.0), on));
