@@ -15,16 +15,25 @@ PC_FN Vec3 pc_swing_rate(PC_IO Slot n, Vec3 arm, Real most) {
 
 // How fast the angle of a cone grows until the foreseen pose, as a mean. (What moves along a cone's rim leaves it on a tangent: by its rate of now
 // it would go beyond the limit in each sub-step.)
-PC_FN Real pc_cone_rate(PC_IO Slot n, Slot up) {
+struct ConeWay { Real rate; Mask steady; };
+PC_FN ConeWay pc_cone_way(PC_IO Slot n, Slot up) {
   Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
   Vec3 outer = pc_ld3_tree(PC_PASS n, TREE_CONE + 3u);
   Vec3 inner_moves = pc_swing(PC_PASS n, inner);
   Vec3 outer_moves = pc_swing(PC_PASS up, outer);
   precise Real cosine_grows = pc_dot(outer_moves, inner) + pc_dot(outer, inner_moves) + pc_dot(outer_moves, inner_moves);
-  precise Real sines = pc_length(pc_cross(outer, inner)) + pc_length(pc_cross(pc_add(outer, outer_moves), pc_add(inner, inner_moves)));
+  Vec3 axis = pc_cross(outer, inner);
+  Vec3 axis_there = pc_cross(pc_add(outer, outer_moves), pc_add(inner, inner_moves));
+  Real sine = pc_length(axis);
+  Real sine_there = pc_length(axis_there);
+  precise Real sines = sine + sine_there;
   // the tangent of half of what the angle grows by
   precise Real rate = pc_angle(pc_abs(cosine_grows), sines) * PC_REAL(2.0) * PC_INFO(inverse_h);
-  return pc_select(cosine_grows < PC_REAL(0.0), rate, -rate);
+  ConeWay way;
+  way.rate = pc_select(cosine_grows < PC_REAL(0.0), rate, -rate);
+  precise Real half = sine * sine_there * PC_REAL(0.5);
+  way.steady = pc_dot(axis, axis_there) > half;
+  return way;
 }
 // Rate of an angle row's slack until the foreseen pose, where both bodies are seen that far; else of now. `turn`: the relative angular velocity.
 PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
@@ -34,9 +43,12 @@ PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Mask is_cone = pc_and(is_limit, pc_nonzero(pc_dot(pc_ld3_tree(PC_PASS n, TREE_CONE), pc_ld3_tree(PC_PASS n, TREE_CONE))));
   if (i != 1u || !PC_ANY(is_cone)) return now;  // lint: allow (as it is otherwise)
   Real seen = pc_min(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most), pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS up, TREE_X + 3u), most));
-  Mask foreseen = pc_and(is_cone, pc_and(seen > PC_REAL(0.999), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5)));
-  precise Real rate = PC_LD(tree_rows, n, TREE_SIGN + i) * pc_cone_rate(PC_PASS n, up);
-  return pc_select(foreseen, rate, now);
+  ConeWay way = pc_cone_way(PC_PASS n, up);
+  Mask foreseen = pc_and(pc_and(is_cone, way.steady), pc_and(seen > PC_REAL(0.999), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5)));
+  precise Real rate = PC_LD(tree_rows, n, TREE_SIGN + i) * way.rate;
+  // a limit is left no faster than it was come to: what stops it makes no energy
+  precise Real back = now + pc_min(now, PC_REAL(0.0));
+  return pc_select(foreseen, pc_max(rate, back), now);
 }
 
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
