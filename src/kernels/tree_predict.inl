@@ -31,8 +31,8 @@ PC_FN ConeWay pc_cone_way(PC_IO Slot n, Slot up) {
   precise Real rate = pc_angle(pc_abs(cosine_grows), sines) * PC_REAL(2.0) * PC_INFO(inverse_h);
   ConeWay way;
   way.rate = pc_select(cosine_grows < PC_REAL(0.0), rate, -rate);
-  precise Real half = sine * sine_there * PC_REAL(0.5);
-  way.steady = pc_dot(axis, axis_there) > half;
+  precise Real sixty_degrees = sine * sine_there * PC_REAL(0.5);
+  way.steady = pc_dot(axis, axis_there) > sixty_degrees;
   return way;
 }
 // Rate of an angle row's slack until the foreseen pose, where both bodies are seen that far; else of now. `turn`: the relative angular velocity.
