@@ -40,7 +40,12 @@ PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
-  Mask is_cone = pc_and(is_limit, pc_nonzero(pc_dot(pc_ld3_tree(PC_PASS n, TREE_CONE), pc_ld3_tree(PC_PASS n, TREE_CONE))));
+  // no further than the relative turning, which does not come to the limit in most joints
+  precise Real gap_rate = pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
+  precise Real out_of_reach = gap_rate * gap_rate;
+  Mask reached = pc_and(is_limit, pc_dot(turn, turn) > out_of_reach);
+  Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
+  Mask is_cone = pc_and(reached, pc_nonzero(pc_dot(inner, inner)));
   if (i != 1u || !PC_ANY(is_cone)) return now;  // lint: allow (as it is otherwise)
   Real seen = pc_min(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most), pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS up, TREE_X + 3u), most));
   ConeWay way = pc_cone_way(PC_PASS n, up);
