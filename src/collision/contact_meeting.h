@@ -194,7 +194,7 @@ template <class Scalar> struct Detector::Meeting {
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
     c.touches = c.gap <= (!quick && (c.acts || settles(m)) ? seam_share * thick : near);
-    double t = 0, seen = 0;
+    double t = 0, seen = 0;  // [s]
     bool meets = c.touches;
     if (!c.touches) {
       if (c.gap > goes) return stand_aside();

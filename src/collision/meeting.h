@@ -117,7 +117,7 @@ template <class Scalar, class Find> struct Approach {
 enum class Advanced { apart, together, creeps };
 
 /// Conservative advancement from t on to the instant within h [s] at which the shapes come within `near` [m] of each other, with the manifold
-/// there. As long as they are apart along the normal that was found last they need no look for another. Bounded: it creeps where shapes turn
+/// there; `seen`: when that was looked at. As long as they are apart along the normal that was found last they need no look for another. Bounded: it creeps where shapes turn
 /// fast for how they come together.
 template <class Scalar, class Find>
 Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m, double& seen) {
@@ -158,7 +158,7 @@ template <class Scalar, class Find> double cores_meet(const Approach<Scalar, Fin
 }
 
 /// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there;
-/// below 0 where they do not. Where advancement creeps, halving finds an instant before they overlap at the end, or before what is
+/// below 0 where they do not: then m is of when they were looked at last, at `seen`. Where advancement creeps, halving finds an instant before they overlap at the end, or before what is
 /// inside of them meets. What is missed all the same the next sub-step sees.
 template <class Scalar, class Find>
 double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h,
