@@ -194,22 +194,20 @@ template <class Scalar> struct Detector::Meeting {
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
     c.touches = c.gap <= (!quick && (c.acts || settles(m)) ? seam_share * thick : near);
-    double t = 0, seen = 0;  // [s]
-    bool meets = c.touches;
+    Met met{c.touches, 0};
     if (!c.touches) {
       if (c.gap > goes) return stand_aside();
       const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
         look_at(x, y, z);
       };
-      t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, m, &seen);
-      meets = t >= 0;
-      if (!meets && c.gap > sent) return stand_aside();
+      met = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, m);
+      if (!met.together && c.gap > sent) return stand_aside();
     }
     find_together(m, c.touches ? seam_share * thick : near);
     to_light_side(m, share);
-    if (!c.touches) back_to_start(ta, tb, apart, share, seen, m);
+    if (!c.touches) back_to_start(ta, tb, apart, share, met.t, m);
     c.struck = !c.jointed && (!c.touches || quick);
-    write(m, std::max(t, 0.0), c.jointed ? -1 : c.struck ? std::max(t, 1e-9 * h) : 0);
+    write(m, met.t, c.jointed ? -1 : c.struck ? std::max(met.t, 1e-9 * h) : 0);
   }
 
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.
@@ -224,20 +222,20 @@ template <class Scalar> struct Detector::Meeting {
       look_at(x, y, z);
     };
     Manifold<Scalar> m;
-    const double t = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
-    if (t < 0) return false;
+    const Met met = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
+    if (!met.together) return false;
     find_together(m, near);
     to_light_side(m, share);
-    back_to_start(ta, tb, apart, share, t, m);
+    back_to_start(ta, tb, apart, share, met.t, m);
     c.struck = true;
-    write(m, t, std::max(t, 1e-9 * h));
+    write(m, met.t, std::max(met.t, 1e-9 * h));
     return true;
   }
   static Mover<Scalar> mover(const Proxy& p, const ShapeView<Scalar>& shape, const TwistOf<Scalar>& t) {
     return {&shape, t, float(spin(t, p)), p.centred, float(lever(p)), p.inner / 2};
   }
 
-  /// Impacts remember nothing. `t`: when the shapes meet [s].
+  /// Impacts remember nothing. `t`: when the manifold was found [s].
   void write(const Manifold<Scalar>& m, double t, double impact) {
     std::array<std::uint32_t, 4> from{};
     if (c.acts && impact <= 0) {

@@ -116,9 +116,15 @@ template <class Scalar, class Find> struct Approach {
 
 enum class Advanced { apart, together, creeps };
 
+/// When a manifold was found [s], and whether the shapes come together then.
+struct Met {
+  bool together;
+  double t;
+};
+
 /// Conservative advancement from t on to the instant within h [s] at which the shapes come within `near` [m] of each other, with the manifold
-/// there; `seen`: when that was looked at. As long as they are apart along the normal that was found last they need no look for another. Bounded: it creeps where shapes turn
-/// fast for how they come together.
+/// there; else that of `seen`, when they were looked at last. As long as they are apart along the normal that was found last they need no look
+/// for another. Bounded: it creeps where shapes turn fast for how they come together.
 template <class Scalar, class Find>
 Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m, double& seen) {
   constexpr int looks = 16, along = 8;
@@ -157,24 +163,24 @@ template <class Scalar, class Find> double cores_meet(const Approach<Scalar, Fin
   return advance(way, near, h, t, m, seen) == Advanced::together ? t : -1;
 }
 
-/// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there;
-/// below 0 where they do not: then m is of when they were looked at last, at `seen`. Where advancement creeps, halving finds an instant before they overlap at the end, or before what is
-/// inside of them meets. What is missed all the same the next sub-step sees.
+/// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there; or that of when they were
+/// looked at last on ways on which they do not. Where advancement creeps, halving finds an instant before they overlap at the end, or before
+/// what is inside of them meets. What is missed all the same the next sub-step sees.
 template <class Scalar, class Find>
-double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h,
-                   Find&& find, Manifold<Scalar>& m, double* seen = nullptr) {
+Met meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h, Find&& find,
+                 Manifold<Scalar>& m) {
   constexpr int halvings = 20;
   Approach<Scalar, std::remove_reference_t<Find>> way{a, b, apart, find, {}, {}};
-  double t = from, at = from;
-  if (from > 0 && !way.look(t, m)) return -1;
+  double t = from, seen = from;
+  if (from > 0 && !way.look(t, m)) return {false, seen};
   if (from == 0) way.go_to(t);  // what is there is known
-  const Advanced advanced = advance(way, near, h, t, m, at);
-  if (seen) *seen = advanced == Advanced::together ? t : at;
-  if (advanced != Advanced::creeps) return advanced == Advanced::together ? t : -1;
+  const Advanced advanced = advance(way, near, h, t, m, seen);
+  if (advanced == Advanced::together) return {true, t};
+  if (advanced == Advanced::apart) return {false, seen};
   double late = cores_meet(way, t, near, h);
   if (late < 0) late = h;
   Manifold<Scalar> end = m;
-  if (!way.look(late, end) || way.gap(end) > near) return -1;
+  if (!way.look(late, end) || way.gap(end) > near) return {false, seen};
   for (int k = 0; k < halvings; k++) {
     const double middle = t + (late - t) / 2;
     Manifold<Scalar> there = m;
@@ -182,8 +188,7 @@ double meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar*
     (together ? late : t) = middle;
     if (!together) m = there;
   }
-  if (seen) *seen = t;
-  return t;
+  return {true, t};
 }
 
 /// What lies within this share of a thickness of a surface lies in it: so high may a seam between tiles be, and so far may shapes be apart

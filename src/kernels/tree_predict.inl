@@ -14,9 +14,9 @@ PC_FN Vec3 pc_swing_rate(PC_IO Slot n, Vec3 arm, Real most) {
 }
 
 // How fast the angle of a cone grows until the foreseen pose, as a mean. (What moves along a cone's rim leaves it on a tangent: by its rate of now
-// it would go beyond the limit in each sub-step.)
-struct ConeWay { Real rate; Mask steady; };
-PC_FN ConeWay pc_cone_way(PC_IO Slot n, Slot up) {
+// it would go beyond the limit in each sub-step.) `holds`: the axis about which it grows turns by less than 60 degrees till then.
+struct ConeRate { Real mean; Mask holds; };
+PC_FN ConeRate pc_cone_rate(PC_IO Slot n, Slot up) {
   Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
   Vec3 outer = pc_ld3_tree(PC_PASS n, TREE_CONE + 3u);
   Vec3 inner_moves = pc_swing(PC_PASS n, inner);
@@ -28,16 +28,17 @@ PC_FN ConeWay pc_cone_way(PC_IO Slot n, Slot up) {
   Real sine_there = pc_length(axis_there);
   precise Real sines = sine + sine_there;
   // the tangent of half of what the angle grows by
-  precise Real rate = pc_angle(pc_abs(cosine_grows), sines) * PC_REAL(2.0) * PC_INFO(inverse_h);
-  ConeWay way;
-  way.rate = pc_select(cosine_grows < PC_REAL(0.0), rate, -rate);
-  precise Real sixty_degrees = sine * sine_there * PC_REAL(0.5);
-  way.steady = pc_dot(axis, axis_there) > sixty_degrees;
-  return way;
+  precise Real size = pc_angle(pc_abs(cosine_grows), sines) * PC_REAL(2.0) * PC_INFO(inverse_h);
+  precise Real half_of_both = sine * sine_there * PC_REAL(0.5);
+  ConeRate rate;
+  rate.mean = pc_select(cosine_grows < PC_REAL(0.0), size, -size);
+  rate.holds = pc_dot(axis, axis_there) > half_of_both;
+  return rate;
 }
 // Rate of an angle row's slack until the foreseen pose, where both bodies are seen that far; else of now. `turn`: the relative angular velocity.
 PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  if (i != 1u) return now;  // a cone's angle is the second row
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
   // no further than the relative turning, which does not come to the limit in most joints
@@ -46,14 +47,14 @@ PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Mask reached = pc_and(is_limit, pc_dot(turn, turn) > out_of_reach);
   Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
   Mask is_cone = pc_and(reached, pc_nonzero(pc_dot(inner, inner)));
-  if (i != 1u || !PC_ANY(is_cone)) return now;  // lint: allow (as it is otherwise)
+  if (!PC_ANY(is_cone)) return now;  // lint: allow (as it is otherwise)
   Real seen = pc_min(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most), pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS up, TREE_X + 3u), most));
-  ConeWay way = pc_cone_way(PC_PASS n, up);
-  Mask foreseen = pc_and(pc_and(is_cone, way.steady), pc_and(seen > PC_REAL(0.999), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5)));
-  precise Real rate = PC_LD(tree_rows, n, TREE_SIGN + i) * way.rate;
+  Mask unseen = pc_or(seen < PC_REAL(1.0), PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5));
+  ConeRate cone = pc_cone_rate(PC_PASS n, up);
+  precise Real rate = PC_LD(tree_rows, n, TREE_SIGN + i) * cone.mean;
   // a limit is left no faster than it was come to: what stops it makes no energy
   precise Real back = now + pc_min(now, PC_REAL(0.0));
-  return pc_select(foreseen, pc_max(rate, back), now);
+  return pc_select(unseen, now, pc_select(pc_and(is_cone, cone.holds), pc_max(rate, back), now));
 }
 
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.
