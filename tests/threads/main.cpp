@@ -11,6 +11,7 @@
 
 #ifdef PCPHYS_WATCHED_THREADS
 /// Atomics that the library of oneTBB hands from thread to thread (src/cpu/workers.cpp); where an access of ours stands on top it is told.
+/// The names of inlined functions stand in full debug info alone, so this preset has it.
 extern "C" const char* __tsan_default_suppressions() { return "race_top:std::__atomic_base\nrace_top:std::atomic<tbb::\n"; }
 #endif
 
