@@ -56,6 +56,7 @@ void match_nearest(const Manifold<Scalar>& m, const Scalar* before, std::uint32_
 
 /// What a sub-step's contacts are looked at with.
 template <class Scalar> struct Detector::Substep {
+  using Real = Scalar;
   WorldState& s;
   const Bodies<Scalar>& bodies;
   std::span<const std::uint32_t> contacts;
@@ -129,7 +130,7 @@ template <class Scalar> struct Detector::Meeting {
 
   void stand_aside() {
     if (!c.acts) return;
-    c.acts = c.struck = false;
+    c.acts = c.struck = c.sent = false;
     out[place::impact_time] = c.jointed ? -1 : 0;
     out[place::found_anew] = 2;
     std::fill_n(out + place::from_point, 4, Scalar(0));
@@ -203,11 +204,28 @@ template <class Scalar> struct Detector::Meeting {
       met = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, m);
       if (!met.together && c.gap > sent) return stand_aside();
     }
+    c.sent = !met.together;
     find_together(m, c.touches ? seam_share * thick : near);
     to_light_side(m, share);
     if (!c.touches) back_to_start(ta, tb, apart, share, met.t, m);
     c.struck = !c.jointed && (!c.touches || quick);
     write(m, met.t, c.jointed ? -1 : c.struck ? std::max(met.t, 1e-9 * h) : 0);
+  }
+
+  /// Where its bodies have come to, whether its shapes are still apart that others may have sent together: then its rows let go of what they
+  /// have pushed with.
+  bool misses() {
+    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a);
+    ShapeView<Scalar> b = view(pb, c.shapes[1], row_b);
+    bodies.poses().shift(row_a, row_b, apart);
+    for (int k = 0; k < 3; k++) b.p[k] += apart[k];
+    const double near = seam_share * thick;
+    look = Scalar(2 * near);
+    Manifold<Scalar> m;
+    look_at(a, b, m);
+    if (m.count > 0 && std::min(double(support_gap(a, b, m.normal)), double(least_separation(m))) <= near) return false;
+    out[place::found_anew] = 3;
+    return true;
   }
 
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.

@@ -43,9 +43,8 @@ class Builder {
   }
 
   /// The narrow phase of a sub-step, on the host (Detector::meet).
-  void collide(std::uint32_t substep) {
+  void collide(Phase phase, std::uint32_t substep) {
     for (const Access& a : collide_accesses) bring(a.buffer, Place::cpu, substep);
-    const Phase phase = substep == 0 ? Phase::first : Phase::biased;
     plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, phase, false, substep, octave_, nullptr, 0});
     for (const Access& a : collide_accesses) {
       if (!a.write) continue;
@@ -212,6 +211,12 @@ void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 void look_at_inertia(Builder& b, const PlanSignature& s, std::uint32_t substep) {
   if (s.joints() || s.solves_trees() || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
 }
+/// Before the impulses, which act and where; before the relax visit, which of trees have pushed for nothing.
+void look_at_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+  if (!s.contacts()) return;
+  b.collide(phase, substep);
+  b.kernel(contacts(s).prepare, phase, substep);
+}
 void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.free_joints) b.kernel(s.joint_drives ? Kernel::joint_solve_driven : Kernel::joint_solve, phase, substep);
 }
@@ -237,8 +242,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (k > 0) look_at_drives(b, s, Phase::biased, k);
   b.kernel(with.integrate, Phase::biased, k);
   if (k > 0 && s.rotates) look_at_inertia(b, s, k);
-  if (s.contacts()) b.collide(k);
-  if (s.contacts()) b.kernel(contacts(s).prepare, k == 0 ? Phase::first : Phase::biased, k);
+  look_at_contacts(b, s, k == 0 ? Phase::first : Phase::biased, k);
   b.own(Stage::integrate, true, k, count);
   b.own(Stage::joints, false, k, count);
   if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
@@ -280,6 +284,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   solve_free_joints(b, s, Phase::relax, k);
   if (s.free_contacts && s.gyroscopic) b.kernel(contacts(s).refresh, Phase::relax, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
+  if (s.tree_contacts) look_at_contacts(b, s, Phase::relax, k);
   solve_contacts(b, s, Phase::relax, k);
   b.own(Stage::impulses, true, k, count, false);
 }

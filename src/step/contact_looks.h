@@ -18,16 +18,13 @@ class ContactLooks final : public Collider {
   void look_with(const Detector::Options& options) { options_ = options; }
 
   void collide(WorldState& s, unsigned octave, bool first, double h) override {
-    const std::uint32_t width = contacts_.width();
-    rows_.clear();
-    blocks_.clear();
-    for (const Range& range : contacts_.ranges(octave))
-      for (std::uint32_t block = range.begin; block < range.end; block++) {
-        const auto rows = contacts_.order().begin() + block * width;
-        rows_.insert(rows_.end(), rows, rows + width);
-        blocks_.push_back(block);
-      }
+    list_rows(octave);
     detector_.meet(s, rows_, octave, first, h, options_);
+    list_blocks();
+  }
+  void find_missed(WorldState& s, unsigned octave) override {
+    list_rows(octave);
+    detector_.find_missed(s, rows_, octave, options_);
     list_blocks();
   }
   bool waits() const override { return detector_.waits(); }
@@ -40,6 +37,17 @@ class ContactLooks final : public Collider {
   std::size_t memory_bytes() const { return bytes_of(rows_, blocks_, some_, renewed_, struck_); }
 
  private:
+  void list_rows(unsigned octave) {
+    const std::uint32_t width = contacts_.width();
+    rows_.clear();
+    blocks_.clear();
+    for (const Range& range : contacts_.ranges(octave))
+      for (std::uint32_t block = range.begin; block < range.end; block++) {
+        const auto rows = contacts_.order().begin() + block * width;
+        rows_.insert(rows_.end(), rows, rows + width);
+        blocks_.push_back(block);
+      }
+  }
   void list_blocks() {
     blocks_of(detector_.renewed(), renewed_);
     blocks_of(detector_.struck(), struck_);
