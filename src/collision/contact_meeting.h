@@ -56,7 +56,6 @@ void match_nearest(const Manifold<Scalar>& m, const Scalar* before, std::uint32_
 
 /// What a sub-step's contacts are looked at with.
 template <class Scalar> struct Detector::Substep {
-  using Real = Scalar;
   WorldState& s;
   const Bodies<Scalar>& bodies;
   std::span<const std::uint32_t> contacts;
@@ -212,8 +211,7 @@ template <class Scalar> struct Detector::Meeting {
     write(m, met.t, c.jointed ? -1 : c.struck ? std::max(met.t, 1e-9 * h) : 0);
   }
 
-  /// Where its bodies have come to, whether its shapes are still apart that others may have sent together: then its rows let go of what they
-  /// have pushed with.
+  /// Of what was sent, after its bodies have moved: whether it is still apart. Then its rows let go of what they have pushed with.
   bool misses() {
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a);
     ShapeView<Scalar> b = view(pb, c.shapes[1], row_b);

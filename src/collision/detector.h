@@ -71,7 +71,7 @@ class Detector {
                   const Options& options);
   /// After its bodies have moved: contacts whose rows acted since others of a joint tree might have sent their shapes together, and which are
   /// still apart. They count as renewed.
-  void find_missed(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, const Options& options);
+  void find_missed(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options);
   /// Whether impacts wait for others that come before them.
   bool waits() const { return waiting_ > 0; }
   /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before;

@@ -105,13 +105,12 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
   });
 }
 
-void Detector::find_missed(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, const Options& options) {
-  look_in(s, contacts, level, 0, options, [&](const auto& look) {
-    using Scalar = std::remove_cvref_t<decltype(look)>::Real;
+void Detector::find_missed(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options) {
+  look_in(s, contacts, level, h, options, [&]<class Scalar>(const Substep<Scalar>& look) {
     for (std::uint32_t at = 0; at < contacts.size(); at++) {
       const std::uint32_t row = contacts[at];
       if (row == 0 || !standings_[row].sent) continue;
-      if (Meeting<Scalar>{*this, s, look.bodies, options, 0, row}.misses()) renewed_.push_back(at);
+      if (Meeting<Scalar>{*this, s, look.bodies, options, h, row}.misses()) renewed_.push_back(at);
     }
   });
 }

@@ -18,7 +18,7 @@ struct Standing {
   bool touches = false;              // its shapes did, when they were looked at last
   bool acts = false;                 // its rows do
   bool struck = false;               // as an impact: nothing of it lasts
-  bool sent = false;                 // its rows act although its shapes were not foreseen to meet: others of a tree may send them together
+  bool sent = false;                 // its rows act although its shapes were not foreseen to meet: others of its tree may send them
   bool waits = false;                // for an impact that comes before
   bool bounces = false;              // what is fast enough does
   bool jointed = false;              // a body of it hangs on joints

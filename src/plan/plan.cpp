@@ -15,6 +15,11 @@ namespace {
 /// Of Detector::meet.
 constexpr Access collide_accesses[] = {
     {Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, false}, {Buffer::contact, true}};
+/// Of Detector::find_missed.
+constexpr Access missed_accesses[] = {{Buffer::pose, false}, {Buffer::contact, true}};
+std::span<const Access> collide_accesses_of(Phase phase) {
+  return phase == Phase::relax ? std::span<const Access>(missed_accesses) : collide_accesses;
+}
 
 /// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
 class Builder {
@@ -42,11 +47,12 @@ class Builder {
     add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses, k.domain);
   }
 
-  /// The narrow phase of a sub-step, on the host (Detector::meet).
+  /// The narrow phase of a sub-step, on the host: Detector::meet; in the relax phase Detector::find_missed.
   void collide(Phase phase, std::uint32_t substep) {
-    for (const Access& a : collide_accesses) bring(a.buffer, Place::cpu, substep);
+    const auto accesses = collide_accesses_of(phase);
+    for (const Access& a : accesses) bring(a.buffer, Place::cpu, substep);
     plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, phase, false, substep, octave_, nullptr, 0});
-    for (const Access& a : collide_accesses) {
+    for (const Access& a : accesses) {
       if (!a.write) continue;
       overwrite(a.buffer);
       at(a.buffer).current = {true, false};
@@ -280,11 +286,11 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
   if (s.nets) b.kernel(Kernel::net_settle, Phase::biased, k);
+  if (s.tree_contacts) look_at_contacts(b, s, Phase::relax, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_relax, Phase::relax, k);
   solve_free_joints(b, s, Phase::relax, k);
   if (s.free_contacts && s.gyroscopic) b.kernel(contacts(s).refresh, Phase::relax, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
-  if (s.tree_contacts) look_at_contacts(b, s, Phase::relax, k);
   solve_contacts(b, s, Phase::relax, k);
   b.own(Stage::impulses, true, k, count, false);
 }
@@ -354,7 +360,7 @@ void label_islands(Builder& b, const StepPlan& plan) {
 }  // namespace
 
 std::span<const Access> accesses(const PlanEntry& entry) {
-  if (entry.kind == PlanEntry::Kind::collide) return collide_accesses;
+  if (entry.kind == PlanEntry::Kind::collide) return collide_accesses_of(entry.phase);
   return entry.own ? std::span<const Access>(entry.own->accesses) : schema(entry.kernel).accesses;
 }
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }

@@ -22,9 +22,9 @@ class ContactLooks final : public Collider {
     detector_.meet(s, rows_, octave, first, h, options_);
     list_blocks();
   }
-  void find_missed(WorldState& s, unsigned octave) override {
+  void find_missed(WorldState& s, unsigned octave, double h) override {
     list_rows(octave);
-    detector_.find_missed(s, rows_, octave, options_);
+    detector_.find_missed(s, rows_, octave, h, options_);
     list_blocks();
   }
   bool waits() const override { return detector_.waits(); }

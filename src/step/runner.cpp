@@ -276,10 +276,11 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
   const PlanEntry& entry = *call.entry;
   if (entry.kind == PlanEntry::Kind::collide) {
     if (!collider_) return {};  // the table holds what was found
+    const double h = substep_of(entry, infos, state.tables.precision());
     if (entry.phase == Phase::relax)
-      collider_->find_missed(state, entry.octave);
+      collider_->find_missed(state, entry.octave, h);
     else
-      collider_->collide(state, entry.octave, entry.substep == 0, substep_of(entry, infos, state.tables.precision()));
+      collider_->collide(state, entry.octave, entry.substep == 0, h);
     if (gl_) state.tables.touch(Buffer::contact);
     for (const Narrowed& n : std::span(narrowed_).subspan(call.narrowed, call.narrowed_count))
       runs_[n.run].ranges = n.struck ? collider_->struck_blocks() : collider_->renewed_blocks();

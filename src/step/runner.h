@@ -26,7 +26,7 @@ class Collider {
   /// sub-step.
   virtual void collide_again(WorldState& state, unsigned octave, bool last, double h) = 0;
   /// After the bodies have moved: whose rows pushed for nothing.
-  virtual void find_missed(WorldState& state, unsigned octave) = 0;
+  virtual void find_missed(WorldState& state, unsigned octave, double h) = 0;
   virtual bool waits() const = 0;
   /// Blocks of contacts, whose rows it has made other than they were in the sub-step before; and blocks with impacts.
   virtual std::span<const Range> renewed_blocks() const = 0;
