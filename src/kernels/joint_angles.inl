@@ -2,6 +2,7 @@
 // a roll about x, R = swing * roll:
 //   roll = 2 atan(R_x / R_w); swing = 2 atan(|S_yz| / S_w) (S_y, S_z) / |S_yz| = (pitch, yaw).
 // A cone limits the angle between the two x axes.
+#include "roll_axis.inl"
 struct Angles { Vec3 value; Vec3 roll_axis; Vec3 second_axis; Vec3 third_axis; Vec3 x_of_a; Vec3 x_of_b; };
 PC_FN Angles pc_joint_angles(Quaternion fa, Quaternion fb, Mask is_cone) {
   Quaternion r0 = pc_quaternion_mul(pc_conjugate(fa), fb);
@@ -22,11 +23,10 @@ PC_FN Angles pc_joint_angles(Quaternion fa, Quaternion fb, Mask is_cone) {
   Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));
   Vec3 xa = pc_rotate(fa, x); Vec3 xb = pc_rotate(fb, x);
   Vec3 cone_axis = pc_unit_or_zero(pc_cross(xa, xb));
-  precise Real cosine_sum = pc_dot(xa, xb) + PC_REAL(1.0); Vec3 sum = pc_add(xa, xb);
   Vec3 pitch_axis = pc_rotate(fa, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
   Vec3 yaw_axis = pc_rotate(fa, Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(1.0)));
   Angles o; o.value = Vec3(roll, pc_select(is_cone, swing, pitch), pc_select(is_cone, PC_REAL(0.0), yaw));
-  o.roll_axis = pc_scale(sum, pc_div(PC_REAL(1.0), pc_max(cosine_sum, PC_REAL(0.1))));
+  o.roll_axis = pc_roll_axis(xa, xb);
   o.second_axis = pc_select3(is_cone, cone_axis, pitch_axis);
   o.third_axis = pc_select3(is_cone, pc_zero3(), yaw_axis);
   o.x_of_a = xa;

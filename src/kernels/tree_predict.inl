@@ -1,6 +1,7 @@
 // Where the sub-step will take the bodies of a tree, and what that leaves for its pins to undo.
 #include "free_rotation.inl"
 #include "tree_swing.inl"
+#include "roll_axis.inl"
 
 // How much of the sub-step a body is seen ahead: until it has turned by `most` [rad]. Rates of what comes later are those of until then.
 PC_FN Real pc_seen_ahead(PC_IO Vec3 spin, Real most) {
@@ -13,48 +14,48 @@ PC_FN Vec3 pc_swing_rate(PC_IO Slot n, Vec3 arm, Real most) {
   return pc_scale(pc_swing(PC_PASS n, arm), rate);
 }
 
-// How fast the angle of a cone grows until the foreseen pose, as a mean. (What moves along a cone's rim leaves it on a tangent: by its rate of now
-// it would go beyond the limit in each sub-step.) `holds`: the axis about which it grows turns by less than 60 degrees till then.
-struct ConeRate { Real mean; Mask holds; };
-PC_FN ConeRate pc_cone_rate(PC_IO Slot n, Slot up) {
-  Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
-  Vec3 outer = pc_ld3_tree(PC_PASS n, TREE_CONE + 3u);
-  Vec3 inner_moves = pc_swing(PC_PASS n, inner);
-  Vec3 outer_moves = pc_swing(PC_PASS up, outer);
-  precise Real cosine_grows = pc_dot(outer_moves, inner) + pc_dot(outer, inner_moves) + pc_dot(outer_moves, inner_moves);
-  Vec3 axis = pc_cross(outer, inner);
-  Vec3 axis_there = pc_cross(pc_add(outer, outer_moves), pc_add(inner, inner_moves));
-  Real sine = pc_length(axis);
-  Real sine_there = pc_length(axis_there);
-  precise Real sines = sine + sine_there;
-  // the tangent of half of what the angle grows by
-  precise Real size = pc_angle(pc_abs(cosine_grows), sines) * PC_REAL(2.0) * PC_INFO(inverse_h);
-  precise Real half_of_both = sine * sine_there * PC_REAL(0.5);
-  ConeRate rate;
-  rate.mean = pc_select(cosine_grows < PC_REAL(0.0), size, -size);
-  rate.holds = pc_dot(axis, axis_there) > half_of_both;
-  return rate;
+// An arm halfway through the sub-step.
+PC_FN Vec3 pc_halfway(PC_IO Slot n, Vec3 arm) {
+  Vec3 v = pc_ld3_tree(PC_PASS n, TREE_TURN);
+  precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(2.0);
+  precise Real squared = pc_dot(v, v) + w * w;
+  Real share = pc_div(PC_REAL(1.0), pc_sqrt(squared));
+  precise Real half_w = w * share;
+  return pc_rotate(pc_quaternion(pc_scale(v, share), half_w), arm);
 }
-// Rate of an angle row's slack until the foreseen pose, where both bodies are seen that far; else of now. `turn`: the relative angular velocity.
-PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
-  Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-  if (i != 1u) return now;  // a cone's angle is the second row
+// The axis of an angle row as it is halfway through the sub-step: along it a limb keeps its angle, where along that of now it would leave the rim
+// of a cone on a tangent; and an impulse along it makes no energy. That of now where the limit is out of reach of all turning (as it is in most
+// joints), where a body turns further than is seen, and where the axis turns by more than 60 degrees till then. `turn`: the relative angular velocity.
+PC_FN Vec3 pc_axis_halfway(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
+  Vec3 now = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
+  if (i > 1u) return now;  // rows of cones are two
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
-  // no further than the relative turning, which does not come to the limit in most joints
   precise Real gap_rate = pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
   precise Real out_of_reach = gap_rate * gap_rate;
-  Mask reached = pc_and(is_limit, pc_dot(turn, turn) > out_of_reach);
   Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
-  Mask is_cone = pc_and(reached, pc_nonzero(pc_dot(inner, inner)));
-  if (!PC_ANY(is_cone)) return now;  // lint: allow (as it is otherwise)
+  Mask is_cone = pc_and(pc_nonzero(pc_dot(inner, inner)), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
+  Mask wanted = pc_and(pc_and(is_limit, is_cone), pc_dot(turn, turn) > out_of_reach);
+  if (!PC_ANY(wanted)) return now;  // lint: allow (as it is otherwise)
   Real seen = pc_min(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most), pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS up, TREE_X + 3u), most));
-  Mask unseen = pc_or(seen < PC_REAL(1.0), PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5));
-  ConeRate cone = pc_cone_rate(PC_PASS n, up);
-  precise Real rate = PC_LD(tree_rows, n, TREE_SIGN + i) * cone.mean;
-  // a limit is left no faster than it was come to: what stops it makes no energy
-  precise Real back = now + pc_min(now, PC_REAL(0.0));
-  return pc_select(unseen, now, pc_select(pc_and(is_cone, cone.holds), pc_max(rate, back), now));
+  inner = pc_halfway(PC_PASS n, inner);
+  Vec3 outer = pc_halfway(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_CONE + 3u));
+  Vec3 axis = pc_unit_or_zero(pc_cross(outer, inner));
+  if (i == 0u) axis = pc_roll_axis(outer, inner);
+  Real along = pc_dot(now, axis);
+  axis = pc_select3(along < PC_REAL(0.0), pc_negate(axis), axis);
+  precise Real least = pc_length(now) * pc_length(axis) * PC_REAL(0.5);
+  Mask holds = pc_and(wanted, pc_abs(along) > least);
+  return pc_select3(seen < PC_REAL(1.0), now, pc_select3(holds, axis, now));
+}
+// Rate of an angle row's slack over the sub-step, once its axis is that of where the sub-step was foreseen to go first. What has changed since is
+// seen so far that the limit is left no faster than it was come to: impulses are along the axis of then.
+PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
+  Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  if (i > 1u) return now;
+  Real mean = pc_dot(pc_axis_halfway(PC_PASS n, up, i, turn, most), turn);
+  precise Real back = now + pc_min(now, PC_LD(tree_rows, n, TREE_CAME + i));
+  return pc_max(mean, back);
 }
 
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.

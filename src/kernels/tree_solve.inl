@@ -14,6 +14,14 @@
 #include "tree_momentum.inl"
 #include "tree_predict.inl"
 
+// Of an angle row the axis of halfway, and the rate at which its limit is come to; of its slack the rate over the sub-step.
+PC_FN Real pc_begin_row(PC_IO Slot n, Slot up, uint i, Vec3 turn) {
+  Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  if (i < 2u) PC_ST(tree_rows, n, TREE_CAME + i, pc_min(now, PC_REAL(0.0)));
+  Vec3 axis = pc_axis_halfway(PC_PASS n, up, i, turn, PC_REAL(1.0));
+  pc_st3_tree(PC_PASS n, TREE_AXIS + i * 3u, axis);
+  return pc_dot(axis, turn);
+}
 // Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
@@ -22,7 +30,7 @@ PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
     Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack, kind)), open);
-    precise Real rate = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0)) + wanted;
+    precise Real rate = pc_begin_row(PC_PASS n, up, i, turn) + wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     Real on = PC_LD(tree_rows, n, TREE_ON + i);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(pc_and(kind > PC_REAL(0.5), rate < PC_REAL(0.0)), PC_REAL(1.0), on));
