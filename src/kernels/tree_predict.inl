@@ -23,12 +23,25 @@ PC_FN Vec3 pc_halfway(PC_IO Slot n, Vec3 arm) {
   precise Real half_w = w * share;
   return pc_rotate(pc_quaternion(pc_scale(v, share), half_w), arm);
 }
-// The axis of an angle row as it is halfway through the sub-step: along it a limb keeps its angle, where along that of now it would leave the rim
-// of a cone on a tangent; and an impulse along it makes no energy. That of now where the limit is out of reach of all turning (as it is in most
-// joints), where a body turns further than is seen, and where the axis turns by more than 60 degrees till then. `turn`: the relative angular velocity.
-PC_FN Vec3 pc_axis_halfway(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
+// How a body turns over what is seen of the sub-step, as a mean: its spin changes as it turns.
+PC_FN Vec3 pc_mean_turn(PC_IO Slot n) {
+  Vec3 v = pc_ld3_tree(PC_PASS n, TREE_TURN);
+  precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(1.0);
+  Real sine = pc_length(v);
+  precise Real both = pc_angle(sine, w) * pc_inverse_or_zero(sine) * PC_REAL(2.0) * PC_INFO(inverse_h);
+  return pc_scale(v, both);
+}
+// An angle row over the sub-step: its axis as it is halfway, and the mean rate of its slack. Along that axis a limb keeps its angle, where along that
+// of now it would leave the rim of a cone on a tangent; and an impulse along it makes no energy. All is as of now where the limit is out of reach
+// of all turning (as it is in most joints), where a body turns further than is seen, and where the axis turns by more than 60 degrees till then.
+// `turn`: the relative angular velocity.
+struct Ahead { Vec3 axis; Real rate; };
+PC_FN Ahead pc_row_ahead(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Vec3 now = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
-  if (i > 1u) return now;  // rows of cones are two
+  Ahead r;
+  r.axis = now;
+  r.rate = pc_dot(now, turn);
+  if (i > 1u) return r;  // rows of cones are two
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
   precise Real gap_rate = pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
@@ -36,7 +49,7 @@ PC_FN Vec3 pc_axis_halfway(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) 
   Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
   Mask is_cone = pc_and(pc_nonzero(pc_dot(inner, inner)), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
   Mask wanted = pc_and(pc_and(is_limit, is_cone), pc_dot(turn, turn) > out_of_reach);
-  if (!PC_ANY(wanted)) return now;  // lint: allow (as it is otherwise)
+  if (!PC_ANY(wanted)) return r;  // lint: allow (as it is otherwise)
   Real seen = pc_min(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most), pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS up, TREE_X + 3u), most));
   inner = pc_halfway(PC_PASS n, inner);
   Vec3 outer = pc_halfway(PC_PASS up, pc_ld3_tree(PC_PASS n, TREE_CONE + 3u));
@@ -46,16 +59,19 @@ PC_FN Vec3 pc_axis_halfway(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) 
   axis = pc_select3(along < PC_REAL(0.0), pc_negate(axis), axis);
   precise Real least = pc_length(now) * pc_length(axis) * PC_REAL(0.5);
   Mask holds = pc_and(wanted, pc_abs(along) > least);
-  return pc_select3(seen < PC_REAL(1.0), now, pc_select3(holds, axis, now));
+  Real mean = pc_dot(axis, pc_sub(pc_mean_turn(PC_PASS n), pc_mean_turn(PC_PASS up)));
+  Mask unseen = seen < PC_REAL(1.0);
+  r.axis = pc_select3(unseen, now, pc_select3(holds, axis, now));
+  r.rate = pc_select(unseen, r.rate, pc_select(holds, mean, r.rate));
+  return r;
 }
 // Rate of an angle row's slack over the sub-step, once its axis is that of where the sub-step was foreseen to go first. What has changed since is
 // seen so far that the limit is left no faster than it was come to: impulses are along the axis of then.
 PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
   if (i > 1u) return now;
-  Real mean = pc_dot(pc_axis_halfway(PC_PASS n, up, i, turn, most), turn);
   precise Real back = now + pc_min(now, PC_LD(tree_rows, n, TREE_CAME + i));
-  return pc_max(mean, back);
+  return pc_max(pc_row_ahead(PC_PASS n, up, i, turn, most).rate, back);
 }
 
 // In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the sub-step.

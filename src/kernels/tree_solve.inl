@@ -14,23 +14,50 @@
 #include "tree_momentum.inl"
 #include "tree_predict.inl"
 
-// Of an angle row the axis of halfway, and the rate at which its limit is come to; of its slack the rate over the sub-step.
+// The limit of a row is the one that is nearer halfway through the sub-step: a joint that turns fast goes from one to beyond the other within one.
+// (A cone is left on its other side; its limit stays the same.)
+PC_FN void pc_face_limit(PC_IO Slot n, uint i, Vec3 turn) {
+  Vec3 axis = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
+  Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+  Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
+  Real sign = PC_LD(tree_rows, n, TREE_SIGN + i);
+  Real on = PC_LD(tree_rows, n, TREE_ON + i);
+  Real span = PC_LD(tree_rows, n, TREE_SPAN + i);
+  precise Real doubled = slack * PC_REAL(2.0) + pc_dot(axis, turn) * PC_INFO(h);
+  Mask is_limit = pc_and(pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5)), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
+  Mask other = pc_and(is_limit, doubled > span);
+  if (!PC_ANY(other)) return;  // lint: allow (rows stay otherwise)
+  precise Real left = span - slack;
+  Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);
+  Mask is_cone = pc_nonzero(pc_dot(inner, inner));
+  Real other_sign = -sign;
+  if (i == 1u) other_sign = pc_select(is_cone, sign, -sign);
+  pc_st3_tree(PC_PASS n, TREE_AXIS + i * 3u, pc_select3(other, pc_negate(axis), axis));
+  PC_ST(tree_rows, n, TREE_SLACK + i, pc_select(other, left, slack));
+  PC_ST(tree_rows, n, TREE_SIGN + i, pc_select(other, other_sign, sign));
+  PC_ST(tree_rows, n, TREE_ON + i, pc_select(other, PC_REAL(0.0), on));
+}
+// Of an angle row its limit, the axis of halfway, and the rate at which the limit is come to; of its slack the rate over the sub-step.
 PC_FN Real pc_begin_row(PC_IO Slot n, Slot up, uint i, Vec3 turn) {
-  Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-  if (i < 2u) PC_ST(tree_rows, n, TREE_CAME + i, pc_min(now, PC_REAL(0.0)));
-  Vec3 axis = pc_axis_halfway(PC_PASS n, up, i, turn, PC_REAL(1.0));
-  pc_st3_tree(PC_PASS n, TREE_AXIS + i * 3u, axis);
-  return pc_dot(axis, turn);
+  if (i < 2u) {
+    pc_face_limit(PC_PASS n, i, turn);
+    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    PC_ST(tree_rows, n, TREE_CAME + i, pc_min(now, PC_REAL(0.0)));
+  }
+  Ahead ahead = pc_row_ahead(PC_PASS n, up, i, turn, PC_REAL(1.0));
+  pc_st3_tree(PC_PASS n, TREE_AXIS + i * 3u, ahead.axis);
+  return ahead.rate;
 }
 // Rates of the angle rows' slacks that the solve must undo. Run after pc_tree_residual, whose TREE_X holds velocities.
 PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
+    Real ahead = pc_begin_row(PC_PASS n, up, i, turn);
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
     Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack, kind)), open);
-    precise Real rate = pc_begin_row(PC_PASS n, up, i, turn) + wanted;
+    precise Real rate = ahead + wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     Real on = PC_LD(tree_rows, n, TREE_ON + i);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(pc_and(kind > PC_REAL(0.5), rate < PC_REAL(0.0)), PC_REAL(1.0), on));
