@@ -281,13 +281,12 @@ template <class Scalar> bool Detector::passes_unseen(std::uint32_t shape, const 
 }
 
 // A body that went its reach and half of its thickness is at most half sunk into what it never saw: the next step finds it.
-// (Bodies on joints are left out, as they are of look_ahead.)
 template <class Scalar> bool Detector::collect_strays(const WorldState& s, const Scalar* before) {
   const Scalar* now = s.tables.data<Scalar>(Buffer::pose);
   bool found = false;
   for (std::uint32_t i = 0; i < proxies_.size(); i++) {
     const Proxy& proxy = proxies_[i];
-    if (!proxy.alive || !proxy.responds || proxy.jointed) continue;
+    if (!proxy.alive || !proxy.responds) continue;
     const Scalar *p = now + proxy.body * reals_of(Buffer::pose), *q = before + proxy.body * reals_of(Buffer::pose);
     const float x = float(p[0] - q[0]), y = float(p[1] - q[1]), z = float(p[2] - q[2]), seen = reach_[i] + 0.5f * proxy.inner;
     const float way = x * x + y * y + z * z;
