@@ -62,8 +62,8 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, uint pivot, Quaternion qc, Quate
   precise Real roll_span = upper.v.x - lower.v.x;
   precise Real pitch_span = upper.v.y - lower.v.y;
   precise Real across = upper.v.y + upper.v.y;
-  PC_ST(tree_rows, n, TREE_SPAN, roll_span);
-  PC_ST(tree_rows, n, TREE_SPAN + 1u, pc_select(is_cone, across, pitch_span));
+  PC_ST(tree_rows, n, TREE_SPAN, pc_select(any, roll_span, PC_REAL(0.0)));
+  PC_ST(tree_rows, n, TREE_SPAN + 1u, pc_select(is_cone, across, pc_select(any, pitch_span, PC_REAL(0.0))));
   pc_st3_tree(PC_PASS n, TREE_CONE, pc_select3(is_cone, pc_select3(flipped, a.x_of_a, a.x_of_b), pc_zero3()));
   pc_st3_tree(PC_PASS n, TREE_CONE + 3u, pc_select3(is_cone, pc_select3(flipped, a.x_of_b, a.x_of_a), pc_zero3()));
   if (pivot == 1u) pc_keep_for_the_turn(PC_PASS n, is_angles);
