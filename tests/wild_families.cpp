@@ -1,8 +1,7 @@
 // Pins: no family of random scenes breaks more often than it did. Seeds 1 to N of each, the same in every run, a minute
 // and a half in all on one core. What is recorded in tests/data/wild.csv is not what is wanted: it falls with what is
 // mended, and never rises. (Four times it did, by single scenes, and by five that lose bodies of host, when others fell by
-// hundreds; and by one more scene of joints and two of host when ragdolls fell by a quarter: of 1,000 unseen ones of host 10 lost bodies before and 8
-// do now. Once host broke in one scene more of 120 and in three less of 320: since then 320 are played.)
+// hundreds. Once host broke in one scene more of 120 and in three less of 320: since then 320 are played.)
 #include <doctest/doctest.h>
 
 #include <algorithm>
