@@ -211,8 +211,8 @@ template <class Scalar> struct Detector::Meeting {
     write(m, met.t, c.jointed ? -1 : c.struck ? std::max(met.t, 1e-9 * h) : 0);
   }
 
-  /// Of what was sent, after its bodies have moved: whether it is still apart. Then its rows let go of what they have pushed with.
-  bool misses() {
+  /// Of what was sent, after its bodies have moved: where it is still apart its rows are to let go of what they have pushed with.
+  void find_missed() {
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a);
     ShapeView<Scalar> b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
@@ -221,9 +221,8 @@ template <class Scalar> struct Detector::Meeting {
     look = Scalar(2 * near);
     Manifold<Scalar> m;
     look_at(a, b, m);
-    if (m.count > 0 && std::min(double(support_gap(a, b, m.normal)), double(least_separation(m))) <= near) return false;
+    if (m.count > 0 && std::min(double(support_gap(a, b, m.normal)), double(least_separation(m))) <= near) return;
     out[place::found_anew] = 3;
-    return true;
   }
 
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.

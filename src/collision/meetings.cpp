@@ -107,11 +107,17 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
 
 void Detector::find_missed(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options) {
   look_in(s, contacts, level, h, options, [&]<class Scalar>(const Substep<Scalar>& look) {
-    for (std::uint32_t at = 0; at < contacts.size(); at++) {
-      const std::uint32_t row = contacts[at];
-      if (row == 0 || !standings_[row].sent) continue;
-      if (Meeting<Scalar>{*this, s, look.bodies, options, h, row}.misses()) renewed_.push_back(at);
-    }
+    looks_.clear();
+    for (std::uint32_t at = 0; at < contacts.size(); at++)
+      if (contacts[at] != 0 && standings_[contacts[at]].sent) looks_.push_back({at, 0, true});
+    const auto look_at = [&](std::uint32_t begin, std::uint32_t end) {
+      for (const Look& l : std::span(looks_).subspan(begin, end - begin))
+        Meeting<Scalar>{*this, s, look.bodies, options, h, contacts[l.at]}.find_missed();
+    };
+    options.share(looks_.size(), look_at);
+    const Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
+    for (const Look& l : looks_)
+      if (rows[contacts[l.at] * contact_reals + place::found_anew] != 0) renewed_.push_back(l.at);
   });
 }
 
