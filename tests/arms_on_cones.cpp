@@ -1,7 +1,7 @@
 // Limits of a cone and its twist hold in the sub-step in which they are met: where a contact turns a joint over them (tree_limits; with only those
 // limits that act before the contacts, 19 of these 300 arms go beyond by more than a degree, the worst by 11); where a joint turns along the rim,
 // which its rate of now would let go on a tangent (pc_row_ahead; without, 9 of these 200 arms, the worst by 1.5); and where it turns from one limit
-// to the other within a sub-step (pc_face_limit; without, 31 of these 200 arms, the worst by 9).
+// to the other within a sub-step (pc_choose_limit; without, 31 of these 200 arms, the worst by 9).
 #include <doctest/doctest.h>
 
 #include <algorithm>

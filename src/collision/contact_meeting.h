@@ -149,6 +149,14 @@ template <class Scalar> struct Detector::Meeting {
       narrow(x, y, look, c.hint, m);
   }
 
+  /// Of the two where they stand, with the manifold there; no end where they are further apart than is looked for [m].
+  double gap_between(const ShapeView<Scalar>& a, ShapeView<Scalar> b, Manifold<Scalar>& m) const {
+    for (int k = 0; k < 3; k++) b.p[k] += apart[k];
+    look_at(a, b, m);
+    if (m.count == 0) return std::numeric_limits<double>::infinity();
+    return std::min(double(support_gap(a, b, m.normal)), double(least_separation(m)));
+  }
+
   /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that
   /// back, which rows that are solved together know and an impact does not. (What bounces does so however slowly it
   /// comes.)
@@ -180,17 +188,14 @@ template <class Scalar> struct Detector::Meeting {
     if ((!c.touches && c.gap - moved > goes) || is_lost(goes)) return stand_aside();
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
-    ShapeView<Scalar> there = b;
-    for (int k = 0; k < 3; k++) there.p[k] += apart[k];
     look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * goes);
     Manifold<Scalar> m;
-    look_at(a, there, m);
+    const double gap = gap_between(a, b, m);
     d.later_[c.later].moved = now;
     c.looked = d.went(row_a) + d.went(row_b);
     c.touches = false;
-    c.gap = double(look);
+    c.gap = m.count == 0 ? double(look) : gap;
     if (m.count == 0) return stand_aside();
-    c.gap = std::min(double(support_gap(a, there, m.normal)), double(least_separation(m)));
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
     c.touches = c.gap <= (!quick && (c.acts || settles(m)) ? seam_share * thick : near);
@@ -213,16 +218,11 @@ template <class Scalar> struct Detector::Meeting {
 
   /// Of what was sent, after its bodies have moved: where it is still apart its rows are to let go of what they have pushed with.
   void find_missed() {
-    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a);
-    ShapeView<Scalar> b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
-    for (int k = 0; k < 3; k++) b.p[k] += apart[k];
     const double near = seam_share * thick;
     look = Scalar(2 * near);
     Manifold<Scalar> m;
-    look_at(a, b, m);
-    if (m.count > 0 && std::min(double(support_gap(a, b, m.normal)), double(least_separation(m))) <= near) return;
-    out[place::found_anew] = 3;
+    if (gap_between(view(pa, c.shapes[0], row_a), view(pb, c.shapes[1], row_b), m) > near) out[place::found_anew] = 3;
   }
 
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.

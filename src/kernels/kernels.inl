@@ -21,7 +21,7 @@ PC_ROWS(contact, contact_impulses, 12)
 PC_ROWS(contact, rolling_impulses, 4)
 PC_ROWS(contact, contact_reach, 12)
 PC_ROWS(joint, joint_rows, 96)
-PC_ROWS(joint, tree_rows, 184)
+PC_ROWS(joint, tree_rows, 188)
 PC_ROWS(joint, tree_drive_rows, 36)
 PC_ROWS(joint, net_rows, 72)
 #endif

@@ -41,7 +41,6 @@ PC_FN Ahead pc_row_ahead(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Ahead r;
   r.axis = now;
   r.rate = pc_dot(now, turn);
-  if (i > 1u) return r;  // rows of cones are two
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
   precise Real gap_rate = pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
@@ -69,8 +68,7 @@ PC_FN Ahead pc_row_ahead(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
 // seen so far that the limit is left no faster than it was come to: impulses are along the axis of then.
 PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-  if (i > 1u) return now;
-  precise Real back = now + pc_min(now, PC_LD(tree_rows, n, TREE_CAME + i));
+  precise Real back = now + pc_min(now, PC_LD(tree_rows, n, TREE_APPROACH + i));
   return pc_max(pc_row_ahead(PC_PASS n, up, i, turn, most).rate, back);
 }
 

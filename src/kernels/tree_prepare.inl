@@ -59,11 +59,10 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, uint pivot, Quaternion qc, Quate
   pc_tree_angle(PC_PASS n, 0u, a.roll_axis, flip, a.value.x, lower.v.x, upper.v.x, any, remembered.x);
   pc_tree_angle(PC_PASS n, 1u, a.second_axis, flip, a.value.y, lower.v.y, upper.v.y, any, remembered.y);
   pc_tree_angle(PC_PASS n, 2u, a.third_axis, flip, a.value.z, lower.v.z, upper.v.z, is_angles, remembered.z);
-  precise Real roll_span = upper.v.x - lower.v.x;
-  precise Real pitch_span = upper.v.y - lower.v.y;
-  precise Real across = upper.v.y + upper.v.y;
-  PC_ST(tree_rows, n, TREE_SPAN, pc_select(any, roll_span, PC_REAL(0.0)));
-  PC_ST(tree_rows, n, TREE_SPAN + 1u, pc_select(is_cone, across, pc_select(any, pitch_span, PC_REAL(0.0))));
+  Vec3 span = pc_sub(upper.v, lower.v);
+  precise Real across = upper.v.y * PC_REAL(2.0);
+  span = Vec3(span.x, pc_select(is_cone, across, span.y), span.z);
+  pc_st3_tree(PC_PASS n, TREE_SPAN, pc_select3(any, span, pc_zero3()));
   pc_st3_tree(PC_PASS n, TREE_CONE, pc_select3(is_cone, pc_select3(flipped, a.x_of_a, a.x_of_b), pc_zero3()));
   pc_st3_tree(PC_PASS n, TREE_CONE + 3u, pc_select3(is_cone, pc_select3(flipped, a.x_of_b, a.x_of_a), pc_zero3()));
   if (pivot == 1u) pc_keep_for_the_turn(PC_PASS n, is_angles);

@@ -48,8 +48,8 @@ const uint TREE_ENERGY = TREE_REBOUND; // twice that of the motion before the so
 // what contacts see, from tree_respond to the end of the sub-step: roots of the joint's D^-1 and of the root's H^-1 (node_operator.inl), and W
 const uint TREE_FACTOR = 168u;       // 6
 const uint TREE_CONE = 174u;         // of a joint with a cone: the axis within it, on the body and on its parent; else 0
-const uint TREE_CAME = 180u;         // of the first two rows: the rate at which the limit is come to, or 0
-const uint TREE_SPAN = 182u;         // and how far it is from one of their limits to the other; of a cone, across it
+const uint TREE_APPROACH = 180u;     // of the three rows: the rate at which the limit is come to, or 0
+const uint TREE_SPAN = 183u;         // and how far it is from one limit to the other; of a cone, across it
 const uint TREE_SEEN = TREE_H;       // 18, where the factor was made anew after them
 const uint TREE_ANEW = TREE_ON;      // of the root: 1 where it was
 const uint TREE_ROOT_FACTOR = TREE_D;  // 21; a root has no joint

@@ -16,7 +16,7 @@
 
 // The limit of a row is the one that is nearer halfway through the sub-step: a joint that turns fast goes from one to beyond the other within one.
 // (A cone is left on its other side; its limit stays the same.)
-PC_FN void pc_face_limit(PC_IO Slot n, uint i, Vec3 turn) {
+PC_FN void pc_choose_limit(PC_IO Slot n, uint i, Vec3 turn) {
   Vec3 axis = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
@@ -39,11 +39,9 @@ PC_FN void pc_face_limit(PC_IO Slot n, uint i, Vec3 turn) {
 }
 // Of an angle row its limit, the axis of halfway, and the rate at which the limit is come to; of its slack the rate over the sub-step.
 PC_FN Real pc_begin_row(PC_IO Slot n, Slot up, uint i, Vec3 turn) {
-  if (i < 2u) {
-    pc_face_limit(PC_PASS n, i, turn);
-    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
-    PC_ST(tree_rows, n, TREE_CAME + i, pc_min(now, PC_REAL(0.0)));
-  }
+  pc_choose_limit(PC_PASS n, i, turn);
+  Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+  PC_ST(tree_rows, n, TREE_APPROACH + i, pc_min(now, PC_REAL(0.0)));
   Ahead ahead = pc_row_ahead(PC_PASS n, up, i, turn, PC_REAL(1.0));
   pc_st3_tree(PC_PASS n, TREE_AXIS + i * 3u, ahead.axis);
   return ahead.rate;
