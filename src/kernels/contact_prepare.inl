@@ -42,7 +42,7 @@ PC_FN void pc_keep_approach(PC_IO Slot m, uint i, Mask these, Mask of_step, Real
 // apart. It is not told of, either (contact_touch).
 PC_FN void pc_open_rows(PC_IO Slot m, Mask missed) {
   for (uint i = 0u; i < 4u; i++) {
-    pc_st_new(PC_PASS m, missed, ROW_S + i, pc_far_apart());
+    pc_st_new(PC_PASS m, missed, ROW_S + i, PC_REAL(1e9));
     pc_st_pushes(PC_PASS m, missed, IMPULSE_LARGEST + i, pc_min(PC_LD(contact_impulses, m, IMPULSE_LARGEST + i), PC_LD(contact_impulses, m, IMPULSE_BEFORE)));
   }
   pc_st_new(PC_PASS m, missed, ROW_E, PC_REAL(0.0));

@@ -41,6 +41,3 @@ const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;
 
 PC_FN Vec3 pc_ld3_rows(PC_IO Slot m, uint f) { return Vec3(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u)); }
-// The gap of rows whose shapes were sent together and did not meet (contact_prepare).
-PC_FN Real pc_far_apart() { return PC_REAL(1e9); }
-PC_FN Mask pc_is_far_apart(PC_IO Slot m) { precise Real half_as_far = pc_far_apart() * PC_REAL(0.5); return PC_LD(contact_rows, m, ROW_S) > half_as_far; }

@@ -45,7 +45,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Meeting now = pc_meeting_now(PC_PASS w, m, ia, ib, n, t1, t2); Twist v = now.twist;
-  Mask acts = pc_or(pc_goes_by_rows(PC_PASS now), pc_is_far_apart(PC_PASS m));
+  Mask acts = pc_goes_by_rows(PC_PASS now);
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
