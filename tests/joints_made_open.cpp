@@ -132,3 +132,31 @@ TEST_CASE("joints made open: closed chains that rest beyond their limits turn ba
         CHECK(gains.above <= 5);
       }
 }
+
+// What is pushed turns, and its centre stays: a push that moves no centre is taken back as well.
+TEST_CASE("joints made open: bodies pinned at their centres turn into line and have no motion of it at any step") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    World world({precision, {0, 0, 0}});
+    BodyId held = world.ground();
+    for (const double turned : {0.0, 1.0}) {
+      BodyDef def;
+      def.pose.orientation = axis_angle({0, 0, 1}, turned);
+      def.shapes = {ShapeDef::box({0.2, 0.1, 0.1})};
+      const BodyId body = must(world.create_body(def));
+      JointDef joint;
+      joint.a = held;
+      joint.b = body;
+      if (turned > 0) joint.freedom.kind = AngleFreedom::Kind::pitch_yaw_roll;  // all three are locked
+      must(world.create_joint(joint));
+      held = body;
+    }
+    Stepper stepper;
+    double most = 0;
+    for (int i = 0; i < 60; i++) {
+      run(world, stepper, 1);
+      most = std::max(most, world.kinetic_energy());
+    }
+    CHECK(most < 1e-6);
+    CHECK(must(world.pose(held)).orientation.z == doctest::Approx(std::sin(0.25)).epsilon(1e-4));  // both by half
+  }
+}

@@ -15,7 +15,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad here = PC_GATHER(pose, body, 0u); Quad here_low = PC_GATHER(pose, body, 2u);
     pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_sub(here.v, place.v), pc_sub(here_low.v, low.v)));
-    fastest = pc_max(fastest, pc_largest(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED)));
+    fastest = pc_max(fastest, pc_max(pc_largest(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED)), pc_largest(pc_ld3_tree(PC_PASS n, TREE_CHANGE))));
     pc_st3_tree(PC_PASS n, TREE_X, pc_negate(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED))); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_negate(pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
   }
   fastest = pc_max(fastest, pc_largest(gained)); PC_MOST(fastest);
