@@ -227,6 +227,7 @@ class Detector {
   template <class Does>
   void look_in(WorldState& state, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options,
                const Does& does);
+  template <class Scalar, class Finds> void find_all(const Substep<Scalar>& look, const Finds& finds);
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
   template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
   template <class Scalar> void find_sent(const Substep<Scalar>& look);

@@ -45,8 +45,21 @@ template <class Scalar> void Detector::find_sent(const Substep<Scalar>& look) {
     if (trees_[row] != 0) sent_[trees_[row]] = std::max(sent_[trees_[row]], way_of(look, row).goes);
 }
 
-/// What the bounds of both bodies' motion settle needs no look at the two together. The others are looked at by as many
-/// threads as there are: a look writes what is of its own contact alone.
+/// `finds(meeting, look)` of all looks, on as many threads as there are: a look writes what is of its own contact alone. Then
+/// notes whose rows are to be made anew.
+template <class Scalar, class Finds> void Detector::find_all(const Substep<Scalar>& look, const Finds& finds) {
+  look.options.share(looks_.size(), [&](std::uint32_t begin, std::uint32_t end) {
+    for (const Look& l : std::span(looks_).subspan(begin, end - begin)) {
+      Meeting<Scalar> meeting{*this, look.s, look.bodies, look.options, look.h, look.contacts[l.at]};
+      finds(meeting, l);
+    }
+  });
+  const Scalar* const rows = look.s.tables.template data<Scalar>(Buffer::contact);
+  for (const Look& l : looks_)
+    if (rows[look.contacts[l.at] * contact_reals + place::found_anew] != 0) renewed_.push_back(l.at);
+}
+
+/// What the bounds of both bodies' motion settle needs no look at the two together.
 template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
   find_sent(look);
   const auto sent = [&](std::uint32_t row) { return trees_.empty() || trees_[row] == 0 ? 0.0f : sent_[trees_[row]]; };
@@ -74,16 +87,10 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     make_record(c);
     looks_.push_back({at, from_others, c.acts});
   }
-  const auto look_at = [&](std::uint32_t begin, std::uint32_t end) {
-    for (const Look& l : std::span(looks_).subspan(begin, end - begin))
-      Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, look.contacts[l.at]}.find(double(l.from_others));
-  };
-  look.options.share(looks_.size(), look_at);
-  const Scalar* const rows = look.s.tables.template data<Scalar>(Buffer::contact);
+  find_all(look, [](Meeting<Scalar>& x, const Look& l) { x.find(double(l.from_others)); });
   for (const Look& l : looks_) {
     const std::uint32_t row = look.contacts[l.at];
     const Standing& c = standings_[row];
-    if (rows[row * contact_reals + place::found_anew] != 0) renewed_.push_back(l.at);
     if (c.struck) struck_.push_back(l.at);
     if (l.acted && !c.acts) gone_.push_back(row);
     stands_on(l.at, true);
@@ -110,14 +117,7 @@ void Detector::find_missed(WorldState& s, std::span<const std::uint32_t> contact
     looks_.clear();
     for (std::uint32_t at = 0; at < contacts.size(); at++)
       if (contacts[at] != 0 && standings_[contacts[at]].sent) looks_.push_back({at, 0, true});
-    const auto look_at = [&](std::uint32_t begin, std::uint32_t end) {
-      for (const Look& l : std::span(looks_).subspan(begin, end - begin))
-        Meeting<Scalar>{*this, s, look.bodies, options, h, contacts[l.at]}.find_missed();
-    };
-    options.share(looks_.size(), look_at);
-    const Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
-    for (const Look& l : looks_)
-      if (rows[contacts[l.at] * contact_reals + place::found_anew] != 0) renewed_.push_back(l.at);
+    find_all(look, [](Meeting<Scalar>& x, const Look&) { x.find_missed(); });
   });
 }
 
