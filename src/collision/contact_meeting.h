@@ -212,6 +212,9 @@ template <class Scalar> struct Detector::Meeting {
     find_together(m, c.touches ? seam_share * thick : near);
     to_light_side(m, share);
     if (!c.touches) back_to_start(ta, tb, apart, share, met.t, m);
+    // (what meets on its way overlaps nothing: rows of trees stop it there, and push nothing out)
+    if (!c.touches && c.jointed)
+      for (std::uint32_t i = 0; i < m.count; i++) m.points[i].separation = std::max(m.points[i].separation, Scalar(0));
     c.struck = !c.jointed && (!c.touches || quick);
     write(m, met.t, c.jointed ? -1 : c.struck ? std::max(met.t, 1e-9 * h) : 0);
   }

@@ -35,22 +35,41 @@ PC_FN Real pc_beyond_rounding(PC_IO Real gap_rate) {
   precise Real beyond = gap_rate - PC_INFO(least_load) * PC_REAL(1e-4);
   return beyond;
 }
-PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
+PC_FN Mask pc_is_open(PC_IO Real gap_rate) { return pc_beyond_rounding(PC_PASS gap_rate) > PC_REAL(0.0); }
+// What a row gives way by, as an impulse: what it lets go of, less what it pushes out.
+PC_FN Real pc_row_give(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
   precise Real gap_rate = s * PC_INFO(inverse_h);
   precise Real pushed = s * PC_INFO(soft_rate);
-  Mask open = pc_beyond_rounding(PC_PASS gap_rate) > PC_REAL(0.0);
+  Mask open = pc_is_open(PC_PASS gap_rate);
   Real bias = pc_select(open, gap_rate, pushed);
   Real leak = pc_select(open, PC_REAL(0.0), PC_INFO(soft_impulse_scale));
   precise Real rigid = impulse - mass * (vn + bias);
   precise Real beyond = rigid * loose;
-  // (what the row lets go of and what it pushes out, together no faster than push_speed: any load is held)
   precise Real give = mass * bias + pc_max(beyond, PC_REAL(0.0)) * leak;
-  precise Real most = mass * PC_INFO(push_speed);
-  precise Real change = -(mass * vn) - pc_max(give, -most);
+  return give;
+}
+#ifdef PC_TREES
+#define PC_MOST_PUSH PC_INFO(tree_push_speed)
+// What of it the velocities leave to poses (tree_contact_push), below 0; else how much the row may yet be closed.
+PC_FN Real pc_row_room(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
+  precise Real more = pc_row_give(PC_PASS vn, s, mass, impulse, loose) + mass * PC_MOST_PUSH;
+  precise Real gap_rate = s * PC_INFO(inverse_h);
+  precise Real gap = mass * gap_rate;
+  return pc_select(pc_is_open(PC_PASS gap_rate), gap, pc_min(more, PC_REAL(0.0)));
+}
+#else
+#define PC_MOST_PUSH PC_INFO(push_speed)
+#endif
+PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
+  precise Real gap_rate = s * PC_INFO(inverse_h);
+  // (what the row lets go of and what it pushes out, together no faster than the push: any load is held)
+  precise Real most = mass * PC_MOST_PUSH;
+  precise Real change = -(mass * vn) - pc_max(pc_row_give(PC_PASS vn, s, mass, impulse, loose), -most);
   // in the relax pass an open row that holds nothing waits for the sub-step in which it closes
-  Mask waits = pc_and(pc_and(open, impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
+  Mask waits = pc_and(pc_and(pc_is_open(PC_PASS gap_rate), impulse < PC_TINY), PC_INFO(load_ahead) > PC_REAL(0.0));
   return pc_select(waits, -impulse, change);
 }
+#undef PC_MOST_PUSH
 // New accumulated impulse of a row that takes this share of what it asks for.
 PC_FN Real pc_row_after(Real impulse, Real change, Real share) { precise Real next = impulse + change * share; return pc_snap(pc_max(next, PC_REAL(0.0))); }
 PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
@@ -82,7 +101,11 @@ PC_FN Real pc_gap(PC_IO Slot m, uint i, Shift shift) {
 
 // Impulse and couple on b at the centre; and where there is a load, how much of it was there in the sub-step before and still is: what
 // holds the two. (What has just come is a blow. After it a body may be slow, but it moves.)
+#ifdef PC_TREES
+struct Visit { Vec3 impulse; Vec3 couple; Real touch; FourRows room; };
+#else
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
+#endif
 PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2, Real preload PC_BACK PC_ACTING) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
@@ -125,6 +148,9 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   // normal rows
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
   precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_thrown(pc_row_change(PC_PASS v0, gap.s0, m0, l0, loose), v0, m0, back.r0);
+#ifdef PC_TREES
+  FourRows room = pc_four(pc_row_room(PC_PASS v0, gap.s0, m0, l0, loose), PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0));
+#endif
   Rows now; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Real share_of_all = PC_REAL(1.0);
   if (more) {  // lint: allow (as said)
     Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
@@ -133,6 +159,9 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
     precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_thrown(pc_row_change(PC_PASS v1, gap.s1, m1, l1, loose), v1, m1, back.r1);
     precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_thrown(pc_row_change(PC_PASS v2, gap.s2, m2, l2, loose), v2, m2, back.r2);
     precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_thrown(pc_row_change(PC_PASS v3, gap.s3, m3, l3, loose), v3, m3, back.r3);
+#ifdef PC_TREES
+    room.r1 = pc_row_room(PC_PASS v1, gap.s1, m1, l1, loose); room.r2 = pc_row_room(PC_PASS v2, gap.s2, m2, l2, loose); room.r3 = pc_row_room(PC_PASS v3, gap.s3, m3, l3, loose);
+#endif
     Real together = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(e0, e1, e2, e3), pc_four(m0, m1, m2, m3), pc_couplings(PC_PASS m));
     share_of_all = pc_select(several, together, PC_REAL(1.0));
     now.k1 = pc_row_after(l1, e1, share_of_all); now.k2 = pc_row_after(l2, e2, share_of_all); now.k3 = pc_row_after(l3, e3, share_of_all);
@@ -182,6 +211,7 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real held = pc_min(PC_LD(contact_impulses, m, IMPULSE_BEFORE), pressed); Mask touches = pc_max(load, pressed) > PC_REAL(0.0);
   r.touch = pc_select(touches, pc_max(held, PC_TINY), PC_REAL(0.0));
 #ifdef PC_TREES
+  r.room = room;
   r.touch = pc_select(thrown > PC_REAL(0.0), pc_max(r.touch, push.n), r.touch);  // what a bounce leaves is to be read whole (synchronise)
 #endif
   return r;

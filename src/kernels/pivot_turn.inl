@@ -147,6 +147,12 @@ PC_FN Vec3 pc_straightening(PC_IO Slot n) {
   return pc_negate(pc_scale(tilt, pc_share_closed(PC_PASS tilt)));
 }
 
+// How far contacts and loops push it about its pin (tree_flush), as a rotation vector.
+PC_FN Vec3 pc_pushed_turn(PC_IO Slot n, Pivot p, Quaternion q, Vec3 r) {
+  Vec3 momentum = pc_about_pin(p, r, pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), pc_scale(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), PC_LD(tree_rows, n, TREE_TOTAL)));
+  return pc_scale(pc_sym_mul(pc_world_inertia(pc_quaternion_mul(q, p.axes), p.inverse), momentum), PC_INFO(h));
+}
+
 // What the joint gave to the velocities meanwhile, on top of what tree_solve found, where that ran: a push at the pin, couples about
 // locked axes, and what a limit pressed. r: from the pin to the centre.
 PC_FN void pc_add_impulse(PC_IO Slot n, Vec3 push, Vec3 turn, Vec3 r, Real pressed) {
@@ -176,7 +182,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v));
   TwoSum before = pc_sum_about_pin(p, r, u_before.v, l_before.v);
   Motion start; start.l = before.sum; start.low = pc_add(pc_add(given, pc_about_pin(p, r, u_low.v, l_low.v)), before.low);
-  Turn straight = pc_turn(pc_straightening(PC_PASS n)); start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
+  Turn straight = pc_turn(pc_add(pc_straightening(PC_PASS n), pc_pushed_turn(PC_PASS n, p, q, r))); start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
   precise Real back = -half_h; start = pc_kick(start, torque, back);  // in phase with the pose: it has had a whole kick and was half a one behind
   Motion next = start;
   Real pressed = PC_REAL(0.0);

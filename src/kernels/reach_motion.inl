@@ -1,8 +1,7 @@
 // What is pending in trees moves a contact's rows, and its impulses push the trees, through contact_reach. Needs tree_reach.inl.
-// `turning`: how far behind a slot that of its couples stands; 0 where they do not matter.
+// `turning`: how far behind a slot that of its couples stands; 0 where they do not matter (reach_turning.inl).
 #include "node_push.inl"
 
-PC_FN uint pc_turning(PC_IO Way w, Slot m) { return PC_ANY(pc_turns_matter(PC_PASS m)) ? pc_reach_all(w) : 0u; }
 PC_FN Vec3 pc_rows_rate(PC_IO Slot s, Vec3 z) { return Vec3(pc_dot(pc_ld3_reach(PC_PASS s, 0u), z), pc_dot(pc_ld3_reach(PC_PASS s, 3u), z), pc_dot(pc_ld3_reach(PC_PASS s, 6u), z)); }
 PC_FN Six pc_pending_here(PC_IO Slot m, uint at, uint turning, Vec3 z, Six v) {
   Slot s = PC_NODE(m, at); pc_st3_reach(PC_PASS s, REACH_PENDING, z); v.l = pc_add(v.l, pc_rows_rate(PC_PASS s, z));

@@ -84,11 +84,13 @@ PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
     for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
   PC_MOST(kind); return pc_select(kind > PC_REAL(1.5), PC_REAL(1.0), PC_REAL(0.0));
 }
-// What the push undoes of a joint's angles, as rates of its rows. 1 where there is any.
-PC_FN Real pc_push_angles(PC_IO Slot n) {
+// What the push undoes of a joint's angles, as rates of its rows. 1 where there is any. Where contacts and loops have begun it (`begun`), what that
+// turns over limits as well.
+PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
   Real any = PC_REAL(0.0);
   pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return any;  // lint: allow (zeros otherwise)
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
     Mask acts = PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5);
@@ -97,27 +99,48 @@ PC_FN Real pc_push_angles(PC_IO Slot n) {
     precise Real beyond = slack - pc_little_beyond(PC_PASS slack, kind);
     Real undone = pc_select(pc_or(open, pc_abs(beyond) < PC_INFO(rounding)), PC_REAL(0.0), beyond);
     Real rate = pc_select(acts, pc_soft_bias(PC_PASS undone), PC_REAL(0.0));
+    if (PC_ANY(begun)) {  // lint: allow (selected)
+      Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
+      Real turned = pc_select(kind > PC_REAL(1.5), now, pc_crosses(PC_PASS n, i, now));
+      precise Real both = rate + turned;
+      rate = pc_select(begun, both, rate);
+    }
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
     any = pc_select(pc_nonzero(rate), PC_REAL(1.0), any);
   }
   return any;
 }
-// What the push begins with: gaps of more than 32 epsilon of the arm are closed, and what is beyond its limits is turned back.
-struct Push { Real open; Real turned; };
-PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise) {
-  Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0);
-  Vec3 zero = pc_zero3();
+// What contacts and loops have begun to push begins to move. 1 where there is any.
+PC_FN Real pc_move_by_push(PC_IO Slot m, Tree t) {
+  Real fastest = PC_REAL(0.0);
+  if (pc_is_pivot(PC_PASS t) == 1u) return fastest;  // pivot_turn moves it
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, zero);
-    pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, zero);
-    if (k > 0u) {
-      Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
-      Real here = pc_gap_over(PC_PASS n, gap, noise);
-      push.open = pc_max(push.open, here);
-      pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_closing(PC_PASS gap), here));
-      push.turned = pc_max(push.turned, pc_push_angles(PC_PASS n));
-    }
+    Vec3 speed = pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED);
+    Vec3 turn = pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN);
+    fastest = pc_max(fastest, pc_max(pc_largest(speed), pc_largest(turn)));
+    pc_st3_tree(PC_PASS n, TREE_X, speed);
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, turn);
+  }
+  PC_MOST(fastest);
+  Mask begun = fastest > PC_REAL(0.0);
+  if (PC_ANY(begun)) pc_tree_move(PC_PASS m, t, begun);  // lint: allow (nothing changes otherwise)
+  return pc_select(begun, PC_REAL(1.0), PC_REAL(0.0));
+}
+// What the push goes on with: gaps of more than 32 epsilon of the arm are closed, also those that contacts and loops have opened, and what is beyond
+// its limits is turned back.
+struct Push { Real open; Real turned; Real most; };
+PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise, Real begun) {
+  Push push; push.open = begun; push.turned = begun; push.most = PC_INFO(largest_state);
+  Mask moves = begun > PC_REAL(0.5);
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
+    Real here = pc_gap_over(PC_PASS n, gap, noise);
+    push.open = pc_max(push.open, here);
+    Vec3 opened = pc_select3(moves, pc_ld3_tree(PC_PASS n, TREE_C), pc_zero3());
+    pc_st3_tree(PC_PASS n, TREE_C, pc_madd(opened, pc_closing(PC_PASS gap), here));
+    push.turned = pc_max(push.turned, pc_push_angles(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), moves));
   }
   if (pc_is_pivot(PC_PASS t) == 1u) { push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0); }  // pivot_turn closes it
   push.open = pc_max(push.open, push.turned);
@@ -125,16 +148,44 @@ PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise) {
   PC_MOST(push.turned);
   return push;
 }
-// Where it turns, the arms' arcs open gaps again: those are closed with it. Run after pc_tree_residual.
-PC_FN void pc_continue_push(PC_IO Slot m, Tree t, Real noise, Real turned) {
+// Rates that turn a joint's limits back which the push crosses. 1 where it does.
+PC_FN Real pc_crossing_rates(PC_IO Slot n, Slot up, Real goes) {
+  Real crossed = PC_REAL(0.0);
+  pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return crossed;  // lint: allow (zeros otherwise)
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  for (uint i = 0u; i < 3u; i++) {
+    Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
+    Real over = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_REAL(0.0), pc_crosses(PC_PASS n, i, now));
+    crossed = pc_max(crossed, pc_select(pc_is_crossed(over), PC_REAL(1.0), PC_REAL(0.0)));
+    precise Real rate = over * goes;
+    PC_ST(tree_rows, n, TREE_RATE + i, rate);
+  }
+  return crossed;
+}
+// Where it turns, the arms' arcs open gaps again, and limits are crossed: those are closed with it, as long as less is left than at first (`most`, a
+// speed squared). Run after pc_tree_residual. `much`: 1 where that is more than 4e-5 of an arm.
+struct Rest { Real much; Real most; };
+PC_FN Rest pc_continue_push(PC_IO Slot m, Tree t, Real noise, Real turned, Real most) {
+  Rest rest; rest.much = PC_REAL(0.0); rest.most = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
     Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
-    Real here = pc_gap_over(PC_PASS n, gap, noise);
-    Vec3 left = pc_madd(pc_ld3_tree(PC_PASS n, TREE_C), pc_closing(PC_PASS gap), here);
-    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(left, turned));
-    pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
+    Vec3 left = pc_madd(pc_ld3_tree(PC_PASS n, TREE_C), pc_closing(PC_PASS gap), pc_gap_over(PC_PASS n, gap, noise));
+    rest.much = pc_max(rest.much, pc_gap_over(PC_PASS n, pc_scale(left, PC_INFO(h)), PC_REAL(2e-9)));
+    rest.most = pc_max(rest.most, pc_dot(left, left));
+    pc_st3_tree(PC_PASS n, TREE_C, left);
   }
+  PC_MOST(rest.most);
+  Real goes = pc_select(rest.most > most, PC_REAL(0.0), turned);
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), goes));
+    rest.much = pc_max(rest.much, pc_crossing_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), goes));
+  }
+  PC_MOST(rest.much);
+  rest.much = pc_min(rest.much, goes);
+  return rest;
 }
 // The same whether other lanes pushed.
 PC_FN void pc_end_push(PC_IO Slot m, Tree t) {
@@ -142,10 +193,9 @@ PC_FN void pc_end_push(PC_IO Slot m, Tree t) {
   Six none = pc_six(zero, zero);
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN));
     pc_st6_tree(PC_PASS n, TREE_F, none);
     pc_st6_tree(PC_PASS n, TREE_X, none);
-    pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, zero);
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, zero);
     if (k > 0u) {
       pc_st3_tree(PC_PASS n, TREE_C, zero);
       pc_st3_tree(PC_PASS n, TREE_RATE, zero);
@@ -174,11 +224,7 @@ PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool pushes) {
   }
   pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
   if (pushes) {
-    PC_NODES(k, 0u, t) {
-      Slot n = PC_NODE(m, t.first + k);
-      pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), pc_ld3_tree(PC_PASS n, TREE_X)));
-      pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
-    }
+    PC_NODES(k, 0u, t) pc_add_to_push(PC_PASS PC_NODE(m, t.first + k));
   }
 }
 // After Newton's steps where `steps` is 1: 1 where they have not found their way, or have thrown back more than there was; what is too much is
@@ -195,9 +241,10 @@ PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps, Real thrown) {
   return again;
 }
 
-// Rounds 0 to 3 are Newton's steps; two more follow where they were taken back, and two of the push.
+// Rounds 0 to 3 are Newton's steps; two more follow where they were taken back, and the push.
 const uint ROUND_AGAIN = 4u;
 const uint ROUND_PUSH = 6u;
+const uint ROUND_END = 10u;
 
 // What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
 // 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
@@ -208,8 +255,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real wanted = PC_REAL(1.0);
   Real steps = PC_REAL(0.0);
   Real thrown = PC_REAL(0.0);
-  Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0);
-  for (uint round = 0u; round < 8u; round++) {
+  Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0); push.most = PC_REAL(0.0);
+  for (uint round = 0u; round < ROUND_END; round++) {
     if (round == ROUND_AGAIN) {
       wanted = PC_REAL(0.0);
       if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
@@ -220,16 +267,19 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     if (round == ROUND_PUSH) {
       if (PC_ANY(thrown > PC_REAL(0.5))) pc_tell_blow(PC_PASS m, t, thrown > PC_REAL(0.5));  // lint: allow (as above)
       PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
-      push = pc_begin_push(PC_PASS m, t, noise);
-      wanted = push.open;
+      wanted = pc_move_by_push(PC_PASS m, t);
     }
-    if (round > ROUND_PUSH) wanted = push.turned;
-    if (!PC_ANY(wanted > PC_REAL(0.5))) continue;  // lint: allow (rounds of nothing change nothing)
+    if (round > ROUND_PUSH) wanted = pc_min(wanted, push.turned);
     Real most = PC_REAL(1.0);
-    if (round != ROUND_PUSH) {
+    if (PC_ANY(wanted > PC_REAL(0.5))) {  // lint: allow (rounds of nothing change nothing)
       if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(strayed_turn);
       pc_tree_residual_to(PC_PASS m, t, wanted, most);
     }
+    if (round == ROUND_PUSH) {
+      push = pc_begin_push(PC_PASS m, t, noise, wanted);
+      wanted = push.open;
+    }
+    if (!PC_ANY(wanted > PC_REAL(0.5))) continue;  // lint: allow (as above)
     Left left; left.some = PC_REAL(1.0); left.much = PC_REAL(1.0);
     if (round < ROUND_AGAIN) left = pc_left(PC_PASS m, t);
     if (round == 0u) {
@@ -239,7 +289,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
       pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));
     }
     if (round < ROUND_PUSH) pc_newton_rates(PC_PASS m, t, wanted, most);
-    if (round > ROUND_PUSH) pc_continue_push(PC_PASS m, t, noise, wanted);
+    if (round > ROUND_PUSH) {
+      Rest rest = pc_continue_push(PC_PASS m, t, noise, wanted, push.most);
+      left.much = rest.much;
+      if (round == ROUND_PUSH + 1u) push.most = rest.most;
+    }
     pc_solve_round(PC_PASS m, t, round >= ROUND_PUSH);
     wanted = pc_min(wanted, left.much);
   }

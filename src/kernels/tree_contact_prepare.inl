@@ -13,6 +13,7 @@
 #include "contact_masses.inl"
 #include "free_responses.inl"
 #include "tree_reach.inl"
+#include "reach_turning.inl"
 #include "kept_meeting.inl"
 #include "contact_reach.inl"
 #include "row_approach.inl"

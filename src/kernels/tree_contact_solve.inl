@@ -9,6 +9,7 @@
 #include "contact_visit.inl"
 #include "contact_meeting.inl"
 #include "tree_reach.inl"
+#include "reach_turning.inl"
 #include "kept_meeting.inl"
 #include "reach_motion.inl"
 #include "row_approach.inl"
@@ -39,6 +40,16 @@ PC_FN Mask pc_goes_by_rows(PC_IO Meeting now) {
   return pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), turned, PC_REAL(0.0)) < PC_REAL(0.25);  // (a blow-up times zero is no number)
 }
 
+// For tree_contact_push.
+PC_FN void pc_keep_room(PC_IO Way w, Slot m, FourRows room) {
+  Mask acts = PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0);
+  Slot s = PC_NODE(m, w.reach + 1u);
+  PC_ST(contact_reach, s, REACH_ROOM, pc_select(acts, room.r0, PC_LD(contact_reach, s, REACH_ROOM)));
+  PC_ST(contact_reach, s, REACH_ROOM + 1u, pc_select(acts, room.r1, PC_LD(contact_reach, s, REACH_ROOM + 1u)));
+  PC_ST(contact_reach, s, REACH_ROOM + 2u, pc_select(acts, room.r2, PC_LD(contact_reach, s, REACH_ROOM + 2u)));
+  PC_ST(contact_reach, s, REACH_ROOM + 3u, pc_select(acts, room.r3, PC_LD(contact_reach, s, REACH_ROOM + 3u)));
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   if (!PC_ANY(PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0))) return;  // lint: allow (without mass they do nothing)
   Way w = pc_way(PC_PASS m);
@@ -51,6 +62,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
   Mask both_move = pc_both_move(PC_PASS w, m);
   Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, PC_INFO(contact_preload), both_move, pc_bounce(PC_PASS w, m), acts);
+  pc_keep_room(PC_PASS w, m, r.room);
   r.impulse = pc_select3(acts, r.impulse, pc_zero3());
   r.couple = pc_select3(acts, r.couple, pc_zero3());
 

@@ -3,7 +3,7 @@
 
 // while tree_solve and tree_limits last, in places that are free by then
 const uint TREE_REST = TREE_PUSH;         // the angular part of TREE_A, 6
-const uint TREE_STALE = TREE_PUSH_SPEED;  // 1 where the factor must be made anew
+const uint TREE_STALE = TREE_KEPT_PIN;  // 1 where the factor must be made anew
 
 PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > PC_REAL(0.5); }
 

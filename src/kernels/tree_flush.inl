@@ -43,15 +43,38 @@ PC_FN void pc_pass_blow(PC_IO Slot n) {
   PC_SCATTER_IF(blown, velocity_parts, body, 1u, pc_quad(pc_add(angular.v, turned), angular.s));
 }
 
+// What undoes overlaps and closes loops moves poses alone, later (tree_again.inl). TREE_X: of that and of what contacts have changed before.
+PC_FN void pc_keep_push(PC_IO Slot n) {
+  Vec3 turned_before = pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN);
+  pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X));
+  pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_ld3_tree(PC_PASS n, TREE_CHANGE));
+  pc_st3_tree(PC_PASS n, TREE_X + 3u, pc_add(pc_ld3_tree(PC_PASS n, TREE_X + 3u), turned_before));
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
+  bool moves_poses = PC_ANY(PC_INFO(push) > PC_REAL(0.5));
+  if (moves_poses) {
+    PC_NODES(k, 0u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_ld3_tree(PC_PASS n, TREE_X + 3u)); }
+    PC_MEET;
+  }
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); Quad impulse = PC_GATHER(node_pending, row, 2u); Quad torque = PC_GATHER(node_pending, row, 3u);
-    push = pc_add(push, impulse.v); PC_ONE PC_ST(tree_rows, n, TREE_TOUCH, impulse.s);
+    Real touch = impulse.s;
+    if (moves_poses) touch = pc_max(touch, PC_LD(tree_rows, n, TREE_TOUCH));
+    push = pc_add(push, impulse.v); PC_ONE PC_ST(tree_rows, n, TREE_TOUCH, touch);
     precise Vec3 moment = turn + torque.v + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), impulse.v); turn = moment;
     PC_THEN(PC_DOWN(k, 0u, t)) pc_flush_node(PC_PASS m, t, k);
   }
   Real share = pc_inverse_or_zero(PC_LD(tree_rows, root, TREE_TOTAL));
-  pc_tree_add_changes(PC_PASS m, t, pc_scale(push, share), pc_scale(turn, share));
+  push = pc_scale(push, share); turn = pc_scale(turn, share);
+  if (moves_poses) {
+    pc_tree_conserve(PC_PASS m, t, push, turn);
+    PC_MEET;
+    PC_NODES(k, 0u, t) pc_keep_push(PC_PASS PC_NODE(m, t.first + k));
+    PC_ONE pc_st6_tree(PC_PASS root, TREE_PUSHED, pc_six(push, turn));
+    return;
+  }
+  pc_tree_add_changes(PC_PASS m, t, push, turn);
   PC_NODES(k, 0u, t) pc_pass_blow(PC_PASS PC_NODE(m, t.first + k));
 }

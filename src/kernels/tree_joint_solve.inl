@@ -27,10 +27,14 @@ PC_FN Vec3 pc_mean_velocity(PC_IO BodyState b, Vec3 v, Vec3 w, Vec3 arm, Vec3 l)
   Vec3 moved = pc_cross(turn.q.v, pc_madd(pc_cross(turn.q.v, arm), arm, turn.q.w)); precise Real twice = PC_INFO(inverse_h) * PC_REAL(2.0);
   return pc_select3(pc_dot(angle, angle) < PC_REAL(0.25), pc_madd(v, moved, twice), pc_add(v, pc_cross(w, arm)));
 }
-// Velocity that closes a share of the gap, at most joint_push_speed.
-PC_FN Vec3 pc_pin_bias(PC_IO Vec3 gap) {
-  Vec3 v = pc_scale(gap, PC_INFO(soft_rate)); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
-  Real share = pc_share_within(size, most); return pc_scale(v, share);
+// Velocity that closes a share of the gap, at most joint_push_speed, and with no more energy than the lighter body has at push_speed: near the
+// straight line a loop closes only as bodies turn fast.
+PC_FN Vec3 pc_pin_bias(PC_IO Slot m, BodyState a, BodyState b) {
+  Vec3 v = pc_scale(pc_ld3_joint(PC_PASS m, JOINT_GAP), PC_INFO(soft_rate));
+  v = pc_scale(v, pc_share_within(pc_length(v), PC_INFO(joint_push_speed)));
+  Real energy = pc_dot(v, pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), v));
+  precise Real most = PC_INFO(push_speed) * PC_INFO(push_speed) * pc_inverse_or_zero(pc_max(a.inverse_mass, b.inverse_mass));
+  return pc_scale(v, pc_share_within(pc_sqrt(pc_max(energy, PC_REAL(0.0))), pc_sqrt(most)));
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -51,7 +55,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 arm_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A); Vec3 arm_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B);
   Mat3 move = pc_mat3(pc_ld3_joint(PC_PASS m, JOINT_MOVE), pc_ld3_joint(PC_PASS m, JOINT_MOVE + 3u), pc_ld3_joint(PC_PASS m, JOINT_MOVE + 6u));
   precise Vec3 rate = pc_mean_velocity(PC_PASS b, vb, wb, arm_b, b.l) - pc_mean_velocity(PC_PASS a, va, wa, arm_a, a.l) + pc_mat_mul(move, couple);
-  precise Vec3 wanted = rate + pc_pin_bias(PC_PASS pc_ld3_joint(PC_PASS m, JOINT_GAP)) + pin.v * PC_LD(joint_rows, m, JOINT_GIVE);
+  precise Vec3 wanted = rate + pc_pin_bias(PC_PASS m, a, b) + pin.v * PC_LD(joint_rows, m, JOINT_GIVE);
   Vec3 change = pc_negate(pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted));
   change = pc_within_most(PC_PASS m, pin.v, change);
 #ifdef PC_DRIVES

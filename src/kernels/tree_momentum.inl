@@ -22,9 +22,8 @@ PC_FN void pc_tree_conserve(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_tu
   }
 }
 
-// Adds the changes to the bodies' velocities and momenta, of `some` trees, both momenta of a free one kept; and that contacts touched them.
-PC_FN void pc_tree_add_changes_of(PC_IO Slot m, Tree t, Mask some, Vec3 given_push, Vec3 given_turn) {
-  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
+// Adds the changes to the bodies' velocities and momenta, of `some` trees; and that contacts touched them.
+PC_FN void pc_tree_move(PC_IO Slot m, Tree t, Mask some) {
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad linear = PC_GATHER(motion, body, 0u); Quad angular = PC_GATHER(motion, body, 1u);
@@ -33,7 +32,18 @@ PC_FN void pc_tree_add_changes_of(PC_IO Slot m, Tree t, Mask some, Vec3 given_pu
     Mask moves = pc_and(some, linear.s > PC_REAL(0.0)); PC_SCATTER_IF(moves, motion, body, 0u, linear); PC_SCATTER_IF(moves, motion, body, 1u, angular);
   }
 }
+// The same, both momenta of a free tree kept.
+PC_FN void pc_tree_add_changes_of(PC_IO Slot m, Tree t, Mask some, Vec3 given_push, Vec3 given_turn) {
+  pc_tree_conserve(PC_PASS m, t, given_push, given_turn);
+  pc_tree_move(PC_PASS m, t, some);
+}
 PC_FN void pc_tree_add_changes(PC_IO Slot m, Tree t, Vec3 given_push, Vec3 given_turn) { pc_tree_add_changes_of(PC_PASS m, t, PC_IS(1u), given_push, given_turn); }
+
+// What undoes gaps and overlaps, so far: it is taken back once the bodies have moved.
+PC_FN void pc_add_to_push(PC_IO Slot n) {
+  pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), pc_ld3_tree(PC_PASS n, TREE_X)));
+  pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
+}
 
 // Adds what a sweep changed to the bodies' velocities. Velocities themselves, not the impulses: those act on light bodies
 // between heavy ones as the difference of large numbers.

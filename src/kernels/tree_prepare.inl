@@ -126,7 +126,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Slot n = PC_NODE(m, t.first + k); precise Real own = PC_LD(tree_rows, n, TREE_MASS) * share;
     pc_sts_tree(PC_PASS n, TREE_BODY, pc_world_inertia(pc_facing(PC_PASS n), pc_scale(pc_ld3_tree(PC_PASS n, TREE_PRINCIPAL), share)));
     PC_ST(tree_rows, n, TREE_MASS, own); PC_ST(tree_rows, n, TREE_TOUCH, PC_REAL(0.0)); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
+    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_zero3()); pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_zero3());
   }
+  PC_ONE pc_st6_tree(PC_PASS PC_NODE(m, t.first), TREE_PUSHED, pc_six(pc_zero3(), pc_zero3()));
   pc_tree_stiffness(PC_PASS m, t); pc_tree_whole(PC_PASS m, t);
   Real pivot = pc_select(PC_IS(pc_is_pivot(PC_PASS t)), PC_REAL(1.0), PC_REAL(0.0));
   PC_NODES(k, 1u, t) PC_ST(tree_rows, PC_NODE(m, t.first + k), TREE_PIVOT, pivot);

@@ -7,6 +7,7 @@
 // row three reals.
 const uint REACH_ROWS = 2u;     // where slots of rows begin
 const uint REACH_APPROACH = 11u; // in the first slot: the fastest approach of a row before anything remembered acted (tree_contact_warm)
+const uint REACH_ROOM = 6u;     // in the second slot: four, what rows leave to tree_contact_push, or how much they may yet be closed [N s]
 const uint REACH_PENDING = 9u;  // what was pending when the contact was visited; in slots of impulses
 
 PC_FN Vec3 pc_ld3_reach(PC_IO Slot s, uint f) { return Vec3(PC_LD(contact_reach, s, f), PC_LD(contact_reach, s, f + 1u), PC_LD(contact_reach, s, f + 2u)); }
@@ -15,8 +16,3 @@ PC_FN void pc_st3_reach(PC_IO Slot s, uint f, Vec3 v) { PC_ST(contact_reach, s, 
 PC_FN uint pc_reach_count(Way w, uint side) { return pc_any_in_tree(w, side) * 2u + pc_depth(w, side); }
 PC_FN uint pc_reach_all(Way w) { return pc_reach_count(w, 0u) + pc_reach_count(w, 1u); }
 PC_FN uint pc_reach_first(Way w, uint side, uint turns) { return w.reach + REACH_ROWS + pc_reach_all(w) * turns + pc_reach_count(w, 0u) * side; }
-// A manifold of one point has no rows but those of impulses (once it has let go of the twist of two), nor has one that is left alone.
-PC_FN Mask pc_turns_matter(PC_IO Slot m) {
-  Mask acts = PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0);
-  return pc_and(acts, pc_or(PC_LD(contact_rows, m, ROW_RADIUS) > PC_REAL(0.0), pc_abs(PC_LD(contact_impulses, m, IMPULSE_T + 2u)) > PC_REAL(0.0)));
-}

@@ -15,12 +15,15 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Slot n = PC_NODE(m, t.first + k); Index body = PC_ENDS(tree_ends, n, 0u);
     Quad here = PC_GATHER(pose, body, 0u); Quad here_low = PC_GATHER(pose, body, 2u);
     pc_st3_tree(PC_PASS n, TREE_PLACE, pc_add(pc_sub(here.v, place.v), pc_sub(here_low.v, low.v)));
-    fastest = pc_max(fastest, pc_max(pc_largest(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED)), pc_largest(pc_ld3_tree(PC_PASS n, TREE_CHANGE))));
-    pc_st3_tree(PC_PASS n, TREE_X, pc_negate(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED))); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_negate(pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
+    fastest = pc_max(fastest, pc_max(pc_largest(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED)), pc_largest(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN))));
+    pc_st3_tree(PC_PASS n, TREE_X, pc_negate(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED))); pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_negate(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN)));
   }
+  if (pc_is_pivot(PC_PASS t) == 1u) return;  // pivot_turn has given it no velocity
   fastest = pc_max(fastest, pc_largest(gained)); PC_MOST(fastest);
   pc_tree_whole(PC_PASS m, t);
   Mask pushed = fastest > PC_REAL(0.0);
   if (!PC_ANY(pushed)) return;  // lint: allow (a push of nothing changes nothing)
-  pc_tree_add_changes_of(PC_PASS m, t, pushed, pc_zero3(), pc_negate(gained));
+  Vec3 push = pc_ld3_tree(PC_PASS root, TREE_PUSHED); Quad linear = PC_GATHER(motion, first, 0u);
+  Vec3 moment = pc_sub(pc_ld3_tree(PC_PASS root, TREE_PUSHED + 3u), pc_cross(pc_scale(linear.v, PC_INFO(h)), push));
+  pc_tree_add_changes_of(PC_PASS m, t, pushed, pc_negate(push), pc_negate(pc_add(moment, gained)));
 }

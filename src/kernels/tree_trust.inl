@@ -4,8 +4,7 @@
 #include "tree_energy.inl"
 
 const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other
-const uint TREE_KEPT_PIN = TREE_PUSH_SPEED;    // impulses of the pin and of the angle rows, beside TREE_SEEN
-const uint TREE_KEPT_LIMIT = TREE_H + 18u;
+const uint TREE_KEPT_LIMIT = TREE_H + 18u;  // impulses of the angle rows, beside TREE_SEEN
 
 PC_FN void pc_keep(PC_IO Slot n, Mask these, uint f, Vec3 v) { pc_st3_tree(PC_PASS n, f, pc_select3(these, v, pc_ld3_tree(PC_PASS n, f))); }
 PC_FN void pc_keep_motion(PC_IO Slot m, Tree t, Mask these) {

@@ -47,6 +47,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.settling_pace = Scalar(constants::settling_pace);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.push_speed = Scalar(from.push_speed);
+  biased.tree_push_speed = Scalar(std::min(from.push_speed, length(from.gravity) * from.h * from.substeps));
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   biased.limit_give = Scalar(constants::largest_give);
   biased.loop_give = Scalar(constants::loop_give);
@@ -79,6 +80,9 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   change(Phase::first, from.last_substep > 0 ? from.last_substep : from.h, h);
   infos[unsigned(Phase::first)].begins = 1;
   change(Phase::last, h, from.h);
+
+  infos[unsigned(Phase::push)] = biased;
+  infos[unsigned(Phase::push)].push = 1;
 
   InfoOf<Scalar>& relax = infos[unsigned(Phase::relax)];
   relax = biased;

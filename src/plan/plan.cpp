@@ -208,6 +208,12 @@ void solve_on_trees(Builder& b, const PlanSignature& s, Phase phase, std::uint32
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_solve, phase, substep);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_flush, phase, substep);
 }
+/// What overlaps trees is undone by poses alone.
+void push_trees(Builder& b, const PlanSignature& s, std::uint32_t substep) {
+  if (!s.tree_contacts) return;
+  b.kernel(Kernel::tree_contact_push, Phase::push, substep);
+  b.kernel(Kernel::tree_flush, Phase::push, substep);
+}
 // before the forces, and before the first sub-step brings velocities out of phase
 void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.tree_drives) b.kernel(Kernel::tree_drive_rates, phase, substep);
@@ -251,6 +257,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   look_at_contacts(b, s, k == 0 ? Phase::first : Phase::biased, k);
   b.own(Stage::integrate, true, k, count);
   b.own(Stage::joints, false, k, count);
+  if (s.tree_contacts && k == 0) b.kernel(Kernel::push_back, Phase::first, k);
   if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
   if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
   // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
@@ -280,6 +287,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
   if (s.nets && s.contacts()) b.kernel(Kernel::net_solve, Phase::biased, k);
+  push_trees(b, s, k);
   if (s.limits_after_contacts()) b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
@@ -288,6 +296,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.nets) b.kernel(Kernel::net_settle, Phase::biased, k);
   if (s.tree_contacts) look_at_contacts(b, s, Phase::relax, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_relax, Phase::relax, k);
+  if (s.tree_contacts) b.kernel(Kernel::push_back, Phase::relax, k);
   solve_free_joints(b, s, Phase::relax, k);
   if (s.free_contacts && s.gyroscopic) b.kernel(contacts(s).refresh, Phase::relax, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::relax, k);
