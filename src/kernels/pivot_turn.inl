@@ -147,7 +147,7 @@ PC_FN Vec3 pc_straightening(PC_IO Slot n) {
   return pc_negate(pc_scale(tilt, pc_share_closed(PC_PASS tilt)));
 }
 
-// How far contacts and loops push it about its pin (tree_flush), as a rotation vector.
+// How far contacts push it about its pin (tree_flush), as a rotation vector.
 PC_FN Vec3 pc_pushed_turn(PC_IO Slot n, Pivot p, Quaternion q, Vec3 r) {
   Vec3 momentum = pc_about_pin(p, r, pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), pc_scale(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), PC_LD(tree_rows, n, TREE_TOTAL)));
   return pc_scale(pc_sym_mul(pc_world_inertia(pc_quaternion_mul(q, p.axes), p.inverse), momentum), PC_INFO(h));

@@ -1,5 +1,5 @@
-// A step begins with nothing pushed. Once the bodies have moved: takes back what pushed those in no tree out of trees (tree_contact_push). The impulse acted where the body was: its
-// moment about where that is now is another one.
+// A step begins with nothing pushed. Once the bodies have moved: takes back what pushed those in no tree out of trees
+// (tree_contact_push). The impulse acted where the body was: its moment about where that is now is another one.
 #include "body_state.inl"
 #include "tree_math.inl"
 

@@ -42,3 +42,13 @@ PC_FN void pc_push_side(PC_IO Way w, Slot m, uint side, uint turning, Six f) {
   pc_push_here(PC_PASS m, first, turning, f, root, 0u, again); pc_push_here(PC_PASS m, first + 1u, turning, f, root, 1u, again);
   for (uint k = 0u; k < depth; k++) pc_push_here(PC_PASS m, first + 2u + k, turning, f, PC_WAY_EACH(m, pc_entry(w, levels + k)), 0u, again);
 }
+// An impulse and a couple of a contact, on those of its bodies that stand in trees.
+PC_FN void pc_push_trees(PC_IO Way w, Slot m, uint turning, Vec3 t1, Vec3 t2, Vec3 n, Vec3 impulse, Vec3 couple, Vec3 torque_a, Vec3 torque_b,
+                         Real touch) {
+  pc_note_push(PC_PASS w, m, 0u, pc_in_tree(PC_PASS w, m, 0u), pc_six(pc_negate(impulse), pc_negate(torque_a)), touch);
+  pc_note_push(PC_PASS w, m, 1u, pc_in_tree(PC_PASS w, m, 1u), pc_six(impulse, torque_b), touch);
+  Vec3 along = Vec3(pc_dot(t1, impulse), pc_dot(t2, impulse), pc_dot(n, impulse));
+  Vec3 about = Vec3(pc_dot(t1, couple), pc_dot(t2, couple), pc_dot(n, couple));
+  pc_push_side(PC_PASS w, m, 0u, turning, pc_six(along, about));
+  pc_push_side(PC_PASS w, m, 1u, turning, pc_six(along, about));
+}

@@ -84,8 +84,8 @@ PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
     for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
   PC_MOST(kind); return pc_select(kind > PC_REAL(1.5), PC_REAL(1.0), PC_REAL(0.0));
 }
-// What the push undoes of a joint's angles, as rates of its rows. 1 where there is any. Where contacts and loops have begun it (`begun`), what that
-// turns over limits as well.
+// What the push undoes of a joint's angles, as rates of its rows. 1 where there is any. Where contacts have begun it
+// (`begun`), what that turns over limits as well.
 PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
   Real any = PC_REAL(0.0);
   pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
@@ -110,7 +110,7 @@ PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
   }
   return any;
 }
-// What contacts and loops have begun to push begins to move. 1 where there is any.
+// What contacts have begun to push begins to move. 1 where there is any.
 PC_FN Real pc_move_by_push(PC_IO Slot m, Tree t) {
   Real fastest = PC_REAL(0.0);
   if (pc_is_pivot(PC_PASS t) == 1u) return fastest;  // pivot_turn moves it
@@ -127,8 +127,8 @@ PC_FN Real pc_move_by_push(PC_IO Slot m, Tree t) {
   if (PC_ANY(begun)) pc_tree_move(PC_PASS m, t, begun);  // lint: allow (nothing changes otherwise)
   return pc_select(begun, PC_REAL(1.0), PC_REAL(0.0));
 }
-// What the push goes on with: gaps of more than 32 epsilon of the arm are closed, also those that contacts and loops have opened, and what is beyond
-// its limits is turned back.
+// What the push goes on with: gaps of more than 32 epsilon of the arm are closed, also those that contacts have opened, and
+// what is beyond its limits is turned back.
 struct Push { Real open; Real turned; Real most; };
 PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise, Real begun) {
   Push push; push.open = begun; push.turned = begun; push.most = PC_INFO(largest_state);

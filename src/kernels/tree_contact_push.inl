@@ -1,6 +1,6 @@
-// What overlaps, of a manifold with a body of a tree, by more than its rows undo (tree_push_speed), is pushed apart for this one advance, at most at
-// push_speed; tree_relax and push_back take these velocities back. The rows' impulses know nothing of it, and there is no friction: what undoes an
-// overlap is no motion.
+// What overlaps, of a manifold with a body of a tree, by more than its rows undo (tree_push_speed), is pushed apart for this
+// one advance, at most at push_speed; tree_relax and push_back take these velocities back. The rows' impulses know nothing
+// of it, and there is no friction: what undoes an overlap is no motion.
 #define PC_TREES
 #include "tree_math.inl"
 #include "contact_way.inl"
@@ -13,8 +13,9 @@
 #include "kept_meeting.inl"
 #include "reach_motion.inl"
 
-// What a row asks for, so that what is pushed leaves it the room it has, or makes what it lacks: at most at push_speed, and with no more energy than
-// the lighter body has at that, or what can move only as others turn fast is flung about (docs/joint-trees.md).
+// What a row asks for, so that what is pushed leaves it the room it has, or makes what it lacks: at most at push_speed, and
+// with no more energy than the lighter body has at that, or what can move only as others turn fast is flung about
+// (docs/joint-trees.md).
 PC_FN Real pc_row_push(PC_IO Way w, Slot m, uint i, Twist v, Real light) {
   precise Real vn = v.vn + PC_LD(contact_rows, m, ROW_B + i) * v.w1 - PC_LD(contact_rows, m, ROW_A + i) * v.w2;
   Real mass = PC_LD(contact_rows, m, ROW_MASS + i);
@@ -81,19 +82,13 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Wrench f = pc_wrench(n, t1, t2, push, none, none, none);
   Vec3 impulse = pc_select3(some, f.impulse, pc_zero3());
   Vec3 couple = pc_select3(some, f.couple, pc_zero3());
-  BodyState a = now.a;
-  BodyState b = now.b;
   Vec3 torque_a = pc_moment(couple, now.arms.a, impulse);
   Vec3 torque_b = pc_moment(couple, now.arms.b, impulse);
   if (PC_ANY(pc_or(free_a, free_b))) {  // lint: allow (bodies of trees and those that stand keep theirs)
-    pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, impulse, torque_a, torque_b);
+    pc_apply_free(PC_PASS ia, ib, now.a, now.b, tree_a, tree_b, impulse, torque_a, torque_b);
     pc_note_free(PC_PASS ia, free_a, pc_negate(impulse), pc_negate(torque_a));
     pc_note_free(PC_PASS ib, free_b, impulse, torque_b);
   }
-  pc_note_push(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(impulse), pc_negate(torque_a)), none);
-  pc_note_push(PC_PASS w, m, 1u, tree_b, pc_six(impulse, torque_b), none);
-  Six along = pc_six(Vec3(pc_dot(t1, impulse), pc_dot(t2, impulse), pc_dot(n, impulse)), Vec3(pc_dot(t1, couple), pc_dot(t2, couple), pc_dot(n, couple)));
-  pc_push_side(PC_PASS w, m, 0u, turning, along);
-  pc_push_side(PC_PASS w, m, 1u, turning, along);
+  pc_push_trees(PC_PASS w, m, turning, t1, t2, n, impulse, couple, torque_a, torque_b, none);
 }
 #undef PC_TREES

@@ -40,8 +40,9 @@ PC_FN Mask pc_goes_by_rows(PC_IO Meeting now) {
   return pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), turned, PC_REAL(0.0)) < PC_REAL(0.25);  // (a blow-up times zero is no number)
 }
 
-// For tree_contact_push.
+// For tree_contact_push, which comes after the biased visit.
 PC_FN void pc_keep_room(PC_IO Way w, Slot m, FourRows room) {
+  if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) return;  // lint: allow (the same for all lanes)
   Mask acts = PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0);
   Slot s = PC_NODE(m, w.reach + 1u);
   PC_ST(contact_reach, s, REACH_ROOM, pc_select(acts, room.r0, PC_LD(contact_reach, s, REACH_ROOM)));
@@ -77,10 +78,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     a.phase = pc_select(free_a > zero, pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(free_b > zero, pc_max(b.phase, r.touch), b.phase);
     pc_apply_free(PC_PASS ia, ib, a, b, tree_a, tree_b, r.impulse, torque_a, torque_b);
   }
-  pc_note_push(PC_PASS w, m, 0u, tree_a, pc_six(pc_negate(r.impulse), pc_negate(torque_a)), r.touch);
-  pc_note_push(PC_PASS w, m, 1u, tree_b, pc_six(r.impulse, torque_b), r.touch);
-  Six along = pc_six(Vec3(pc_dot(t1, r.impulse), pc_dot(t2, r.impulse), pc_dot(n, r.impulse)), Vec3(pc_dot(t1, r.couple), pc_dot(t2, r.couple), pc_dot(n, r.couple)));
-  pc_push_side(PC_PASS w, m, 0u, turning, along); pc_push_side(PC_PASS w, m, 1u, turning, along);
+  pc_push_trees(PC_PASS w, m, turning, t1, t2, n, r.impulse, r.couple, torque_a, torque_b, r.touch);
 }
 #undef PC_TREES
 #undef pc_thrown

@@ -43,7 +43,7 @@ PC_FN void pc_pass_blow(PC_IO Slot n) {
   PC_SCATTER_IF(blown, velocity_parts, body, 1u, pc_quad(pc_add(angular.v, turned), angular.s));
 }
 
-// What undoes overlaps and closes loops moves poses alone, later (tree_again.inl). TREE_X: of that and of what contacts have changed before.
+// What undoes overlaps moves poses alone, later (tree_again.inl). TREE_X: of that and of what contacts have changed before.
 PC_FN void pc_keep_push(PC_IO Slot n) {
   Vec3 turned_before = pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN);
   pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X));

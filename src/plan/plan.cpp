@@ -208,12 +208,6 @@ void solve_on_trees(Builder& b, const PlanSignature& s, Phase phase, std::uint32
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_solve, phase, substep);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_flush, phase, substep);
 }
-/// What overlaps trees is undone by poses alone.
-void push_trees(Builder& b, const PlanSignature& s, std::uint32_t substep) {
-  if (!s.tree_contacts) return;
-  b.kernel(Kernel::tree_contact_push, Phase::push, substep);
-  b.kernel(Kernel::tree_flush, Phase::push, substep);
-}
 // before the forces, and before the first sub-step brings velocities out of phase
 void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.tree_drives) b.kernel(Kernel::tree_drive_rates, phase, substep);
@@ -287,7 +281,8 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
   if (s.nets && s.contacts()) b.kernel(Kernel::net_solve, Phase::biased, k);
-  push_trees(b, s, k);
+  if (s.tree_contacts) b.kernel(Kernel::tree_contact_push, Phase::push, k);
+  if (s.tree_contacts) b.kernel(Kernel::tree_flush, Phase::push, k);
   if (s.limits_after_contacts()) b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
