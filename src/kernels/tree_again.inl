@@ -156,7 +156,7 @@ PC_FN Real pc_crossing_rates(PC_IO Slot n, Slot up, Real goes) {
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
-    Real over = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_REAL(0.0), pc_crosses(PC_PASS n, i, now));
+    Real over = pc_crosses(PC_PASS n, i, now);
     crossed = pc_max(crossed, pc_select(pc_is_crossed(over), PC_REAL(1.0), PC_REAL(0.0)));
     precise Real rate = over * goes;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
