@@ -329,7 +329,7 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.joint_push_speed = Scalar(8);
     info.loop_give = Scalar(1e-5);
     info.spin_floor = Scalar(6e-5);
-    info.strayed_turn = Scalar(0.1);
+    info.stale_share = Scalar(0.1);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.tree_damping = Scalar(0.25);
@@ -337,7 +337,7 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.rounding = Scalar(1e-3);
     info.substeps = Scalar(3);
     info.largest_state = Scalar(1e4);  // some bodies are beyond it
-    info.largest_impulse = Scalar(1);  // some contacts are
+    info.largest_momentum = Scalar(1);  // some contacts are
     state_.infos[std::size_t(phase)] = info;
   }
 }

@@ -22,10 +22,8 @@ inline constexpr double largest_state = 1e18;
 /// masses and moments, their inverses and the products of both.
 inline constexpr double smallest_mass = 1e-30, largest_mass = 1e30;
 /// A spin that with the largest moment of its body makes an angular momentum beyond this [kg m^2/s] is refused, in either
-/// precision: float32 must hold sums of such, whichever way the body is turned.
-inline constexpr double largest_spin_momentum = 1e36;
-/// Contacts remember no larger impulses [N s]: float32 must hold sums of such.
-inline constexpr double largest_impulse = 1e36;
+/// precision, and contacts remember no larger impulses [N s]: float32 must hold sums of such, whichever way a body is turned.
+inline constexpr double largest_momentum = 1e36;
 /// Time steps outside this interval are refused: their inverses or what falls within them leave float32's range [s].
 inline constexpr double shortest_step = 1e-15, longest_step = 1e3;
 /// How far an orientation may be from unit length; closer ones are normalised.
@@ -58,9 +56,11 @@ inline constexpr double least_load = 0.01;
 /// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together.
 /// They seldom do.
 inline constexpr double settling_pace = 1.5;
-/// Where bodies that both answer move along each other by more than this share in a sub-step, or turn into each other,
-/// their contact is an impact: nothing of it lasts.
-inline constexpr double quick_share = 0.1;
+/// What moves by more than this share of its size in a sub-step, or turns by more than this [rad], is no longer where it was
+/// seen: bodies that both answer and pass each other so, or turn into each other, have no contact but an impact, of which
+/// nothing lasts; rows of what has turned so are made anew; and where Newton's method for a tree more than doubles the energy
+/// of the motion within it, as after a blow or in a whip that sub-steps are too long for, bodies are seen ahead so far alone.
+inline constexpr double stale_share = 0.1;
 /// What contacts remember makes a body faster by no more than this squared over how much its velocity changed in the
 /// sub-step before [m/s]: a blow is no load.
 inline constexpr double struck_speed = 0.5;
@@ -94,11 +94,6 @@ inline constexpr double tree_spin_floor = 3e-5;
 /// Compliance of a pin that closes a loop of joint trees, as a share of what its two bodies would answer without joints:
 /// what a tree holds by itself answers nothing but rounding.
 inline constexpr double loop_give = 1e-4;
-/// Joints of a tree are solved where the sub-step will take its bodies, until one has turned by a radian. Newton's
-/// method there is not to be trusted where it more than doubles the energy of the motion within the tree, as after a
-/// blow or in a whip that sub-steps are too long for: its steps are taken back, and bodies are seen ahead until
-/// `strayed_turn` [rad].
-inline constexpr double strayed_turn = 0.1;
 /// Largest speed at which an open joint is closed [m/s] and a violated angle is undone [rad/s].
 inline constexpr double joint_push_speed = 8;
 

@@ -23,6 +23,7 @@ struct Vec3 {
 struct Mat3 {
   Vec3 x, y, z;  // rows
 };
+#undef PC_EPSILON
 #undef PC_TINY
 #undef PC_LEAST
 #undef PC_ROUNDER

@@ -124,7 +124,7 @@ template <class Scalar> struct Detector::Meeting {
   bool quick() const {
     const double turns = (pa.responds ? spin(ta, pa) : 0) + (pb.responds ? spin(tb, pb) : 0);
     const double shifts = (speed() * std::min(share, 1 - share) + turns) * h;
-    return shifts > constants::quick_share * thick;
+    return shifts > constants::stale_share * thick;
   }
 
   void stand_aside() {

@@ -77,7 +77,7 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     const float moved = a.went + b.went + c.looked, from_others = c.jointed ? sent(c.rows[0]) + sent(c.rows[1]) : 0.0f;
     const float goes = std::max(a.goes + b.goes, from_others);
-    const bool rests = c.touches && !c.struck && goes <= float(constants::quick_share) * c.thick &&
+    const bool rests = c.touches && !c.struck && goes <= float(constants::stale_share) * c.thick &&
                        moved <= float(constants::contact_share) * c.thick;
     const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
     if (rests || far) {

@@ -21,7 +21,7 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Real two = pc_select(rotation.w < PC_REAL(-1.0), PC_REAL(-2.0), PC_REAL(2.0));
   moved.v = pc_add(moved.v, m.step);
   rotated.v = pc_madd(rotated.v, rotation.v, two);
-  precise Real turned_square = moved.s + pc_dot(rotation.v, rotation.v) * PC_REAL(4.0); moved.s = turned_square;
+  precise Real turned_square = moved.s + pc_four_times(pc_dot(rotation.v, rotation.v)); moved.s = turned_square;
 
   PC_SCATTER(pose, i, 0u, p.place);
   PC_SCATTER(pose, i, 1u, p.turned);

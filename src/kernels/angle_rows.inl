@@ -1,9 +1,9 @@
 // What the angle rows of single joints and of trees share: the nearer of two limits, and the speed that is asked of a row.
 struct NearerLimit { Real slack; Real sign; Mask locked; };  // sign: +1 at the lower limit, -1 at the upper one
-PC_FN NearerLimit pc_nearer_limit(Real angle, Real lower, Real upper, Mask exists) {
+PC_FN NearerLimit pc_nearer_limit(PC_IO Real angle, Real lower, Real upper, Mask exists) {
   precise Real above = angle - lower; precise Real below = upper - angle; precise Real interval = upper - lower;
   Mask at_lower = above < below;
-  NearerLimit r; r.locked = pc_and(exists, interval < PC_REAL(1e-6));
+  NearerLimit r; r.locked = pc_and(exists, interval < PC_INFO(locked_interval));
   r.sign = pc_select(pc_or(at_lower, r.locked), PC_REAL(1.0), PC_REAL(-1.0));
   r.slack = pc_select(r.locked, above, pc_select(at_lower, above, below)); return r;
 }
@@ -15,5 +15,5 @@ PC_FN Real pc_angle_bias(PC_IO Real slack, Mask open) { precise Real gap_rate = 
 // (tree_again.inl): by velocities a limb that the host turned far out of its limits would leave them with up to joint_push_speed. Of a locked
 // angle that is all, since it does not give.
 PC_FN Real pc_little_beyond(PC_IO Real slack, Real kind) {
-  return pc_select(kind > PC_REAL(1.5), PC_REAL(0.0), pc_clamp(slack, -PC_INFO(limit_give), PC_INFO(limit_give)));
+  return pc_select(kind > PC_REAL(1.0), PC_REAL(0.0), pc_clamp(slack, -PC_INFO(limit_give), PC_INFO(limit_give)));
 }

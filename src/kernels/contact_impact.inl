@@ -32,7 +32,7 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   Real impact = pc_select(open, -root, v);
   // what rests approaches with what the forces give it in a sub-step
   precise Real slow = PC_INFO(restitution_threshold) + pc_abs(acceleration) * h; Mask fast = impact < -slow;
-  precise Real most = h * PC_REAL(1.00001);  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
+  precise Real most = h * PC_SURELY;  // beyond rounding: what closes no row of this sub-step would be stopped by the solver
   // what overlaps stops where it is: its push would be speed that nothing takes back
   Real ahead = pc_select(open, pc_select(meets, t, most), pc_select(v < zero, zero, most));
   Mask now = ahead < most;
@@ -87,9 +87,10 @@ PC_FN Mask pc_impact_mine(PC_IO Slot m) {
   return pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(-0.5), pc_or(pc_impact_always(PC_PASS m), bounces));
 }
 
+#define PC_IMPACT_NOISE PC_REAL(64.0)
 // An approach up to this is what rounding leaves of one: of the impulses that stop it and of the sweeps that look again, 64 times what counts as
 // rest.
-PC_FN Real pc_noise(PC_IO Vec3 relative) { precise Real r = PC_INFO(rounding) * PC_REAL(64.0) * pc_sqrt(pc_dot(relative, relative)); return r; }
+PC_FN Real pc_noise(PC_IO Vec3 relative) { precise Real r = PC_INFO(rounding) * PC_IMPACT_NOISE * pc_sqrt(pc_dot(relative, relative)); return r; }
 
 // The way to the arms at impact: when the centres have come as near as the narrowest gap is wide. (Arms that are not those of the
 // way that was really gone would answer otherwise than masses say, and make energy.) Two that have met, and that nothing has brought
@@ -109,7 +110,7 @@ PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
 PC_FN Mask pc_closes_fast(PC_IO Slot m, Twist v, Shift shift, uint i, Mask before) {
   Real a = PC_LD(contact_rows, m, ROW_A + i); Real b = PC_LD(contact_rows, m, ROW_B + i);
   precise Real u = v.vn + b * v.w1 - a * v.w2; precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + b * shift.turn1 - a * shift.turn2);
-  precise Real slowest = PC_INFO(restitution_threshold) * PC_REAL(-0.99); precise Real most = u * PC_INFO(h) * PC_REAL(-1.3);
+  precise Real slowest = PC_INFO(restitution_threshold) * PC_REAL(-0.5); precise Real most = u * PC_INFO(h) * PC_REAL(-2.0);
   return pc_or(before, pc_and(u < slowest, s < most));
 }
 PC_FN Mask pc_may_hit(PC_IO Slot m) {

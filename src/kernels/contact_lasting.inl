@@ -6,7 +6,7 @@ struct Lasting { Real l0; Real l1; Real l2; Real l3; Real load; Real share; };
 PC_FN Lasting pc_lasting(PC_IO Slot m) {
   Real k0 = PC_LD(contact_impulses, m, 0u); Real k1 = PC_LD(contact_impulses, m, 1u); Real k2 = PC_LD(contact_impulses, m, 2u); Real k3 = PC_LD(contact_impulses, m, 3u);
   precise Real load = k0 + k1 + k2 + k3;
-  precise Real most = PC_LD(contact_impulses, m, IMPULSE_BEFORE) * PC_REAL(4.0);
+  precise Real most = pc_four_times(PC_LD(contact_impulses, m, IMPULSE_BEFORE));
   precise Real less = most * pc_inverse_or_zero(load);
   Mask bounces = PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0);
   Real share = pc_select(bounces, pc_min(less, PC_REAL(1.0)), PC_REAL(1.0));

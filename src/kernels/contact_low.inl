@@ -9,7 +9,7 @@ PC_FN void pc_kick(PC_IO Index i, PC_INOUT(BodyState) b, Vec3 impulse, Vec3 torq
 }
 // More than eight times as heavy as the other, or standing.
 PC_FN Mask pc_uneven(BodyState a, BodyState b) {
-  Real light = pc_max(a.inverse_mass, b.inverse_mass); precise Real little = light * PC_REAL(0.125); return pc_min(a.inverse_mass, b.inverse_mass) < little;
+  Real light = pc_max(a.inverse_mass, b.inverse_mass); precise Real little = pc_quarter(light) * PC_REAL(0.5); return pc_min(a.inverse_mass, b.inverse_mass) < little;
 }
 PC_FN void pc_apply_low(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Arms arms, Vec3 impulse, Vec3 couple, Mask uneven) {
   if (PC_ANY(uneven)) {  // lint: allow (others get what pc_apply gives)

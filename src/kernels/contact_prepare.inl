@@ -15,7 +15,7 @@ PC_FN Real pc_told_gap(Real s, Real noise) { precise Real r = s - pc_clamp(s, -n
 
 // Of the way that two bodies move apart along the contact plane, what a's arm takes. A ball's point stays under its centre, whatever it
 // rolls on; two balls divide the way by their radii; else the light body keeps its point (pc_arms).
-PC_FN Mask pc_is_under(Vec3 arm, Vec3 n) { Vec3 off = pc_cross(arm, n); precise Real most = pc_dot(arm, arm) * PC_REAL(1e-6); return pc_dot(off, off) < most; }
+PC_FN Mask pc_is_under(Vec3 arm, Vec3 n) { Vec3 off = pc_cross(arm, n); precise Real most = pc_dot(arm, arm) * PC_SLIGHT; return pc_dot(off, off) < most; }
 PC_FN Real pc_rolling_share(Vec3 arm_a, Vec3 arm_b, Vec3 n, Real light_a) {
   Mask ball_a = pc_is_under(arm_a, n); Mask ball_b = pc_is_under(arm_b, n);
   Real ra = pc_abs(pc_dot(arm_a, n)); Real rb = pc_abs(pc_dot(arm_b, n)); precise Real both = ra + rb; precise Real by_radius = ra * pc_inverse_or_zero(both);
@@ -28,8 +28,9 @@ PC_FN void pc_st_pushes(PC_IO Slot m, Mask these, uint f, Real x) { PC_ST(contac
 // What point `from` (from 1) of the rows held; 0 of none.
 PC_FN Real pc_held_by(PC_IO Slot m, uint first, Real from) {
   Real r = pc_select(from > PC_REAL(0.5), PC_LD(contact_impulses, m, first), PC_REAL(0.0));
-  r = pc_select(from > PC_REAL(1.5), PC_LD(contact_impulses, m, first + 1u), r); r = pc_select(from > PC_REAL(2.5), PC_LD(contact_impulses, m, first + 2u), r);
-  return pc_select(from > PC_REAL(3.5), PC_LD(contact_impulses, m, first + 3u), r);
+  r = pc_select(from > PC_REAL(1.0), PC_LD(contact_impulses, m, first + 1u), r); r = pc_select(from > PC_REAL(2.0), PC_LD(contact_impulses, m, first + 2u), r);
+  precise Real past_two = from - PC_REAL(2.0);
+  return pc_select(past_two > PC_REAL(1.0), PC_LD(contact_impulses, m, first + 3u), r);
 }
 
 // How fast a point approached, for restitution: the fastest of the step. What contact_impact has put in its place stays.
@@ -42,7 +43,7 @@ PC_FN void pc_keep_approach(PC_IO Slot m, uint i, Mask these, Mask of_step, Real
 // apart. It is not told of, either (contact_touch).
 PC_FN void pc_open_rows(PC_IO Slot m, Mask missed) {
   for (uint i = 0u; i < 4u; i++) {
-    pc_st_new(PC_PASS m, missed, ROW_S + i, PC_REAL(1e9));
+    pc_st_new(PC_PASS m, missed, ROW_S + i, PC_FAR);
     pc_st_pushes(PC_PASS m, missed, IMPULSE_LARGEST + i, pc_min(PC_LD(contact_impulses, m, IMPULSE_LARGEST + i), PC_LD(contact_impulses, m, IMPULSE_BEFORE)));
   }
   pc_st_new(PC_PASS m, missed, ROW_E, PC_REAL(0.0));
@@ -65,16 +66,17 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   // contact frame
   // what came apart keeps the rows that it was struck by (contact_touch), but in trees, where all rows with mass are solved
-  Mask over = seen.s > PC_REAL(1.5); Mask jointed = material.s < PC_REAL(0.0);
-  Mask unjointed = material.s > PC_REAL(-0.5); Mask all = these; Mask made = pc_or(of_step, pc_or(jointed, seen.s < PC_REAL(1.5))); these = pc_and(these, made);
+  Mask over = seen.s > PC_REAL(1.0); Mask jointed = material.s < PC_REAL(0.0);
+  Mask unjointed = material.s > PC_REAL(-0.5); Mask all = these; Mask made = pc_or(of_step, pc_or(jointed, seen.s < PC_REAL(2.0))); these = pc_and(these, made);
   Vec3 n = head.v; Real count = pc_select(pc_and(over, jointed), PC_REAL(0.0), head.s);
-  Mask steep = pc_abs(n.x) < PC_REAL(0.57);
+  Mask steep = pc_abs(n.x) < PC_ROOT_THIRD;
   Vec3 e = Vec3(pc_select(steep, one, zero), pc_select(steep, zero, one), zero);
   Vec3 t1 = pc_unit_or_zero(pc_madd(e, n, -pc_dot(e, n))); Vec3 t2 = pc_cross(n, t1);
 
   // centre, and the points about it; a missing point has weight zero
-  Real w0 = pc_select(count > PC_REAL(0.5), one, zero); Real w1 = pc_select(count > PC_REAL(1.5), one, zero);
-  Real w2 = pc_select(count > PC_REAL(2.5), one, zero); Real w3 = pc_select(count > PC_REAL(3.5), one, zero);
+  Real w0 = pc_select(count > PC_REAL(0.5), one, zero); Real w1 = pc_select(count > PC_REAL(1.0), one, zero);
+  precise Real past_two = count - PC_REAL(2.0);
+  Real w2 = pc_select(past_two > zero, one, zero); Real w3 = pc_select(past_two > one, one, zero);
   Real share = pc_inverse_or_zero(count);
   precise Vec3 ra = (p0.v * w0 + p1.v * w1 + p2.v * w2 + p3.v * w3) * share;
   Vec3 apart = pc_negate(seen.v);
@@ -83,7 +85,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real flight = pc_max(material.s, PC_REAL(0.0));
   precise Vec3 path = (b.v - a.v) * flight;
   Vec3 start_a = ra; Vec3 start_b = pc_add(ra, apart);
-  Mask stays = pc_or(count > PC_REAL(1.5), pc_or(flight > zero, pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY));
+  Mask stays = pc_or(count > PC_REAL(1.0), pc_or(flight > zero, pc_min(a.inverse_mass, b.inverse_mass) < PC_TINY));
   Real share_a = pc_select(stays, light_a, pc_rolling_share(start_a, start_b, n, light_a)); precise Real rest_a = share_a - PC_REAL(1.0);
   ra = pc_madd(start_a, path, share_a); Vec3 rb = pc_madd(start_b, path, rest_a);
   Vec3 d0 = pc_sub(p0.v, start_a); Vec3 d1 = pc_sub(p1.v, start_a); Vec3 d2 = pc_sub(p2.v, start_a); Vec3 d3 = pc_sub(p3.v, start_a);
@@ -118,7 +120,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st_new(PC_PASS m, these, ROW_B, b0); pc_st_new(PC_PASS m, these, ROW_B + 1u, b1); pc_st_new(PC_PASS m, these, ROW_B + 2u, b2); pc_st_new(PC_PASS m, these, ROW_B + 3u, b3);
   // missing points take the mean gap of the others, so that none is the nearest
   precise Real gap = (p0.s * w0 + p1.s * w1 + p2.s * w2 + p3.s * w3) * share;
-  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real rounding = reach * (PC_INFO(rounding) * PC_REAL(0.03125));
+  precise Real reach = pc_extent(start_a) + pc_extent(start_b) + radius; precise Real rounding = reach * PC_EPSILON;
   Real noise = pc_select(pc_or(flight > zero, material.v.z > zero), zero, rounding);  // (of what bounces the instant counts)
   precise Real s0 = pc_told_gap(p0.s, noise) - (shift.n + b0 * shift.turn1 - a0 * shift.turn2); precise Real s1 = pc_told_gap(pc_select(w1 > zero, p1.s, gap), noise) - (shift.n + b1 * shift.turn1 - a1 * shift.turn2);
   precise Real s2 = pc_told_gap(pc_select(w2 > zero, p2.s, gap), noise) - (shift.n + b2 * shift.turn1 - a2 * shift.turn2); precise Real s3 = pc_told_gap(pc_select(w3 > zero, p3.s, gap), noise) - (shift.n + b3 * shift.turn1 - a3 * shift.turn2);

@@ -28,7 +28,7 @@ PC_FN void pc_note_bounce(PC_IO Slot m, uint i, Real bounce) {
 
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask some = pc_or(pc_or(pc_bounces(PC_PASS m, 0u), pc_bounces(PC_PASS m, 1u)), pc_or(pc_bounces(PC_PASS m, 2u), pc_bounces(PC_PASS m, 3u)));
-  Real impact = PC_LD(contact_rows, m, ROW_IMPACT); some = pc_and(some, pc_and(impact < PC_REAL(-0.5), impact > PC_REAL(-1.5)));  // of bodies on joints: contact_impact has seen to the others
+  Real impact = PC_LD(contact_rows, m, ROW_IMPACT); some = pc_and(some, pc_and(impact < PC_REAL(-0.5), impact > PC_REAL(-2.0)));  // of bodies on joints: contact_impact has seen to the others
   if (!PC_ANY(pc_and(some, PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0)))) return;  // lint: allow (zeros otherwise)
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);

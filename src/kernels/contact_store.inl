@@ -23,7 +23,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real ratio = PC_INFO(impulse_ratio); precise Real share = l.share * ratio;
   precise Real l0 = l.l0 * ratio; precise Real l1 = l.l1 * ratio; precise Real l2 = l.l2 * ratio; precise Real l3 = l.l3 * ratio;
   Quad normal = pc_quad(Vec3(l0, l1, l2), l3); Quad friction = pc_lasting_friction(PC_PASS m, share);
-  precise Real all = pc_load_of(normal) + pc_load_of(friction); Mask held = all < PC_INFO(largest_impulse);
+  precise Real all = pc_load_of(normal) + pc_load_of(friction); Mask held = all < PC_INFO(largest_momentum);
   PC_SCATTER(contact, record, 5u, pc_kept_where(held, normal));
   PC_SCATTER(contact, record, 6u, pc_kept_where(held, friction));
 }

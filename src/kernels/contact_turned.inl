@@ -3,5 +3,5 @@
 // (the turn of this sub-step, which lies ahead, counts as well: what is remembered is of the one before)
 PC_FN Mask pc_turns_far(PC_IO BodyState b, Quad moved) {
   Vec3 w = pc_angular_velocity(b); Real h = PC_INFO(h);
-  precise Real turn = (moved.s + pc_dot(w, w) * h * h) * b.unlike; return turn > PC_REAL(0.1);
+  precise Real turn = (moved.s + pc_dot(w, w) * h * h) * b.unlike; return turn > PC_INFO(stale_share);
 }

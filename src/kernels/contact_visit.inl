@@ -32,7 +32,7 @@ PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0
 #endif
 // Of what would close a gap within the sub-step, what is more than rounding: than a millionth of what gravity closes in one.
 PC_FN Real pc_beyond_rounding(PC_IO Real gap_rate) {
-  precise Real beyond = gap_rate - PC_INFO(least_load) * PC_REAL(1e-4);
+  precise Real beyond = gap_rate - PC_INFO(least_load) * PC_LITTLE;
   return beyond;
 }
 PC_FN Mask pc_is_open(PC_IO Real gap_rate) { return pc_beyond_rounding(PC_PASS gap_rate) > PC_REAL(0.0); }
@@ -81,9 +81,9 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real lo
 // What a blow has driven in between two bodies that push it against each other would be held there by friction for good (docs/joint-trees.md).
 PC_FN Real pc_grip(PC_IO Slot m, Real apart) {
   Vec3 a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 b = pc_ld3_rows(PC_PASS m, ROW_ARM_B); Real depth = pc_max(-apart, PC_REAL(0.0));
-  precise Real quarter = pc_min(pc_dot(a, a), pc_dot(b, b)) * PC_REAL(0.0625); precise Real square = depth * depth; Mask deep = square > quarter;
+  precise Real quarter = pc_quarter(pc_quarter(pc_min(pc_dot(a, a), pc_dot(b, b)))); precise Real square = depth * depth; Mask deep = square > quarter;
   if (!PC_ANY(deep)) return PC_REAL(1.0);  // lint: allow (the same in lanes that are not)
-  precise Real left = PC_REAL(4.0) - pc_div(square, pc_max(quarter, PC_TINY)); precise Real share = left * PC_REAL(0.33333334);
+  precise Real left = pc_four_times(PC_REAL(1.0)) - pc_div(square, pc_max(quarter, PC_TINY)); precise Real share = left * PC_THIRD;
   return pc_select(deep, pc_clamp(share, PC_REAL(0.0), PC_REAL(1.0)), PC_REAL(1.0));
 }
 #endif

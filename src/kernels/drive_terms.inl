@@ -7,10 +7,6 @@
 // `kick` is h; h / 2 in the first sub-step after a velocity was set, since stored velocities lag half a sub-step.
 struct DriveRow { Real gamma; Real push; };
 
-// x^2 / (1 + x^2) for x >= 0; nothing where it would be subnormal
-PC_FN Real pc_unresolved(Real x) {
-  Real most = pc_select(x < PC_REAL(1e-9), PC_REAL(0.0), pc_min(x, PC_REAL(1e9))); precise Real square = most * most; precise Real all = square + PC_REAL(1.0); return pc_div(square, all);
-}
 // `answer`: 1 / m.
 PC_FN DriveRow pc_drive_row(Real h, Real kick, Real stiffness, Real damping, Real away, Real last, Real answer) {
   precise Real kh = stiffness * kick; precise Real ch = damping * kick; precise Real khh = kh * h;
@@ -26,7 +22,7 @@ PC_FN DriveFrame pc_drive_frame(Quaternion fa, Quaternion fb, Quaternion rest) {
   Quaternion q = pc_quaternion_mul(pc_quaternion_mul(pc_conjugate(fa), fb), pc_conjugate(rest));
   Real flip = pc_select(q.w < PC_REAL(0.0), PC_REAL(-1.0), PC_REAL(1.0)); Vec3 v = pc_scale(q.v, flip); precise Real w = q.w * flip;
   Real size = pc_length(v); precise Real angle = pc_angle(size, w) * PC_REAL(2.0);
-  Real rate = pc_select(size > PC_REAL(1e-6), pc_div(angle, pc_max(size, PC_TINY)), PC_REAL(2.0));
+  Real rate = pc_select(size > PC_SLIGHT, pc_div(angle, pc_max(size, PC_TINY)), PC_REAL(2.0));
   DriveFrame d; d.x = pc_rotate(fa, Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0))); d.y = pc_rotate(fa, Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
   d.z = pc_cross(d.x, d.y); d.away = pc_scale(v, rate); return d;
 }

@@ -19,7 +19,7 @@ PC_FN Mask pc_inside(PC_IO BodyMotion m, BodyPose p, Vec3 inverse) {
 #ifdef PC_STILL
   Mask place = pc_size(p.place.v) < limit;
 #else
-  precise Real turned = pc_size(p.turned.v) + pc_abs(p.turned.s); Mask place = pc_and(pc_size(p.place.v) < limit, turned < PC_REAL(4.0));
+  precise Real turned = pc_size(p.turned.v) + pc_abs(p.turned.s); Mask place = pc_and(pc_size(p.place.v) < limit, turned < pc_four_times(PC_REAL(1.0)));
 #endif
   precise Real spin = pc_size(m.angular.v) * pc_max(inverse.x, pc_max(inverse.y, inverse.z));
   return pc_and(place, pc_and(pc_size(m.linear.v) < limit, spin < limit));

@@ -21,6 +21,16 @@
 #define PC_KEPT_TURN PC_REAL(1e-2)
 #define PC_ENERGY_ROUNDING PC_REAL(2e-7)
 #endif
+// Of a fast turn, how far it is told [rad], and in how many parts it is made at most.
+#define PC_FASTEST_TURN PC_REAL(8.0)
+#define PC_MOST_PARTS PC_REAL(16.0)
+// Shares of the fourth-order composition (pc_composed_turns), in the names of its authors, and how many pairs of turns it has.
+#define PC_FINE_XI PC_REAL(0.1786178958448091)
+#define PC_FINE_CHI PC_REAL(-0.06626458266981849)
+#define PC_FINE_LAMBDA PC_REAL(-0.2123418310626054)
+#define PC_FINE_PAIRS PC_REAL(5.0)
+// The square of the sine between spin and momentum below which turning the body changes no energy.
+#define PC_ALONG_AXIS PC_REAL(1e-12)
 
 // What a sub-step changes in an orientation q: W q B - q = (W - 1) (q B) + q (B - 1).
 PC_FN Quaternion pc_change(Turn world, Quaternion q, Turn body) {
@@ -56,17 +66,17 @@ PC_FN Spin pc_body_turn(Spin s, Vec3 axis, Real rate, Real time) {
 
 // How many equal parts of less than half a radian each a fast turn is made of, 16 at most.
 PC_FN Real pc_parts(Real angle) {
-  precise Real wanted = pc_min(angle, PC_REAL(8.0)) * PC_REAL(2.0) + PC_REAL(0.5); return pc_min(pc_round(wanted), PC_REAL(16.0));
+  precise Real wanted = pc_min(angle, PC_FASTEST_TURN) * PC_REAL(2.0) + PC_REAL(0.5); return pc_min(pc_round(wanted), PC_MOST_PARTS);
 }
 // The turns about a and c, one after the other. Where `fine`, in fourth order, five about a and four about c (I. Omelyan, I. Mryglod and R. Folk,
 // Computer Physics Communications 146, 2002, 188: the position extended Forest-Ruth-like one), 1/26 of the error of the shortest such composition;
 // else `pairs` of a turn about each: half of `time` about a, all of it or none about c. One pair is what c alone needs.
 PC_FN Spin pc_composed_turns(Spin start, Vec3 a, Vec3 c, Real rate_a, Real rate_c, Real half_h, Real h, Mask fine, Real pairs, Real time) {
-  precise Real a1 = h * PC_REAL(0.1786178958448091); precise Real a2 = h * PC_REAL(-0.06626458266981849); precise Real a3 = h - (a1 + a2) * PC_REAL(2.0);
-  precise Real c2 = h * PC_REAL(-0.2123418310626054); precise Real c1 = half_h - c2;
+  precise Real a1 = h * PC_FINE_XI; precise Real a2 = h * PC_FINE_CHI; precise Real a3 = h - (a1 + a2) * PC_REAL(2.0);
+  precise Real c2 = h * PC_FINE_LAMBDA; precise Real c1 = half_h - c2;
   precise Real half_time = time * PC_REAL(0.5);
   Real zero = PC_REAL(0.0);
-  Real left = pc_select(fine, PC_REAL(5.0), pairs);
+  Real left = pc_select(fine, PC_FINE_PAIRS, pairs);
   Spin s = start;
   for (uint i = 0u; i < 32u; i++) {
     if (!PC_ANY(left > PC_REAL(0.5))) break;  // lint: allow (nothing turns any more)
@@ -105,7 +115,7 @@ PC_FN Turn pc_keep_energy(Turn turn, Vec3 inverse, Vec3 before, Real h, Mask the
     Mask off = pc_and(these, pc_abs(excess) > rounding);
     Vec3 way = pc_cross(pi, w);
     Real square = pc_dot(way, way);
-    Real step = pc_div(excess, pc_max(square, PC_REAL(1e-12)));
+    Real step = pc_div(excess, pc_max(square, PC_ALONG_AXIS));
     precise Real length = pc_sqrt(square) * step;
     Real most = pc_max(pc_abs(length), PC_REAL(0.5));
     precise Real part = step * PC_REAL(0.5);
@@ -117,7 +127,7 @@ PC_FN Turn pc_keep_energy(Turn turn, Vec3 inverse, Vec3 before, Real h, Mask the
 PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
   Vec3 inverse = moments.v;
   Mask first = moments.s < PC_REAL(0.5);
-  Mask last = moments.s > PC_REAL(1.5);
+  Mask last = moments.s > PC_REAL(1.0);
   Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));
   Vec3 y = Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   Vec3 z = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(1.0));
@@ -145,7 +155,7 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad moments, Real h) {
     fine = pc_select(fast, PC_REAL(0.0), pc_select(turns, PC_REAL(1.0), PC_REAL(0.0))) > PC_REAL(0.5);
     if (PC_ANY(fast)) {  // lint: allow (other lanes keep what they have)
       precise Real a2 = square_a * pc_inverse_or_zero(inverse_a); precise Real c2 = square_c * pc_inverse_or_zero(inverse_c); Real angle = pc_sqrt(pc_max(a2, c2));
-      precise Real span = h * pc_div(PC_REAL(8.0), pc_max(angle, PC_REAL(8.0)));
+      precise Real span = h * pc_div(PC_FASTEST_TURN, pc_max(angle, PC_FASTEST_TURN));
       Real parts = pc_parts(angle);
       precise Real all = parts + parts;
       pairs = pc_select(fast, all, pairs); time = pc_select(fast, pc_div(span, parts), time);

@@ -17,7 +17,7 @@ PC_FN Angles pc_joint_angles(Quaternion fa, Quaternion fb, Mask is_cone) {
   precise Real sy = rv.y * tw - rv.z * tx; precise Real sz = rv.z * tw + rv.y * tx;
   precise Real ss = sy * sy + sz * sz; Real s = pc_sqrt(ss);
   precise Real swing = pc_angle(s, n) * PC_REAL(2.0);
-  Real rate = pc_select(s > PC_REAL(1e-6), pc_div(swing, pc_max(s, PC_TINY)), PC_REAL(2.0));
+  Real rate = pc_select(s > PC_SLIGHT, pc_div(swing, pc_max(s, PC_TINY)), PC_REAL(2.0));
   precise Real pitch = sy * rate; precise Real yaw = sz * rate;
   // axes
   Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));

@@ -18,7 +18,7 @@ PC_FN Real pc_soft_change(PC_IO Slot m, uint i, Real u, Real total) {
 }
 // The spring's three rows, then the motor's, from the relative angular velocity w; answers their couple. `both`: how w answers one.
 PC_FN Vec3 pc_drive_steps(PC_IO Slot m, Vec3 w, Sym3 both) {
-  Real kind = PC_LD(joint_rows, m, JOINT_DRIVE); Mask driven = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5)); Vec3 couple = pc_zero3(); Real zero = PC_REAL(0.0);
+  Real kind = PC_LD(joint_rows, m, JOINT_DRIVE); Mask driven = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0)); Vec3 couple = pc_zero3(); Real zero = PC_REAL(0.0);
   if (!PC_ANY(driven)) return couple;  // lint: allow (zeros otherwise)
   for (uint i = 0u; i < 3u; i++) {
     Vec3 axis = pc_ld3_joint(PC_PASS m, JOINT_DRIVE_AXIS + i * 3u); Real total = PC_LD(joint_rows, m, JOINT_DRIVE_TOTAL + i);
@@ -36,4 +36,4 @@ PC_FN Vec3 pc_spring_change(PC_IO Slot m, Vec3 rate, Vec3 impulse) {
   Vec3 axis = pc_ld3_joint(PC_PASS m, JOINT_DRIVE_AXIS); Real total = pc_dot(axis, impulse);
   precise Real next = total + pc_soft_change(PC_PASS m, 0u, pc_dot(axis, rate), total); return pc_sub(pc_scale(axis, next), impulse);
 }
-PC_FN Mask pc_is_spring(PC_IO Slot m) { return PC_LD(joint_rows, m, JOINT_DRIVE) > PC_REAL(1.5); }
+PC_FN Mask pc_is_spring(PC_IO Slot m) { return PC_LD(joint_rows, m, JOINT_DRIVE) > PC_REAL(1.0); }

@@ -26,7 +26,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad anchor_b = PC_GATHER(joint_frame, joint, 2u); Quad axes_b = PC_GATHER(joint_frame, joint, 3u);
   Quaternion qa = pc_quaternion(turn_a.v, turn_a.s); Quaternion qb = pc_quaternion(turn_b.v, turn_b.s);
   DrivenBody a = pc_driven_body(PC_PASS ia, qa); DrivenBody b = pc_driven_body(PC_PASS ib, qb); Vec3 spin = pc_sub(b.w, a.w);
-  Real zero = PC_REAL(0.0); Mask is_spring = power.v.x > PC_REAL(1.5); Mask is_driven = pc_and(power.v.x > PC_REAL(0.5), power.v.x < PC_REAL(1.5));
+  Real zero = PC_REAL(0.0); Mask is_spring = power.v.x > PC_REAL(1.0); Mask is_driven = pc_and(power.v.x > PC_REAL(0.5), power.v.x < PC_REAL(2.0));
   // about a's joint frame
   DriveFrame f = pc_drive_frame(pc_quaternion_mul(qa, pc_quaternion(axes_a.v, axes_a.s)), pc_quaternion_mul(qb, pc_quaternion(axes_b.v, axes_b.s)), pc_quaternion(rest.v, rest.s));
   // or along the line between the points

@@ -28,7 +28,7 @@ PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
 
 // One angle row at its nearer limit; writes it and returns its impulse.
 PC_FN Real pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lower, Real upper, Mask exists, Real remembered, Sym3 inertia) {
-  NearerLimit limit = pc_nearer_limit(angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
+  NearerLimit limit = pc_nearer_limit(PC_PASS angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
   Vec3 j = pc_scale(axis, sign);
   Real mass = pc_select(exists, pc_inverse_or_zero(pc_dot(j, pc_sym_mul(inertia, j))), PC_REAL(0.0));
   precise Real signed_impulse = remembered * sign * PC_INFO(impulse_ratio);
@@ -76,7 +76,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   // angles
   Real kind = anchor_a.s;
-  Mask any = kind > PC_REAL(0.5); Mask is_cone = pc_and(any, kind < PC_REAL(1.5)); Mask is_angles = kind > PC_REAL(1.5);
+  Mask any = kind > PC_REAL(0.5); Mask is_cone = pc_and(any, kind < PC_REAL(2.0)); Mask is_angles = kind > PC_REAL(1.0);
   Angles angles = pc_joint_angles(pc_quaternion_mul(qa, pc_quaternion(axes_a.v, axes_a.s)), pc_quaternion_mul(qb, pc_quaternion(axes_b.v, axes_b.s)), is_cone);
   Sym3 both; Sym3 wa = a.inertia; Sym3 wb = b.inertia;
   precise Real xx = wa.xx * a.response + wb.xx * b.response; precise Real xy = wa.xy * a.response + wb.xy * b.response; precise Real xz = wa.xz * a.response + wb.xz * b.response;

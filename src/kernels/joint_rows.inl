@@ -49,7 +49,7 @@ PC_FN Vec3 pc_within_most(PC_IO Slot m, Vec3 before, Vec3 change) {
 struct PinArms { Vec3 a; Vec3 b; };
 PC_FN PinArms pc_common_arms(Vec3 frozen_a, Vec3 frozen_b, Vec3 apart) {
   Vec3 moved_all = pc_sub(apart, pc_sub(frozen_a, frozen_b));
-  precise Real reach = pc_dot(frozen_a, frozen_a) + pc_dot(frozen_b, frozen_b); precise Real way = pc_dot(moved_all, moved_all) * PC_REAL(32.0);
+  precise Real reach = pc_dot(frozen_a, frozen_a) + pc_dot(frozen_b, frozen_b); precise Real way = pc_four_times(pc_four_times(pc_dot(moved_all, moved_all))) * PC_REAL(2.0);
   Vec3 moved = pc_select3(way < reach, moved_all, pc_zero3());
   PinArms arms; arms.a = pc_madd(frozen_a, moved, PC_REAL(0.5)); arms.b = pc_madd(frozen_b, moved, PC_REAL(-0.5)); return arms;
 }

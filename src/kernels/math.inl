@@ -13,6 +13,30 @@ PC_FN Quad pc_quad(Vec3 v, Real s) { Quad q; q.v = v; q.s = s; return q; }
 PC_FN Quaternion pc_quaternion(Vec3 v, Real w) { Quaternion q; q.v = v; q.w = w; return q; }
 PC_FN Vec3 pc_zero3() { return Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); }
 
+// ---- numbers ------------------------------------------------------------------------------------------
+// Kernels hold 0, 0.5, 1 and 2 bare. Every other number has a name: here, or in the one file that needs it (tools/check_kernels.py).
+#define PC_THIRD PC_REAL(0.333333333333333333)
+#define PC_SIXTH PC_REAL(0.16666666666666666667)
+#define PC_TWELFTH PC_REAL(0.083333333333333333)
+#define PC_ROOT_HALF PC_REAL(0.70710678118654752)
+#define PC_ROOT_THIRD PC_REAL(0.577350269189625765)
+// The distance from 1 to the next number.
+#ifdef PC_DOUBLE
+#define PC_EPSILON PC_REAL(2.220446049250313e-16)
+#else
+#define PC_EPSILON PC_REAL(1.1920928955078125e-7)
+#endif
+// What is none beside one: a sine, a share, or the square of one; what is little of it; and what is some.
+#define PC_SLIGHT PC_REAL(1e-6)
+#define PC_LITTLE PC_REAL(1e-4)
+#define PC_SOME PC_REAL(1e-2)
+// A factor that outdoes what single precision rounds in a length or a time.
+#define PC_SURELY PC_REAL(1.00001)
+// No slack, depth or ratio of what exists goes so far.
+#define PC_FAR PC_REAL(1e9)
+
+PC_FN Real pc_four_times(Real x) { precise Real twice = x + x; precise Real r = twice + twice; return r; }
+PC_FN Real pc_quarter(Real x) { precise Real r = x * PC_REAL(0.5) * PC_REAL(0.5); return r; }
 PC_FN Real pc_max(Real a, Real b) { return pc_select(a < b, b, a); }
 PC_FN Real pc_min(Real a, Real b) { return pc_select(b < a, b, a); }
 PC_FN Real pc_clamp(Real x, Real low, Real high) { return pc_min(pc_max(x, low), high); }
@@ -65,6 +89,13 @@ PC_FN Vec3 pc_unit_or_zero(Vec3 a) { return pc_scale(a, pc_inverse_or_zero(pc_le
 #else
 #define PC_TINY PC_REAL(1e-18)
 #endif
+// x^2 / (1 + x^2) for x >= 0, nothing where it would be subnormal: of what a sub-step does not resolve, the share that is to be implicit.
+PC_FN Real pc_unresolved(Real x) {
+  Real most = pc_select(x < PC_TINY, PC_REAL(0.0), pc_min(x, PC_FAR));
+  precise Real square = most * most;
+  precise Real all = square + PC_REAL(1.0);
+  return pc_div(square, all);
+}
 // Anything but zero; what is no number, too.
 PC_FN Mask pc_nonzero(Real x) { return pc_select(pc_abs(x) < PC_LEAST, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5); }
 PC_FN Real pc_snap(Real x) { return pc_select(pc_abs(x) < PC_TINY, PC_REAL(0.0), x); }

@@ -1,13 +1,6 @@
 // Start of a sub-step of a net: its bodies, and its springs at the present poses.
 #include "net_rows.inl"
 
-// x^2 / (1 + x^2) for x >= 0; nothing where it would be subnormal
-PC_FN Real pc_share_beyond(Real x) {
-  Real most = pc_select(x < PC_REAL(1e-9), PC_REAL(0.0), pc_min(x, PC_REAL(1e9)));
-  precise Real square = most * most;
-  precise Real all = square + PC_REAL(1.0);
-  return pc_div(square, all);
-}
 PC_FN void pc_prepare_body(PC_IO Slot b, Index row) {
   Quad turned = PC_GATHER(pose, row, 1u);
   Quad inverse = PC_GATHER(mass, row, 1u);
@@ -58,7 +51,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     PC_ST(net_rows, s, NET_REST, power.v.y);
     PC_ST(net_rows, s, NET_STIFFNESS, drive.v.z);
     PC_ST(net_rows, s, NET_DAMPING, drive.s);
-    PC_ST(net_rows, s, NET_LATE, pc_share_beyond(beyond));
+    PC_ST(net_rows, s, NET_LATE, pc_unresolved(beyond));
     pc_st3_net(PC_PASS s, NET_START, ra);
     pc_st3_net(PC_PASS s, NET_START + 3u, rb);
     pc_st3_net(PC_PASS s, NET_AXIS, axis);

@@ -28,6 +28,9 @@ PC_FN void pc_net_foresee(PC_IO Slot b, Index row) {
   pc_st3_net(PC_PASS b, NET_TURN, turn.v);
   PC_ST(net_rows, b, NET_TURN + 3u, w);
 }
+// What a spring does across itself is solved for where this share of its bodies' own inertia feels it.
+#define PC_FELT PC_REAL(1e-3)
+
 // How far the end of an arm goes against its centre.
 PC_FN Vec3 pc_net_swing(PC_IO Slot b, Vec3 arm) {
   Vec3 v = pc_ld3_net(PC_PASS b, NET_TURN);
@@ -79,7 +82,7 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
   Sym3 answer = pc_net_answer(PC_PASS a, b, ra, rb);
   precise Real free = (PC_LD(net_rows, a, NET_MASS) + PC_LD(net_rows, b, NET_MASS)) * h;
   precise Real felt = across * free;
-  Real root = pc_select(felt > PC_REAL(1e-3), pc_sqrt(across), zero);
+  Real root = pc_select(felt > PC_FELT, pc_sqrt(across), zero);
   Vec3 impulse = pc_net_further(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), taken);
   Vec3 lack = pc_sub(pc_scale(n, wanted), impulse);
   Real lack_along = pc_dot(axis, lack);
@@ -287,7 +290,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     if (i + 1u < rounds) pc_net_search(PC_PASS m, n, goes);
     uint left = rounds - 1u - i;
     // a step that led up is made a quarter of it; the last one that may be is not taken
-    Real less = pc_select(PC_IS(left), PC_REAL(0.25), zero);
+    Real less = pc_select(PC_IS(left), pc_quarter(PC_REAL(1.0)), zero);
     precise Real kept = share * less;
     share = pc_select(back, kept, pc_select(goes, pc_select(PC_IS(left), one, zero), zero));
     pc_net_try(PC_PASS m, n, share, live);

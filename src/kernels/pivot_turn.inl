@@ -31,15 +31,22 @@ PC_FN Vec3 pc_hinge_axis(Pivot p, Quaternion q) { return pc_rotate(pc_quaternion
 PC_FN Vec3 pc_along(Vec3 axis, Vec3 v) { return pc_scale(axis, pc_dot(axis, v)); }
 PC_FN Vec3 pc_inverse3(Vec3 v) { return Vec3(pc_inverse_or_zero(v.x), pc_inverse_or_zero(v.y), pc_inverse_or_zero(v.z)); }
 
+#define PC_KICK_0 PC_REAL(0.0792036964311957)
+#define PC_KICK_1 PC_REAL(0.353172906049774)
+#define PC_KICK_2 PC_REAL(-0.0420650803577195)
+#define PC_KICK_3 PC_REAL(0.2193769557534996)
+#define PC_TURN_0 PC_REAL(0.209515106613362)
+#define PC_TURN_1 PC_REAL(-0.143851773179818)
+#define PC_TURN_2 PC_REAL(0.434336666566456)
 // Shares of the sub-step: kicks a0 to a6, turns b0 to b5 between them.
 struct Shares { Real kick; Real turn; };
 PC_FN Shares pc_shares(uint i) {
-  Shares s; s.kick = PC_REAL(0.0792036964311957); s.turn = PC_REAL(0.209515106613362);
-  if (i == 1u || i == 5u) s.kick = PC_REAL(0.353172906049774);
-  if (i == 2u || i == 4u) s.kick = PC_REAL(-0.0420650803577195);
-  if (i == 3u) s.kick = PC_REAL(0.2193769557534996);
-  if (i == 1u || i == 4u) s.turn = PC_REAL(-0.143851773179818);
-  if (i == 2u || i == 3u) s.turn = PC_REAL(0.434336666566456);
+  Shares s; s.kick = PC_KICK_0; s.turn = PC_TURN_0;
+  if (i == 1u || i == 5u) s.kick = PC_KICK_1;
+  if (i == 2u || i == 4u) s.kick = PC_KICK_2;
+  if (i == 3u) s.kick = PC_KICK_3;
+  if (i == 1u || i == 4u) s.turn = PC_TURN_1;
+  if (i == 2u || i == 3u) s.turn = PC_TURN_2;
   return s;
 }
 // Orientation and momentum about the pin, as sums of two reals, and the turn so far.
@@ -91,7 +98,7 @@ struct Stop { Real slack; Real sense; Real back; };  // sense: +1 where the slac
 struct Stopped { Way way; Real impulse; };
 PC_FN Stop pc_stop(PC_IO Slot n, Vec3 axis) {
   Mask waits = pc_and(PC_LD(tree_rows, n, TREE_KIND) < PC_REAL(0.5), pc_nonzero(PC_LD(tree_rows, n, TREE_SIGN))); Real one = PC_REAL(1.0); Real zero = PC_REAL(0.0);
-  Stop s; s.slack = pc_select(waits, PC_LD(tree_rows, n, TREE_SLACK), PC_REAL(1e30)); s.sense = pc_select(pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS), axis) > zero, one, -one);
+  Stop s; s.slack = pc_select(waits, PC_LD(tree_rows, n, TREE_SLACK), PC_FAR); s.sense = pc_select(pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS), axis) > zero, one, -one);
   s.back = pc_select(pc_throws_back(PC_PASS n), PC_LD(tree_rows, n, TREE_REBOUND), zero); return s;
 }
 PC_FN Real pc_left_of(Stop s, Real angle) { precise Real left = s.slack + s.sense * angle; return left; }
@@ -141,7 +148,7 @@ PC_FN Vec3 pc_straightening(PC_IO Slot n) {
   Vec3 tilt = pc_zero3();
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return tilt;  // lint: allow (zeros otherwise)
   for (uint i = 0u; i < 3u; i++) {
-    Real slack = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0));
+    Real slack = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.0), PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0));
     tilt = pc_madd(tilt, pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), slack);
   }
   return pc_negate(pc_scale(tilt, pc_share_closed(PC_PASS tilt)));
@@ -161,7 +168,7 @@ PC_FN void pc_add_impulse(PC_IO Slot n, Vec3 push, Vec3 turn, Vec3 r, Real press
   precise Real limit = PC_LD(tree_rows, n, TREE_LIMIT) + pressed * share; PC_ST(tree_rows, n, TREE_LIMIT, limit);
   Vec3 couple = pc_add(turn, pc_cross(r, push));
   for (uint i = 0u; i < 3u; i++) {
-    Real given = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), share, PC_REAL(0.0));
+    Real given = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.0), share, PC_REAL(0.0));
     precise Real impulse = PC_LD(tree_rows, n, TREE_LIMIT + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), couple) * given; PC_ST(tree_rows, n, TREE_LIMIT + i, impulse);
   }
 }
@@ -200,7 +207,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Vec3 step = (r_next - r) - gap * closed;
   TwoSum there = pc_two_sum(place.v, pc_add(place_low.v, step));
   Quaternion rotation = pc_quaternion_mul(q_next, pc_conjugate(q));
-  Real two = pc_select(rotation.w < PC_REAL(0.0), PC_REAL(-2.0), PC_REAL(2.0)); precise Real square = pc_dot(rotation.v, rotation.v) * PC_REAL(4.0);
+  Real two = pc_select(rotation.w < PC_REAL(0.0), PC_REAL(-2.0), PC_REAL(2.0)); precise Real square = pc_four_times(pc_dot(rotation.v, rotation.v));
 
   Swing now = pc_swing_of(p, q_next, r_next, next.l);
   TwoSum kept = pc_sum_about_pin(p, r_next, now.u, now.l); precise Vec3 lost = ((next.l - kept.sum) - kept.low) + next.low; Vec3 low = pc_select3(swings, lost, pc_along(axis, lost));

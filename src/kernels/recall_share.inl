@@ -32,7 +32,7 @@ PC_FN void pc_kernel(PC_IO Index i) {
   precise Real under = along * along + kick_squared * room;
   precise Real below = along + pc_sqrt(pc_select(limited, under, zero));
   Real part = pc_snap(pc_min(pc_div(room, pc_max(below, PC_TINY)), one));
-  Mask is_number = kick_squared < PC_INFO(largest_impulse);
+  Mask is_number = kick_squared < PC_INFO(largest_momentum);
   struck.v.z = pc_select(limited, pc_select(is_number, part, zero), one);
   struck.s = one;
   PC_SCATTER_IF(moves, delta, i, 2u, struck);

@@ -31,6 +31,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_st3_tree(PC_PASS n, SMOOTH_MOMENTS, pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_MOMENTS), share));
     PC_ST(tree_rows, n, TREE_HAS_ROWS, PC_REAL(0.0)); PC_ST(tree_rows, n, TREE_PIVOT, PC_REAL(0.0)); pc_st6_tree(PC_PASS n, TREE_OUTSIDE, none);
     // stiffness is known, and is none (tree_factor.inl)
-    PC_ST(tree_rows, n, TREE_FAST, PC_REAL(1e-12));
+    PC_ST(tree_rows, n, TREE_FAST, PC_TINY);
   }
 }

@@ -110,7 +110,7 @@ PC_FN void pc_smooth_gain(PC_IO Slot n, Real weight, Real way_weight, Real next)
   Vec3 w = pc_ld3_tree(PC_PASS n, SMOOTH_W); Vec3 turn = pc_ld3_tree(PC_PASS n, SMOOTH_TURN); Vec3 answer = pc_ld3_tree(PC_PASS n, TREE_X);
   Vec3 spun = pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_ld3_tree(PC_PASS n, TREE_X + 3u));
   precise Vec3 l_rate = spun * PC_LD(tree_rows, n, TREE_TOTAL) + pc_cross(w, pc_ld3_tree(PC_PASS n, SMOOTH_L));
-  Vec3 across = pc_cross(turn, w); precise Vec3 turn_rate = w - across * PC_REAL(0.5) + pc_cross(turn, across) * PC_REAL(0.083333333333333333);
+  Vec3 across = pc_cross(turn, w); precise Vec3 turn_rate = w - across * PC_REAL(0.5) + pc_cross(turn, across) * PC_TWELFTH;
   pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), l_rate, weight)); pc_st3_tree(PC_PASS n, SMOOTH_TURN_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_TURN_SUM), turn_rate, weight));
   pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_V_SUM), answer, weight)); pc_st3_tree(PC_PASS n, SMOOTH_WAY_SUM, pc_madd(pc_ld3_tree(PC_PASS n, SMOOTH_WAY_SUM), answer, way_weight));
   pc_st3_tree(PC_PASS n, SMOOTH_TURN, pc_scale(turn_rate, next)); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_scale(l_rate, next));
@@ -151,7 +151,7 @@ PC_FN void pc_smooth_pin_parent(PC_IO Slot n, Slot up) {
 }
 // The sums of all stages: momentum, turn and angular velocity at the end.
 PC_FN void pc_smooth_finish(PC_IO Slot n) {
-  precise Real sixth = PC_INFO(h) * PC_REAL(0.16666666666666666667); pc_st3_tree(PC_PASS n, SMOOTH_L, pc_ld3_tree(PC_PASS n, SMOOTH_START));
+  precise Real sixth = PC_INFO(h) * PC_SIXTH; pc_st3_tree(PC_PASS n, SMOOTH_L, pc_ld3_tree(PC_PASS n, SMOOTH_START));
   pc_smooth_add(PC_PASS n, SMOOTH_L, SMOOTH_L_LOW, pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_L_SUM), sixth)); pc_st3_tree(PC_PASS n, SMOOTH_L_SUM, pc_zero3()); pc_st3_tree(PC_PASS n, SMOOTH_V_SUM, pc_zero3());
   pc_st3_tree(PC_PASS n, SMOOTH_TURN, pc_scale(pc_ld3_tree(PC_PASS n, SMOOTH_TURN_SUM), sixth));
 }
@@ -212,7 +212,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   // the root's way, and its velocity at the end
   PC_ONE {
-    precise Real sixth = h * PC_REAL(0.16666666666666666667); Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
+    precise Real sixth = h * PC_SIXTH; Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
     precise Vec3 gone = (v + pc_ld3_tree(PC_PASS root, SMOOTH_WAY_SUM) * sixth) * h; pc_st3_tree(PC_PASS root, SMOOTH_WAY_SUM, gone);
     pc_smooth_add(PC_PASS root, SMOOTH_V, SMOOTH_V_LOW, pc_scale(pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
   }

@@ -21,7 +21,7 @@ PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
 // How fast a limit that acts is crossed by the end of the sub-step, below 0; `rate`: that of its slack. What is beyond it already is not asked back
 // here: velocities of that would meet the contacts of the relax phase.
 PC_FN Real pc_crosses(PC_IO Slot n, uint i, Real rate) {
-  Mask acts = pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(1.5));
+  Mask acts = pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(2.0));
   precise Real over = rate + pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
   return pc_select(acts, pc_min(over, PC_REAL(0.0)), PC_REAL(0.0));
 }
@@ -33,7 +33,7 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted, Real most) {
     Real now = pc_row_rate(PC_PASS n, up, i, turn, most);
     Real over = pc_crosses(PC_PASS n, i, now);
     if (PC_ANY(pc_throws_back(PC_PASS n))) over = pc_min(over, pc_lacks_rebound(PC_PASS n, i, now));  // lint: allow (zero otherwise)
-    precise Real rate = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), now, over) * wanted;
+    precise Real rate = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.0), now, over) * wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
   }
 }
@@ -42,6 +42,8 @@ PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
   precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_share_within(size, most); return pc_scale(v, share);
 }
+// A limit that throws back is left too slowly where this share of the rate lacks.
+#define PC_LACKS_REBOUND PC_REAL(1e-5)
 // 1 where a limit is crossed by more than rounding, or one that throws back is left too slowly, by more than 1e-5 of its rate.
 PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   Real lacks = PC_REAL(0.0);
@@ -51,18 +53,20 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
     Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
     lacks = pc_select(pc_is_crossed(pc_crosses(PC_PASS n, i, now)), PC_REAL(1.0), lacks);
     if (PC_ANY(pc_throws_back(PC_PASS n))) {  // lint: allow (none otherwise)
-      precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * PC_REAL(-1e-5);
+      precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * -PC_LACKS_REBOUND;
       lacks = pc_select(pc_lacks_rebound(PC_PASS n, i, now) < much, PC_REAL(1.0), lacks);
     }
   }
   return lacks;
 }
+// A gap is wide beyond 4e-5 of the arm: its square.
+#define PC_WIDE_OPEN PC_REAL(2e-9)
 // 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit
 // has not thrown back yet.
 struct Left { Real some; Real much; };
 // Run after pc_tree_residual.
 PC_FN Left pc_left(PC_IO Slot m, Tree t) {
-  precise Real share = PC_INFO(rounding) * PC_REAL(0.25);
+  precise Real share = pc_quarter(PC_INFO(rounding));
   precise Real noise = share * share;
   Left left; left.some = PC_REAL(0.0); left.much = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
@@ -70,7 +74,7 @@ PC_FN Left pc_left(PC_IO Slot m, Tree t) {
     Vec3 gap = pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h));
     Real lacks = pc_limit_lacks(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
     left.some = pc_max(left.some, pc_max(pc_gap_over(PC_PASS n, gap, noise), lacks));
-    left.much = pc_max(left.much, pc_max(pc_gap_over(PC_PASS n, gap, PC_REAL(2e-9)), lacks));
+    left.much = pc_max(left.much, pc_max(pc_gap_over(PC_PASS n, gap, PC_WIDE_OPEN), lacks));
   }
   PC_MOST(left.some);
   PC_MOST(left.much);
@@ -82,7 +86,7 @@ PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
   Real kind = PC_REAL(0.0);
   PC_NODES(k, 1u, t)
     for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
-  PC_MOST(kind); return pc_select(kind > PC_REAL(1.5), PC_REAL(1.0), PC_REAL(0.0));
+  PC_MOST(kind); return pc_select(kind > PC_REAL(1.0), PC_REAL(1.0), PC_REAL(0.0));
 }
 // What the push undoes of a joint's angles, as rates of its rows. 1 where there is any. Where contacts have begun it
 // (`begun`), what that turns over limits as well.
@@ -95,13 +99,13 @@ PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
     Mask acts = PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5);
     Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
-    Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
+    Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(2.0));
     precise Real beyond = slack - pc_little_beyond(PC_PASS slack, kind);
     Real undone = pc_select(pc_or(open, pc_abs(beyond) < PC_INFO(rounding)), PC_REAL(0.0), beyond);
     Real rate = pc_select(acts, pc_soft_bias(PC_PASS undone), PC_REAL(0.0));
     if (PC_ANY(begun)) {  // lint: allow (selected)
       Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
-      Real turned = pc_select(kind > PC_REAL(1.5), now, pc_crosses(PC_PASS n, i, now));
+      Real turned = pc_select(kind > PC_REAL(1.0), now, pc_crosses(PC_PASS n, i, now));
       precise Real both = rate + turned;
       rate = pc_select(begun, both, rate);
     }
@@ -172,7 +176,7 @@ PC_FN Rest pc_continue_push(PC_IO Slot m, Tree t, Real noise, Real turned, Real 
     Slot n = PC_NODE(m, t.first + k);
     Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
     Vec3 left = pc_madd(pc_ld3_tree(PC_PASS n, TREE_C), pc_closing(PC_PASS gap), pc_gap_over(PC_PASS n, gap, noise));
-    rest.much = pc_max(rest.much, pc_gap_over(PC_PASS n, pc_scale(left, PC_INFO(h)), PC_REAL(2e-9)));
+    rest.much = pc_max(rest.much, pc_gap_over(PC_PASS n, pc_scale(left, PC_INFO(h)), PC_WIDE_OPEN));
     rest.most = pc_max(rest.most, pc_dot(left, left));
     pc_st3_tree(PC_PASS n, TREE_C, left);
   }
@@ -272,7 +276,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     if (round > ROUND_PUSH) wanted = pc_min(wanted, push.turned);
     Real most = PC_REAL(1.0);
     if (PC_ANY(wanted > PC_REAL(0.5))) {  // lint: allow (rounds of nothing change nothing)
-      if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(strayed_turn);
+      if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(stale_share);
       pc_tree_residual_to(PC_PASS m, t, wanted, most);
     }
     if (round == ROUND_PUSH) {

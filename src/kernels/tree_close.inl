@@ -30,7 +30,7 @@ PC_FN Vec3 pc_tree_close(PC_IO Slot m, Tree t) {
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding); Real open = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k); Vec3 gap = pc_gap_now(PC_PASS t, n, k); pc_st3_tree(PC_PASS n, TREE_C, pc_select3(may, gap, pc_ld3_tree(PC_PASS n, TREE_C)));
-    Real over = pc_gap_over(PC_PASS n, gap, noise); open = pc_max(open, over); Real wide = pc_gap_over(PC_PASS n, gap, PC_REAL(1e-6)); barred = pc_max(barred, wide);
+    Real over = pc_gap_over(PC_PASS n, gap, noise); open = pc_max(open, over); Real wide = pc_gap_over(PC_PASS n, gap, PC_SLIGHT); barred = pc_max(barred, wide);
   }
   PC_MOST(open); PC_MOST(barred);
   Mask closes = pc_select(barred < PC_LEAST, open, PC_REAL(0.0)) > PC_REAL(0.5); Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);

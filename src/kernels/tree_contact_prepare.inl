@@ -24,7 +24,7 @@ PC_FN Real pc_room(PC_IO Slot m, uint i, Twist v, Shift shift) {
   Real a = PC_LD(contact_rows, m, ROW_A + i); Real b = PC_LD(contact_rows, m, ROW_B + i);
   precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + b * shift.turn1 - a * shift.turn2);
   precise Real room = s * PC_INFO(inverse_h) + (v.vn + b * v.w1 - a * v.w2);
-  return pc_select(PC_LD(contact_rows, m, ROW_MASS + i) > PC_REAL(0.0), room, PC_REAL(1e9));
+  return pc_select(PC_LD(contact_rows, m, ROW_MASS + i) > PC_REAL(0.0), room, PC_FAR);
 }
 PC_FN Mask pc_idles(PC_IO Slot m, Meeting now) {
   Real held = PC_REAL(0.0);

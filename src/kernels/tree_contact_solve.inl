@@ -37,7 +37,7 @@ PC_FN Mask pc_goes_by_rows(PC_IO Meeting now) {
   Vec3 wa = pc_angular_velocity(now.a);
   Vec3 wb = pc_angular_velocity(now.b);
   precise Real turned = pc_max(pc_dot(wa, wa), pc_dot(wb, wb)) * PC_INFO(h) * PC_INFO(h) * PC_INFO(load_ahead);
-  return pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), turned, PC_REAL(0.0)) < PC_REAL(0.25);  // (a blow-up times zero is no number)
+  return pc_select(PC_INFO(load_ahead) > PC_REAL(0.0), turned, PC_REAL(0.0)) < pc_quarter(PC_REAL(1.0));  // (a blow-up times zero is no number)
 }
 
 // For tree_contact_push, which comes after the biased visit.

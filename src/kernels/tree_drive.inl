@@ -5,7 +5,7 @@
 
 PC_FN Mask pc_has_drive(PC_IO Slot n) { return PC_LD(tree_drive_rows, n, DRIVE_IS) > PC_REAL(0.5); }
 // Whether it is a motor or has stiffness: does more than damp.
-PC_FN Mask pc_drive_moves(PC_IO Slot n) { Real kind = PC_LD(tree_drive_rows, n, DRIVE_IS); return pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5)); }
+PC_FN Mask pc_drive_moves(PC_IO Slot n) { Real kind = PC_LD(tree_drive_rows, n, DRIVE_IS); return pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0)); }
 
 // A joint with a motor or a spring, not in its first sub-step: what it turns would be slowed by a floor for pins of unknown stiffness.
 PC_FN Mask pc_drive_lasts(PC_IO Slot n) { return pc_and(pc_has_drive(PC_PASS n), PC_LD(tree_drive_rows, n, DRIVE_FRESH) < PC_REAL(0.5)); }
@@ -29,16 +29,17 @@ PC_FN Real pc_motor_push(PC_IO Slot n, Vec3 axis, Sym3 loose, Real answer, Mask 
   precise Real beyond = PC_LD(tree_drive_rows, n, DRIVE_RATE) - PC_LD(tree_drive_rows, n, MOTOR_SPEED);
   // not known yet: by what it would take without loads
   precise Real need = pc_abs(beyond) * pc_inverse_or_zero(answer); Real side = pc_select(beyond > zero, -one, one);
-  Real state = pc_select(on > PC_REAL(1.5), pc_select(need > most, side, zero), on); Mask holds = pc_and(most > zero, pc_abs(state) < PC_REAL(0.5));
+  Real state = pc_select(on > PC_REAL(1.0), pc_select(need > most, side, zero), on); Mask holds = pc_and(most > zero, pc_abs(state) < PC_REAL(0.5));
   precise Real lock = PC_INFO(lock_stiffness) * pc_inverse_or_zero(pc_dot(axis, pc_sym_mul(loose, axis))); Real stiffness = pc_select(holds, lock, zero);
   PC_ST(tree_drive_rows, n, MOTOR_ON, pc_select(driven, state, on)); PC_ST(tree_drive_rows, n, MOTOR_STIFFNESS, stiffness);
   precise Real pull = stiffness * beyond - state * most; return pull;
 }
+#define PC_MOST_DAMPED PC_REAL(300.0)
 // D with what only damps in it, all axes at once and so without any of the joint's: drive_terms.inl's sigma as a matrix, y^2 (1 + y^2)^-1 with y = h c / m.
 // Beyond a trace of 300 y is scaled down, or rounding of its square would swamp the 1. `push`: the couple that it lacks at the prediction.
 struct Driven { Sym3 freedom; Vec3 push; };
 PC_FN Driven pc_with_damper(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
-  Sym3 answer = pc_sym_add(loose, pc_sym_inverse(pc_lds_tree(PC_PASS up, TREE_BODY))); Real one = PC_REAL(1.0); Real most = PC_REAL(300.0);
+  Sym3 answer = pc_sym_add(loose, pc_sym_inverse(pc_lds_tree(PC_PASS up, TREE_BODY))); Real one = PC_REAL(1.0); Real most = PC_MOST_DAMPED;
   precise Real damping = PC_LD(tree_drive_rows, n, DRIVE_DAMPING) * PC_LD(tree_drive_rows, n, DRIVE_KICK); precise Real trace = (answer.xx + answer.yy + answer.zz) * damping;
   precise Real scale = damping * pc_div(most, pc_max(trace, most)); precise Real half_damping = damping * PC_REAL(0.5);
   Sym3 y = pc_sym_scale(answer, scale); Vec3 y0 = pc_row0(y); Vec3 y1 = pc_row1(y); Vec3 y2 = pc_row2(y);

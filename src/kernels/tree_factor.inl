@@ -4,6 +4,9 @@
 // while tree_solve and tree_limits last, in places that are free by then
 const uint TREE_REST = TREE_PUSH;         // the angular part of TREE_A, 6
 const uint TREE_STALE = TREE_KEPT_PIN;  // 1 where the factor must be made anew
+// Of a joint's inertia, in units of PC_INFO(rounding), what is lost in it of a light body's spin; and where stiffness is not known.
+#define PC_SPIN_LOST PC_REAL(8.0)
+#define PC_SPIN_UNKNOWN PC_REAL(256.0)
 
 PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > PC_REAL(0.5); }
 
@@ -11,10 +14,10 @@ PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > 
 // axis, many times. The limit of a hinge, whose other angles are locked, is as stiff as they are: a stop. Limits of joints with
 // more freedom yield: stiff ones that meet at an angle tear trees apart.
 PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 loose) {
-  Sym3 factor = loose; precise Real kinds = PC_LD(tree_rows, n, TREE_KIND) + PC_LD(tree_rows, n, TREE_KIND + 1u) + PC_LD(tree_rows, n, TREE_KIND + 2u);
+  Sym3 factor = loose; precise Real others = PC_LD(tree_rows, n, TREE_KIND) + PC_LD(tree_rows, n, TREE_KIND + 1u) + PC_LD(tree_rows, n, TREE_KIND + 2u) - PC_REAL(2.0);
   for (uint i = 0u; i < 3u; i++) {
     Vec3 j = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
-    Mask stops = pc_or(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.5), kinds > PC_REAL(4.5));
+    Mask stops = pc_or(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.0), others > PC_REAL(2.0));
     Real stiffness = pc_select(stops, PC_INFO(lock_stiffness), PC_INFO(limit_stiffness));
     precise Real on = PC_LD(tree_rows, n, TREE_ON + i); precise Real stiff = stiffness * on * pc_inverse_or_zero(pc_dot(j, pc_factor_mul(loose, j)));
     Real spring = pc_select(on > PC_REAL(0.0), stiff, PC_REAL(0.0));
@@ -55,15 +58,15 @@ PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
   // a light body's spin between heavy ones is lost in the rounding of their inertia: what its own lacks is added (docs/joint-trees.md)
   // (pins that remember no impulse may be of any stiffness)
-  precise Real rounding = PC_INFO(rounding) * PC_REAL(8.0); precise Real unknown = PC_INFO(rounding) * PC_REAL(256.0);
+  precise Real rounding = PC_INFO(rounding) * PC_SPIN_LOST; precise Real unknown = PC_INFO(rounding) * PC_SPIN_UNKNOWN;
 #ifdef PC_DRIVES
   unknown = pc_select(pc_drive_lasts(PC_PASS n), PC_INFO(rounding), unknown);
 #endif
   // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
-  Mask known = fast > PC_REAL(0.0); Real share = pc_select(known, rounding, unknown); Real times = pc_select(known, PC_REAL(8.0), PC_REAL(1.0));
+  Mask known = fast > PC_REAL(0.0); Real share = pc_select(known, rounding, unknown); Real times = pc_select(known, PC_SPIN_LOST, PC_REAL(1.0));
   precise Real all = xx + yy + zz; precise Real lacks = all * share - pc_least_moment(PC_PASS n);
   precise Real held = pc_max(lacks, PC_REAL(0.0)) * times + all * fast * PC_INFO(spin_floor);
-  precise Real least = all * PC_INFO(rounding) * PC_REAL(0.03125);
+  precise Real least = all * PC_EPSILON;
   Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
   Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 factor = pc_inverse_factor(PC_PASS freedom);
 #ifdef PC_DRIVES

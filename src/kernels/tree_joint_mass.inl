@@ -21,7 +21,7 @@ PC_FN Real pc_answer_along(PC_IO Slot m, uint i, Sym3 answer) {
 
 // Of a bare body: the sum of its answers at the arm, along three axes.
 PC_FN Real pc_bare_answer(BodyState b, Vec3 arm) {
-  precise Real sum = b.inverse_mass * PC_REAL(3.0) + pc_turning_answer(b, arm);
+  precise Real sum = (b.inverse_mass + (b.inverse_mass + b.inverse_mass)) + pc_turning_answer(b, arm);
   return sum;
 }
 PC_FN Six pc_across_at(PC_IO Way w, Slot m, Vec3 arm, Six f) {
@@ -59,7 +59,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st3_joint(PC_PASS m, JOINT_NEAR_A, arm_a); pc_st3_joint(PC_PASS m, JOINT_NEAR_B, arm_b);
   for (uint i = 0u; i < 3u; i++) {
     Vec3 axis = pc_ld3_joint(PC_PASS m, JOINT_AXIS + i * 3u); Real bare = PC_LD(joint_rows, m, JOINT_MASS + i);
-    precise Real answer = pc_dot(axis, pc_sym_mul(g.a, axis)) + pc_inverse_or_zero(bare) * PC_REAL(0.01);
+    precise Real answer = pc_dot(axis, pc_sym_mul(g.a, axis)) + pc_inverse_or_zero(bare) * PC_SOME;
     PC_ST(joint_rows, m, JOINT_MASS + i, pc_select(bare > PC_REAL(0.0), pc_inverse_or_zero(answer), PC_REAL(0.0)));
   }
 #ifdef PC_DRIVES

@@ -71,11 +71,10 @@ PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
 // these. It stays positive, and a small scale beside large ones keeps its digits: cofactors are off by a rounding of the largest entry squared.
 // A pivot is known no better than to a rounding of its diagonal.
 PC_FN Sym3 pc_inverse_factor(PC_IO Sym3 m) {
-  precise Real epsilon = PC_INFO(rounding) * PC_REAL(0.03125);
   Real dx = pc_inverse_or_zero(m.xx); precise Real yx = m.xy * dx; precise Real zx = m.xz * dx;
-  precise Real yy = m.yy - m.xy * yx; precise Real zy_rest = m.yz - m.xz * yx; precise Real least_y = m.yy * epsilon;
+  precise Real yy = m.yy - m.xy * yx; precise Real zy_rest = m.yz - m.xz * yx; precise Real least_y = m.yy * PC_EPSILON;
   Real dy = pc_inverse_or_zero(pc_max(yy, least_y)); precise Real zy = zy_rest * dy;
-  precise Real zz = m.zz - m.xz * zx - zy_rest * zy; precise Real least_z = m.zz * epsilon;
+  precise Real zz = m.zz - m.xz * zx - zy_rest * zy; precise Real least_z = m.zz * PC_EPSILON;
   precise Real corner = yx * zy - zx;
   return pc_sym3(dx, -yx, corner, dy, -zy, pc_inverse_or_zero(pc_max(zz, least_z)));
 }

@@ -42,7 +42,7 @@ PC_FN Ahead pc_row_ahead(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   r.axis = now;
   r.rate = pc_dot(now, turn);
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
-  Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
+  Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));
   precise Real gap_rate = pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
   precise Real out_of_reach = gap_rate * gap_rate;
   Vec3 inner = pc_ld3_tree(PC_PASS n, TREE_CONE);

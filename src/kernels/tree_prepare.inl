@@ -24,7 +24,7 @@ PC_FN void pc_tree_body(PC_IO Slot n) {
 
 // One angle row at its nearer limit. It acts from the start where it did in the last sub-step; tree_solve adds others.
 PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angle, Real lower, Real upper, Mask exists, Real remembered) {
-  NearerLimit limit = pc_nearer_limit(angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
+  NearerLimit limit = pc_nearer_limit(PC_PASS angle, lower, upper, exists); Mask locked = limit.locked; Real sign = limit.sign; Real slack = limit.slack;
   Real one = PC_REAL(1.0); Real zero = PC_REAL(0.0);
   precise Real turned = sign * flip; precise Real pressed = remembered * sign;
   Vec3 j = pc_select3(exists, pc_scale(axis, turned), pc_zero3());
@@ -37,14 +37,14 @@ PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angl
 
 // A hinge that a body turns about comes to its limit at an instant that pivot_turn finds: no row acts before it is there.
 PC_FN void pc_keep_for_the_turn(PC_IO Slot n, Mask is_angles) {
-  Mask locked = pc_and(PC_LD(tree_rows, n, TREE_KIND + 1u) > PC_REAL(1.5), PC_LD(tree_rows, n, TREE_KIND + 2u) > PC_REAL(1.5));
-  Mask on_its_way = pc_and(PC_LD(tree_rows, n, TREE_KIND) < PC_REAL(1.5), PC_LD(tree_rows, n, TREE_SLACK) > PC_INFO(rounding)); Mask waits = pc_and(pc_and(is_angles, locked), on_its_way);
+  Mask locked = pc_and(PC_LD(tree_rows, n, TREE_KIND + 1u) > PC_REAL(1.0), PC_LD(tree_rows, n, TREE_KIND + 2u) > PC_REAL(1.0));
+  Mask on_its_way = pc_and(PC_LD(tree_rows, n, TREE_KIND) < PC_REAL(2.0), PC_LD(tree_rows, n, TREE_SLACK) > PC_INFO(rounding)); Mask waits = pc_and(pc_and(is_angles, locked), on_its_way);
   PC_ST(tree_rows, n, TREE_KIND, pc_select(waits, PC_REAL(0.0), PC_LD(tree_rows, n, TREE_KIND))); PC_ST(tree_rows, n, TREE_ON, pc_select(waits, PC_REAL(0.0), PC_LD(tree_rows, n, TREE_ON)));
 }
 
 // The three angle rows of a joint; a joint without angles has three that never act.
 PC_FN void pc_tree_angles(PC_IO Slot n, uint b, uint pivot, Quaternion qc, Quaternion qp, Quad axes_c, Quad axes_p, Quad head, Quad lower, Quad upper, Vec3 remembered) {
-  Mask any = head.s > PC_REAL(0.5); Mask is_cone = pc_and(any, head.s < PC_REAL(1.5)); Mask is_angles = head.s > PC_REAL(1.5);
+  Mask any = head.s > PC_REAL(0.5); Mask is_cone = pc_and(any, head.s < PC_REAL(2.0)); Mask is_angles = head.s > PC_REAL(1.0);
   Mask throws = pc_and(any, upper.s > PC_REAL(0.0));
   PC_ST(tree_rows, n, TREE_HAS_ROWS, pc_select(throws, PC_REAL(2.0), pc_select(any, PC_REAL(1.0), PC_REAL(0.0))));
   if (!PC_ANY(any)) {  // lint: allow (rows of kind 0 are the same whatever their axes)

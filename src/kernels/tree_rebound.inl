@@ -3,6 +3,9 @@
 // may be more than there was. No more comes back than the solve took, which stops all of them; what exceeds it is left
 // out of the whole throw, and pins close in a step of their own.
 
+// Of the energy of a throw, in units of PC_INFO(rounding), what rounding leaves.
+#define PC_LIMIT_NOISE PC_REAL(16.0)
+
 // 1 where a limit is met that throws back.
 PC_FN Real pc_is_thrown(PC_IO Slot n) {
   Real most = PC_REAL(0.0);
@@ -67,7 +70,7 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   Real energy = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY);
   precise Real taken = energy - kept_energy;
   // (what one limit gives back whole is within rounding of it)
-  precise Real slightly = energy * PC_INFO(rounding) * PC_REAL(16.0);
+  precise Real slightly = energy * PC_INFO(rounding) * PC_LIMIT_NOISE;
   Real back = pc_max(taken, zero);
   // 2 share first + share^2 second = back
   precise Real made = first + first + second;

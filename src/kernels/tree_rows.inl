@@ -76,14 +76,16 @@ PC_FN Real pc_rate_after(PC_IO Slot n, uint i, Vec3 turn) {
   precise Real rate = PC_LD(tree_rows, n, TREE_RATE + i) + pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
   return rate;
 }
+// [rad/s]
+#define PC_CROSSING_RATE PC_REAL(0.05)
 // Whether a limit is crossed at more than rounding.
-PC_FN Mask pc_is_crossed(Real rate) { return rate < PC_REAL(-0.05); }
+PC_FN Mask pc_is_crossed(Real rate) { return rate < -PC_CROSSING_RATE; }
 // The same of a limit that does not act, once the joint turns by `turn` faster.
 PC_FN Mask pc_enters(PC_IO Slot n, uint i, Vec3 turn) {
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
-  Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
+  Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));
   Mask waits = pc_and(is_limit, PC_LD(tree_rows, n, TREE_ON + i) < PC_REAL(0.5));
   return pc_and(waits, pc_is_crossed(pc_rate_after(PC_PASS n, i, turn)));
 }
 // Whether any lane's joint has limits with a restitution: TREE_REBOUND holds something there alone.
-PC_FN Mask pc_throws_back(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(1.5); }
+PC_FN Mask pc_throws_back(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(1.0); }

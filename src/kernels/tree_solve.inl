@@ -24,7 +24,7 @@ PC_FN void pc_choose_limit(PC_IO Slot n, uint i, Vec3 turn) {
   Real on = PC_LD(tree_rows, n, TREE_ON + i);
   Real span = PC_LD(tree_rows, n, TREE_SPAN + i);
   precise Real doubled = slack * PC_REAL(2.0) + pc_dot(axis, turn) * PC_INFO(h);
-  Mask is_limit = pc_and(pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5)), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
+  Mask is_limit = pc_and(pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0)), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
   Mask other = pc_and(is_limit, doubled > span);
   if (!PC_ANY(other)) return;  // lint: allow (rows stay otherwise)
   precise Real left = span - slack;
@@ -53,7 +53,7 @@ PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   for (uint i = 0u; i < 3u; i++) {
     Real ahead = pc_begin_row(PC_PASS n, up, i, turn);
     Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
-    Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(1.5));
+    Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(2.0));
     Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack, kind)), open);
     precise Real rate = ahead + wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
@@ -67,7 +67,7 @@ PC_FN void pc_tree_rebounds(PC_IO Slot n, Slot up) {
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     precise Real approach = -pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn); precise Real away = approach * PC_LD(tree_rows, n, TREE_REBOUND + i);
-    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Mask meets = pc_and(approach > PC_INFO(restitution_threshold), kind < PC_REAL(1.5));
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Mask meets = pc_and(approach > PC_INFO(restitution_threshold), kind < PC_REAL(2.0));
     Real rate = pc_select(meets, away, PC_REAL(0.0)); PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(kind < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_REBOUND + i), rate));  // (pivot_turn's)
   }
 }
@@ -77,7 +77,7 @@ PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real changed = PC_REAL(0.0); Real one = PC_REAL(1.0);
   for (uint i = 0u; i < 3u; i++) {
     Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Real on = PC_LD(tree_rows, n, TREE_ON + i); Real impulse = pc_row_impulse(PC_PASS n, i, turn);
-    Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(1.5));
+    Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));
     Mask leaves = pc_and(is_limit, pc_and(on > PC_REAL(0.5), impulse < PC_REAL(0.0)));
     Mask enters = pc_and(may_enter > PC_REAL(0.5), pc_enters(PC_PASS n, i, turn));
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(leaves, PC_REAL(0.0), pc_select(enters, one, on)));
@@ -92,14 +92,15 @@ PC_FN void pc_rates_left(PC_IO Slot n, Slot up) {
   for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_RATE + i, pc_rate_after(PC_PASS n, i, turn));
 }
 
+#define PC_EARLY_DAMPING PC_REAL(0.02)
 // Share of what a sub-step cannot resolve that is damped, 0 to 1; `fast` = x / (1 + x) of a body's pins. Alone a tree needs it near the
 // limit of stability, x = 1: 4 fast^2 is a damping of fourth order in x, and what the sub-step resolves keeps its energy. Loops and contacts
 // act on a tree from outside of its solve and feed its modes: there it begins at x = 0.02, and where an arm swings by more than a
 // seventh of a radian in the sub-step.
-PC_FN Real pc_damped_share(Real fast, Real swing, Mask held) {
-  Real zero = PC_REAL(0.0); precise Real beyond = fast - PC_REAL(0.02); precise Real whip = (swing - PC_REAL(0.02)) * PC_REAL(10.0);
-  precise Real early = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real late = fast * fast * PC_REAL(4.0);
-  Real alone = pc_select(fast > PC_REAL(1e-4), late, zero);  // less is rounding, and its squares would be subnormal
+PC_FN Real pc_damped_share(PC_IO Real fast, Real swing, Mask held) {
+  Real zero = PC_REAL(0.0); precise Real beyond = fast - PC_EARLY_DAMPING; precise Real swung = swing - PC_EARLY_DAMPING; Real whip = pc_div(swung, PC_INFO(stale_share));
+  precise Real early = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real square = fast * fast; Real late = pc_four_times(square);
+  Real alone = pc_select(fast > PC_LITTLE, late, zero);  // less is rounding, and its squares would be subnormal
   return pc_min(pc_select(held, early, alone), PC_REAL(1.0));
 }
 // 1 where a limit of the joint acts.
@@ -118,7 +119,7 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
     // (how far the arm swings against the parent, as an angle squared: a top may spin about it as it likes)
     Vec3 arm = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
     Vec3 way = pc_scale(pc_cross(turn, arm), PC_INFO(h)); precise Real swing = pc_dot(way, way) * pc_inverse_or_zero(pc_dot(arm, arm));
-    Real share = pc_damped_share(PC_LD(tree_rows, n, TREE_FAST), swing, held); precise Real scale = share * PC_INFO(tree_damping) * PC_REAL(-2.0);
+    Real share = pc_damped_share(PC_PASS PC_LD(tree_rows, n, TREE_FAST), swing, held); precise Real scale = share * PC_INFO(tree_damping) * PC_REAL(-2.0);
     Sym3 stiffness = pc_sym_sub(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_lds_tree(PC_PASS n, TREE_BODY));
     pc_st3_tree(PC_PASS n, TREE_OUTSIDE + 3u, pc_madd(pc_ld3_tree(PC_PASS n, TREE_OUTSIDE + 3u), pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), scale));
   }

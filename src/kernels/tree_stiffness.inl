@@ -18,8 +18,7 @@ struct Stiffened { Sym3 inertia; Real fast; };
 // 1/2 + sqrt(x / 3) + (1/2 - sqrt(1/3)) x, x = (1 - r) / 2, which is exact where two eigenvalues are equal, as those of one pin that pulls
 // or pushes along its arm are, and else too large by less than 0.4 %.
 PC_FN Real pc_lowest_or_zero(Sym3 k) {
-  precise Real third = PC_REAL(0.333333333333333333);
-  precise Real mean = (k.xx + k.yy + k.zz) * third;
+  precise Real mean = (k.xx + k.yy + k.zz) * PC_THIRD;
   precise Real x = k.xx - mean;
   precise Real y = k.yy - mean;
   precise Real z = k.zz - mean;
@@ -33,7 +32,7 @@ PC_FN Real pc_lowest_or_zero(Sym3 k) {
   precise Real g1 = k.xz * unit;
   precise Real h1 = k.yz * unit;
   precise Real across = f1 * f1 + g1 * g1 + h1 * h1;
-  precise Real square = (a1 * a1 + b1 * b1 + c1 * c1 + across + across) * PC_REAL(0.5) * third;
+  precise Real square = (a1 * a1 + b1 * b1 + c1 * c1 + across + across) * PC_REAL(0.5) * PC_THIRD;
   Real root = pc_sqrt(square);
   precise Real size = root * largest;
   Real scale = pc_inverse_or_zero(root);
@@ -44,15 +43,15 @@ PC_FN Real pc_lowest_or_zero(Sym3 k) {
   precise Real g = g1 * scale;
   precise Real h = h1 * scale;
   precise Real det = a * (b * c - h * h) - f * (f * c - h * g) + g * (f * h - b * g);
-  precise Real part = PC_REAL(0.5) - det * PC_REAL(0.25);
+  precise Real part = PC_REAL(0.5) - pc_quarter(det);
   Real of_all = pc_clamp(part, PC_REAL(0.0), PC_REAL(1.0));
-  precise Real cosine = PC_REAL(0.5) + pc_sqrt(of_all) * PC_REAL(0.577350269189625765) - of_all * PC_REAL(0.0773502691896257645);
+  precise Real cosine = PC_REAL(0.5) + pc_sqrt(of_all) * PC_ROOT_THIRD - of_all * (PC_ROOT_THIRD - PC_REAL(0.5));
   precise Real low = mean - size * cosine * PC_REAL(2.0);
   return pc_min(PC_REAL(0.0), low);
 }
 PC_FN Stiffened pc_stiffened(PC_IO Sym3 i, Sym3 k) {
   Real low = pc_lowest_or_zero(k);
-  precise Real stiff = (k.xx + k.yy + k.zz - low * PC_REAL(3.0)) * PC_INFO(h); precise Real slow = (i.xx + i.yy + i.zz) * PC_REAL(4.0); precise Real all = stiff + slow;
+  precise Real stiff = (k.xx + k.yy + k.zz - (low + (low + low))) * PC_INFO(h); precise Real trace = i.xx + i.yy + i.zz; Real slow = pc_four_times(trace); precise Real all = stiff + slow;
   precise Real fast = stiff * pc_inverse_or_zero(all); precise Real weight = PC_INFO(h) * PC_REAL(0.5) * fast;
   precise Real xx = i.xx + (k.xx - low) * weight; precise Real xy = i.xy + k.xy * weight; precise Real xz = i.xz + k.xz * weight;
   precise Real yy = i.yy + (k.yy - low) * weight; precise Real yz = i.yz + k.yz * weight; precise Real zz = i.zz + (k.zz - low) * weight;

@@ -1,6 +1,6 @@
 // Whether Newton's steps have found their way. From far off, after a blow or in a whip, they do not, and what they add is energy of any size.
 // Where they more than double the energy of the motion within the tree, all is taken back, and bodies are seen ahead until they have turned by
-// `strayed_turn`: pins then make none, and gaps that this leaves are closed by the push.
+// `stale_share`: pins then make none, and gaps that this leaves are closed by the push.
 #include "tree_energy.inl"
 
 const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other

@@ -20,7 +20,7 @@ PC_FN void pc_tree_whole(PC_IO Slot m, Tree t) {
   Real wide = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    wide = pc_max(wide, pc_gap_over(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_GAP), PC_REAL(0.01)));
+    wide = pc_max(wide, pc_gap_over(PC_PASS n, pc_ld3_tree(PC_PASS n, TREE_GAP), PC_SOME));
   }
   PC_MOST(wide);
   Sym3 rigid = pc_sym_select(wide > PC_REAL(0.5), pc_diagonal(PC_REAL(0.0)), pc_sym_inverse(inertia));

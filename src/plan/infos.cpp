@@ -54,7 +54,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.spin_floor = Scalar(constants::tree_spin_floor);
   biased.rounds = constants::rounds;
   biased.net_made = Scalar(constants::net_made);
-  biased.strayed_turn = Scalar(constants::strayed_turn);
+  biased.stale_share = Scalar(constants::stale_share);
+  biased.locked_interval = Scalar(constants::locked_interval);
   biased.limit_stiffness = Scalar(rows.mass_scale / rows.impulse_scale);
   biased.tree_damping = Scalar(constants::tree_damping);
   biased.lock_stiffness = Scalar(constants::lock_stiffness);
@@ -66,7 +67,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.substeps = Scalar(from.substeps << octave);
   biased.step = Scalar(from.h * from.substeps);
   biased.largest_state = Scalar(constants::largest_state);
-  biased.largest_impulse = Scalar(constants::largest_impulse);
+  biased.largest_momentum = Scalar(constants::largest_momentum);
 
   const auto change = [&](Phase phase, double before, double after) {
     InfoOf<Scalar>& info = infos[unsigned(phase)];

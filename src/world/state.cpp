@@ -282,7 +282,7 @@ void WorldState::kick(std::uint32_t row, Vec3 acceleration, Vec3 torque) {
   const Vec3 linear = shift_by(acceleration, tables.get(Buffer::force, row, 3));
   const Vec3 angular = shift_by(torque, tables.get(Buffer::force, row, 7));
   // more than the numbers hold: then the velocities start anew from what is read
-  if (!(length(linear) <= constants::largest_state && length(angular) <= constants::largest_spin_momentum))
+  if (!(length(linear) <= constants::largest_state && length(angular) <= constants::largest_momentum))
     return bring_in_phase(row);
   const auto shift = [&](std::uint32_t offset, Vec3 by) {
     if (by == Vec3{}) return;

@@ -131,9 +131,9 @@ Status check_finite(Vec3 value, const char* what) {
 
 Status check_spin(Vec3 moments, Vec3 angular_velocity) {
   const double most = std::max({moments.x, moments.y, moments.z}) * length(angular_velocity);
-  if (most <= constants::largest_spin_momentum) return {};
+  if (most <= constants::largest_momentum) return {};
   return Error{ErrorCode::not_finite, "The angular momentum of a body would be up to " + number(most) +
-                                          " kg m^2/s; it must be no larger than " + number(constants::largest_spin_momentum) +
+                                          " kg m^2/s; it must be no larger than " + number(constants::largest_momentum) +
                                           ". Give the body a smaller spin first, or smaller moments of inertia."};
 }
 

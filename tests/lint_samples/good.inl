@@ -14,7 +14,7 @@ PC_FN void pc_item(PC_IO Slot m, PC_INOUT(Item) item, Real h) {
   precise Vec3 turned = Vec3(item.v.x * h, -item.v.y, item.v.z - y);
   if (item.count + 1u > pc_place(3u, 2u)) { PC_ST(rows, PC_ROW, m, PC_ROW + 2u, -x); }
   Real positive = pc_select(x > PC_REAL(-1.0), x, -y);
-  item.v = pc_sum(turned, Vec3(-positive, y, PC_REAL(1.0 / 3.0)), x);  // a * b in a comment / is fine
+  item.v = pc_sum(turned, Vec3(-positive, y, PC_REAL(1.0 / 2.0)), x);  // a * b in a comment / is fine
   Real odd = x * y;  // lint: allow (a sample of an exception)
   // lint: allow (the same, on the line above)
   item.s = odd + x;

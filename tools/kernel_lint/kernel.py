@@ -1,7 +1,8 @@
-"""Rules of kernel text: call, division, precise, literal, reserved, nodes, unread."""
+"""Rules of kernel text: call, division, precise, literal, bare, reserved, nodes, unread."""
 import re
 
 INTEGER_TYPES = {"uint", "int", "Index", "Row", "Slot", "bool", "uint32_t", "size_t"}
+BARE = {"0.0", "0.5", "1.0", "2.0"}  # numbers that need no name
 LOOPS = {"PC_NODES", "PC_DOWN", "PC_UP", "PC_CHILDREN", "PC_ALL"}  # over nodes, see nodes.inl
 KEYWORDS = {"if", "for", "while", "switch", "return", "else", "do", "case"}
 BANNED = set("""abs sign floor ceil trunc round roundEven fract mod modf min max clamp mix step smoothstep isnan isinf fma ldexp
@@ -47,6 +48,7 @@ class Kernel:
 
     def __init__(self, source, names):
         self.source, self.names, self.scope = source, names, {}
+        self.names_numbers = source.path.name == "math.inl"  # or the body of a macro without parameters
         for before, token in zip(source.tokens, source.tokens[1:]):
             if before.kind == token.kind == "name" and token.text in RESERVED:
                 source.report(token.line, "reserved", token.text)
@@ -54,6 +56,7 @@ class Kernel:
         for _, parameters, body in source.macros:
             if body:
                 self.scope = {}
+                self.names_numbers = parameters is None or source.path.name == "math.inl"
                 self.block(body)
 
     def block(self, tokens):
@@ -248,6 +251,9 @@ class Kernel:
             return self.scope.get(name, name in self.names.integers or name in ("true", "false")), i + 1
         close = matching(t, i + 1)
         if name == "PC_REAL":  # the only home of constants; a quotient of literals is folded by the compiler
+            for number in t[i + 2:close]:
+                if number.kind == "number" and number.text not in BARE and not self.names_numbers:
+                    self.source.report(number.line, "bare", number.text)
             return False, close + 1
         constructor = name in INTEGER_TYPES or bool(re.match(r"[A-Z][a-z]", name))
         known = name.startswith(("pc_", "PC_")) or name in self.names.functions

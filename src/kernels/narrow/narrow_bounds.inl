@@ -28,14 +28,16 @@ PC_FN Real pc_shape_reach(Stride s, Real speed, Real turn, Real across, Real lev
   precise Real reach = pc_max(far, went) + outward + s.fall;
   return pc_select(moves > PC_REAL(0.0), reach, PC_REAL(0.0));
 }
+// Bounds are in single precision: what a place loses in it.
+#define PC_PLACE_ROUNDING PC_REAL(2e-7)
 struct ShapeBox { Vec3 least; Vec3 most; };
 PC_FN ShapeBox pc_shape_box(Vec3 place, Quaternion q, Vec3 position, Vec3 low, Vec3 half_extents, Real radius, Real more) {
   Vec3 x = pc_axis_x(q); Vec3 y = pc_axis_y(q); Vec3 z = pc_axis_z(q); Vec3 h = half_extents;
   precise Real ex = pc_abs(x.x) * h.x + pc_abs(y.x) * h.y + pc_abs(z.x) * h.z + radius;
   precise Real ey = pc_abs(x.y) * h.x + pc_abs(y.y) * h.y + pc_abs(z.y) * h.z + radius;
   precise Real ez = pc_abs(x.z) * h.x + pc_abs(y.z) * h.y + pc_abs(z.z) * h.z + radius;
-  precise Vec3 c = position + (low + place); Real inexact = PC_REAL(2e-7);
-  precise Real gx = ex * PC_REAL(1.00001) + more; precise Real gy = ey * PC_REAL(1.00001) + more; precise Real gz = ez * PC_REAL(1.00001) + more;
-  precise Real sx = gx + (pc_abs(c.x) + gx) * inexact; precise Real sy = gy + (pc_abs(c.y) + gy) * inexact; precise Real sz = gz + (pc_abs(c.z) + gz) * inexact;
+  precise Vec3 c = position + (low + place);
+  precise Real gx = ex * PC_SURELY + more; precise Real gy = ey * PC_SURELY + more; precise Real gz = ez * PC_SURELY + more;
+  precise Real sx = gx + (pc_abs(c.x) + gx) * PC_PLACE_ROUNDING; precise Real sy = gy + (pc_abs(c.y) + gy) * PC_PLACE_ROUNDING; precise Real sz = gz + (pc_abs(c.z) + gz) * PC_PLACE_ROUNDING;
   Vec3 size = Vec3(sx, sy, sz); ShapeBox b; b.least = pc_sub(c, size); b.most = pc_add(c, size); return b;
 }

@@ -1,10 +1,13 @@
 // A capsule and a box, in the box's axes, whichever way they meet. Notation: narrow_over_box.inl.
 
+// A normal leaves an edge sideways where its component along it is below this.
+#define PC_BESIDE_EDGE PC_REAL(0.05)
+
 // Where the axis meets the box: the face or the edge axis (u x box axis) of least depth.
 struct CapsuleAxis { Vec3 outward; Real gap; };
 PC_FN void pc_try_capsule_edge(PC_INOUT(CapsuleAxis) best, Vec3 axis, Vec3 c, Vec3 b, Real slop) {
   Real squared = pc_dot(axis, axis);
-  if (!(squared > PC_REAL(1e-6))) return;
+  if (!(squared > PC_SLIGHT)) return;
   Vec3 l = pc_scale(axis, pc_div(PC_REAL(1.0), pc_sqrt(squared)));
   Real along = pc_dot(c, l);
   precise Real gap = pc_abs(along) - pc_dot(b, pc_abs3(l)); precise Real beat = best.gap + slop;
@@ -14,7 +17,7 @@ PC_FN CapsuleAxis pc_capsule_through_box(Vec3 c, Vec3 u, Real h, Vec3 b) {
   precise Vec3 gaps = pc_abs3(c) - pc_abs3(u) * h - b;
   uint i = pc_greatest_component(gaps);
   CapsuleAxis best; best.gap = pc_component(gaps, i); best.outward = pc_unit_axis(i, pc_sign(pc_component(c, i)));
-  precise Real slop = pc_smallest(b) * PC_REAL(1e-4);
+  precise Real slop = pc_smallest(b) * PC_LITTLE;
   pc_try_capsule_edge(best, Vec3(PC_REAL(0.0), -u.z, u.y), c, b, slop);
   pc_try_capsule_edge(best, Vec3(u.z, PC_REAL(0.0), -u.x), c, b, slop);
   pc_try_capsule_edge(best, Vec3(-u.y, u.x, PC_REAL(0.0)), c, b, slop);
@@ -39,7 +42,7 @@ PC_FN_LARGE void pc_capsule_box(NarrowShape a, NarrowShape b, Real margin, PC_IN
     out_ = best.outward; distance = best.gap;
     // the deepest point: an end, or where the axis passes over an edge of the box
     Real lean = pc_dot(u, out_);
-    if (pc_abs(lean) > PC_REAL(1e-4)) {
+    if (pc_abs(lean) > PC_LITTLE) {
       t = lean > PC_REAL(0.0) ? -h : h;
     } else {
       uint i = pc_least_component(out_);
@@ -55,7 +58,7 @@ PC_FN_LARGE void pc_capsule_box(NarrowShape a, NarrowShape b, Real margin, PC_IN
     uint tag = uint(o.tag);
     if (o.first) pc_push(m, pc_midway(pc_madd(a.p, along, o.first_t), m.normal, r, o.first_gap), o.first_gap, tag);
     if (o.second) pc_push(m, pc_midway(pc_madd(a.p, along, o.second_t), m.normal, r, o.second_gap), o.second_gap, tag + 1u);
-  } else if (pc_smallest(pc_abs3(out_)) < PC_REAL(0.05)) {
+  } else if (pc_smallest(pc_abs3(out_)) < PC_BESIDE_EDGE) {
     // beside an edge: two points where they run together
     uint i = pc_least_component(out_); Vec3 w = pc_edge_middle(hb, i, out_);
     Vec3 centre = pc_add(a.p, pc_to_world(axes, pc_sub(w, c)));

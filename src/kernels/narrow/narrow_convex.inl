@@ -1,13 +1,22 @@
 // General convex pairs: normal by GJK or EPA, made exact where a face, side or pair of edges gives it, then the
 // features that look along it.
 
+// cosine of a degree, and its sine: a direction is the normal's, and a line lies across it
+#define PC_SAME_NORMAL PC_REAL(0.9998)
+#define PC_LIES_ALONG PC_REAL(0.02)
+// of an eighth of a half turn: a rim of eight sides
+#define PC_COS_EIGHTH PC_REAL(0.92387953251128674)
+#define PC_SIN_EIGHTH PC_REAL(0.38268343236508977)
+// a direction is packed in ten bits a component
+#define PC_PACK_HALF PC_REAL(512.0)
+
 // ---- the normal -----------------------------------------------------------------------------------------
 struct Contact { Vec3 n; Real gap; Vec3 a; };  // of the cores: unit normal from a to b, separation along it, point of A
 
 // Takes the direction c (or -c) when it lies within a degree of the normal and separates as well.
 PC_FN void pc_try_normal(PC_INOUT(Contact) k, Core a, Core b, Vec3 c, Vec3 about, Real slop, PC_INOUT(bool) found) {
   Real along = pc_dot(c, about);
-  if (found || !(pc_abs(along) > PC_REAL(0.9998))) return;
+  if (found || !(pc_abs(along) > PC_SAME_NORMAL)) return;
   Vec3 n = along < PC_REAL(0.0) ? pc_negate(c) : c;
   Real gap = -pc_overlap(a, b, n); precise Real least = k.gap - slop;
   if (gap >= least) { k.n = n; k.gap = gap; found = true; }
@@ -46,7 +55,7 @@ PC_FN_LARGE void pc_sharpen(PC_INOUT(Contact) k, Core a, Core b) {
     Vec3 u = pc_line_direction(a, la, i);
     for (uint j = 0u; j < lb.count; j++) {
       Vec3 c = pc_cross(u, pc_line_direction(b, lb, j)); Real squared = pc_dot(c, c);
-      if (squared > PC_REAL(1e-4)) pc_try_normal(k, a, b, pc_scale(c, pc_div(PC_REAL(1.0), pc_sqrt(squared))), n, slop, found);
+      if (squared > PC_LITTLE) pc_try_normal(k, a, b, pc_scale(c, pc_div(PC_REAL(1.0), pc_sqrt(squared))), n, slop, found);
     }
   }
   // beside a round side: square to its axis, straight at the other's axis or corner
@@ -80,7 +89,7 @@ PC_FN_LARGE Face pc_core_face(Core c, Vec3 d) {
   if (c.kind == PC_BOX) {
     i = pc_greatest_component(pc_abs3(l)); uint i1 = pc_next(i); uint i2 = pc_next(i1);
     f.sides = 4u; f.e1 = pc_axis(c.axes, i1); f.e2 = pc_axis(c.axes, i2); f.h1 = pc_component(c.size, i1); f.h2 = pc_component(c.size, i2);
-  } else if (c.kind == PC_CYLINDER && pc_abs(l.y) > PC_REAL(0.70710678)) {
+  } else if (c.kind == PC_CYLINDER && pc_abs(l.y) > PC_ROOT_HALF) {
     f.sides = 8u;
   } else {
     return f;
@@ -123,7 +132,7 @@ PC_FN uint pc_polygon(PC_INOUT(NarrowPolygon) polygon, Face f) {
     polygon.x[0] = -f.h1; polygon.y[0] = -f.h2; polygon.x[1] = f.h1; polygon.y[1] = -f.h2;
     polygon.x[2] = f.h1; polygon.y[2] = f.h2; polygon.x[3] = -f.h1; polygon.y[3] = f.h2;
   } else {
-    precise Real k = f.h1 * PC_REAL(0.70710678118654752); Real r = f.h1; Real zero = PC_REAL(0.0);
+    precise Real k = f.h1 * PC_ROOT_HALF; Real r = f.h1; Real zero = PC_REAL(0.0);
     polygon.x[0] = r; polygon.y[0] = zero; polygon.x[1] = k; polygon.y[1] = k; polygon.x[2] = zero; polygon.y[2] = r; polygon.x[3] = -k; polygon.y[3] = k;
     polygon.x[4] = -r; polygon.y[4] = zero; polygon.x[5] = -k; polygon.y[5] = -k; polygon.x[6] = zero; polygon.y[6] = -r; polygon.x[7] = k; polygon.y[7] = -k;
   }
@@ -140,7 +149,7 @@ PC_FN Vec3 pc_side(Face f, uint k) {
     if (k == 2u) return Vec3(PC_REAL(-1.0), PC_REAL(0.0), f.h1);
     return Vec3(PC_REAL(0.0), PC_REAL(-1.0), f.h2);
   }
-  Real c = PC_REAL(0.92387953251128674); Real s = PC_REAL(0.38268343236508977); precise Real off = f.h1 * c;
+  Real c = PC_COS_EIGHTH; Real s = PC_SIN_EIGHTH; precise Real off = f.h1 * c;
   uint q = k & 1u; Real x = q == 0u ? c : s; Real y = q == 0u ? s : c;
   if (k == 0u || k == 1u) return Vec3(x, y, off);
   if (k == 2u || k == 3u) return Vec3(-y, x, off);
@@ -184,7 +193,7 @@ PC_FN_LARGE void pc_line_over_face(Face reference, Line line, Over o, Pads pads,
   if (reference.kind != PC_CYLINDER) {
     for (uint k = 0u; k < reference.sides; k++) {
       Vec3 s = pc_side(reference, k); precise Real slope = s.x * ux + s.y * uy; precise Real room = s.z - s.x * cx - s.y * cy;
-      if (pc_abs(slope) > PC_REAL(1e-6)) {
+      if (pc_abs(slope) > PC_SLIGHT) {
         Real t = pc_div(room, slope);
         if (slope > PC_REAL(0.0)) high = pc_min(high, t); else low = pc_max(low, t);
       } else if (room < PC_REAL(0.0)) {
@@ -195,7 +204,7 @@ PC_FN_LARGE void pc_line_over_face(Face reference, Line line, Over o, Pads pads,
     // |c + u t| <= radius
     precise Real uu = ux * ux + uy * uy; precise Real uc = ux * cx + uy * cy; precise Real cc = cx * cx + cy * cy - reference.h1 * reference.h1;
     precise Real discriminant = uc * uc - uu * cc;
-    if (uu > PC_REAL(1e-6)) {
+    if (uu > PC_SLIGHT) {
       Real root = pc_sqrt(pc_max(discriminant, PC_REAL(0.0))); precise Real t0 = -uc - root; precise Real t1 = root - uc;
       low = pc_max(low, pc_div(t0, uu)); high = pc_min(high, pc_div(t1, uu));
       if (discriminant <= PC_REAL(0.0)) high = low;
@@ -237,7 +246,7 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
   } else {
     Line la = pc_core_line(a, k.n); Line lb = pc_core_line(b, pc_negate(k.n));
     SegmentPair s = pc_closest_segments(la.c, la.u, la.h, lb.c, lb.u, lb.h);
-    bool along = pc_abs(pc_dot(la.u, k.n)) < PC_REAL(0.02) && pc_abs(pc_dot(lb.u, k.n)) < PC_REAL(0.02);
+    bool along = pc_abs(pc_dot(la.u, k.n)) < PC_LIES_ALONG && pc_abs(pc_dot(lb.u, k.n)) < PC_LIES_ALONG;
     Round core_a; core_a.p = la.c; core_a.r = a.radius; core_a.u = la.u; core_a.h = la.h;
     Round core_b; core_b.p = lb.c; core_b.r = b.radius; core_b.u = lb.u; core_b.h = lb.h;
     if (along) pc_parallel_points(core_a, core_b, s, margin, 0x3000001u, m);
@@ -262,9 +271,9 @@ PC_FN_LARGE void pc_convex_points(Contact k, Core a, Core b, Real margin, PC_INO
 
 // ---- the pair -------------------------------------------------------------------------------------------
 // A direction in 30 bits of a hint, marked by the highest.
-PC_FN uint pc_pack_part(Real x) { precise Real t = x * PC_REAL(511.0) + PC_REAL(512.0); return uint(t); }
+PC_FN uint pc_pack_part(Real x) { precise Real t = x * (PC_PACK_HALF - PC_REAL(1.0)) + PC_PACK_HALF; return uint(t); }
 PC_FN uint pc_pack_direction(Vec3 n) { return 0x80000000u | (pc_pack_part(n.x) << 20u) | (pc_pack_part(n.y) << 10u) | pc_pack_part(n.z); }
-PC_FN Real pc_unpack_part(uint x) { precise Real t = Real(x & 1023u) - PC_REAL(512.0); return t; }
+PC_FN Real pc_unpack_part(uint x) { precise Real t = Real(x & 1023u) - PC_PACK_HALF; return t; }
 PC_FN Vec3 pc_unpack_direction(uint k) { return pc_unit_or_zero(Vec3(pc_unpack_part(k >> 20u), pc_unpack_part(k >> 10u), pc_unpack_part(k))); }
 
 PC_FN_LARGE void pc_convex(NarrowShape sa, NarrowShape sb, Real margin, PC_INOUT(uint) hint, PC_INOUT(NarrowManifold) m) {

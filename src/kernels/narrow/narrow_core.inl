@@ -21,7 +21,7 @@ PC_FN_LARGE NarrowShape pc_window(NarrowShape s, Vec3 centre, Real reach, Real m
   if (s.kind == PC_HULL) return s;
   bool box = s.kind == PC_BOX; Vec3 h = box ? s.size : Vec3(PC_REAL(0.0), s.size.y, PC_REAL(0.0));
   Real least = box ? pc_smallest(h) : s.size.x;
-  precise Real window = least * PC_REAL(2.0) + reach * PC_REAL(4.0) + margin;
+  precise Real window = least * PC_REAL(2.0) + pc_four_times(reach) + margin;
   if (pc_largest(h) <= window) return s;
   Axes axes = pc_axes(s.q); Vec3 c = pc_to_local(axes, pc_sub(centre, s.p));
   Vec3 all = Vec3(window, window, window);

@@ -19,7 +19,7 @@ PC_FN void pc_polytope_vertex(PC_INOUT(Polytope) polytope, Support s) { polytope
 PC_FN_LARGE void pc_polytope_face(PC_INOUT(Polytope) polytope, uint i, uint j, uint k) {
   uint f = polytope.faces; polytope.faces = f + 1u;
   polytope.i[f] = i; polytope.j[f] = j; polytope.k[f] = k;
-  polytope.n[f] = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); polytope.h[f] = PC_REAL(1e30); polytope.noise[f] = PC_REAL(0.0);
+  polytope.n[f] = Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); polytope.h[f] = PC_FAR; polytope.noise[f] = PC_REAL(0.0);
   Vec3 ij = pc_sub(polytope.w[j], polytope.w[i]); Vec3 ik = pc_sub(polytope.w[k], polytope.w[i]);
   Vec3 n = pc_cross(ij, ik); Real length = pc_length(n); Real longest = pc_sqrt(pc_max(pc_dot(ij, ij), pc_dot(ik, ik)));
   precise Real sliver = longest * polytope.rounding;
@@ -52,7 +52,7 @@ PC_FN_LARGE void pc_polytope_seed(PC_INOUT(Polytope) polytope, Core a, Core b, V
   pc_polytope_vertex(polytope, pc_far_support(a, b, pc_perpendicular(e), polytope.w[0]));
   Vec3 n = pc_unit_or_zero(pc_cross(pc_sub(polytope.w[1], polytope.w[0]), pc_sub(polytope.w[2], polytope.w[0])));
   pc_polytope_vertex(polytope, pc_far_support(a, b, n, polytope.w[0]));
-  precise Vec3 inner = (polytope.w[0] + polytope.w[1] + polytope.w[2] + polytope.w[3]) * PC_REAL(0.25);
+  precise Vec3 inner = (polytope.w[0] + polytope.w[1] + polytope.w[2] + polytope.w[3]) * PC_REAL(0.5) * PC_REAL(0.5);
   precise Real size = a.reach + b.reach; precise Real rounding = size * PC_EPA_ROUNDING;
   polytope.inner = inner; polytope.size = size; polytope.rounding = rounding;
   pc_polytope_seed_face(polytope, 0u, 1u, 2u); pc_polytope_seed_face(polytope, 0u, 1u, 3u); pc_polytope_seed_face(polytope, 0u, 2u, 3u); pc_polytope_seed_face(polytope, 1u, 2u, 3u);
@@ -95,13 +95,13 @@ PC_FN Vec3 pc_polytope_witness(Polytope polytope, uint f) {
 PC_FN_LARGE Penetration pc_penetration(Core a, Core b, Vec3 start) {
   precise Real size = a.reach + b.reach; precise Real tolerance = size * PC_EPA_GAP;
   Polytope polytope; pc_polytope_seed(polytope, a, b, start);
-  Penetration o; o.n = start; o.h = PC_REAL(1e30); o.a = polytope.a[0];
+  Penetration o; o.n = start; o.h = PC_FAR; o.a = polytope.a[0];
   for (uint round = 0u; round < PC_POLYTOPE_VERTICES; round++) {
     uint f = 0u;
     for (uint i = 1u; i < polytope.faces; i++) { if (polytope.h[i] < polytope.h[f]) f = i; }
     Vec3 n = polytope.n[f]; Support s = pc_support(a, b, n); Real h = pc_dot(n, s.w);
     precise Real gap = h - polytope.h[f];
-    if (h < o.h && polytope.h[f] < PC_REAL(1e29)) { o.n = n; o.h = h; o.a = pc_polytope_witness(polytope, f); }
+    if (h < o.h && polytope.h[f] < PC_FAR) { o.n = n; o.h = h; o.a = pc_polytope_witness(polytope, f); }
     if (!(gap > tolerance) || polytope.vertices == PC_POLYTOPE_VERTICES) break;
     pc_polytope_vertex(polytope, s);
     if (!pc_polytope_grow(polytope, f)) break;

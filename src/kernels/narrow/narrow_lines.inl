@@ -8,6 +8,8 @@
 #define PC_PARALLEL_EXACT PC_REAL(1e-8)
 // cores closer than this times their size have no usable difference vector
 #define PC_CORE_TOUCH PC_REAL(1e-4)
+// a face whose normal is this near the contact normal carries the contact (0.8 degrees)
+#define PC_FACE_FLAT PC_REAL(0.9999)
 // the closest point is added where no other point is as deep to this times the smaller core's size
 #define PC_HELD_SLOP PC_REAL(2e-5)
 
@@ -47,7 +49,7 @@ PC_FN Real pc_largest(Vec3 v) { return pc_max(v.x, pc_max(v.y, v.z)); }
 PC_FN Mask pc_has_length(Real squared) { precise Real least = PC_TINY * PC_TINY; return squared > least; }
 // Any unit vector perpendicular to the unit vector u, always the same one.
 PC_FN Vec3 pc_perpendicular(Vec3 u) {
-  Vec3 e = pc_select3(pc_abs(u.x) < PC_REAL(0.57), Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)), Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
+  Vec3 e = pc_select3(pc_abs(u.x) < PC_ROOT_THIRD, Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)), Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
   return pc_unit_or_zero(pc_madd(e, u, -pc_dot(e, u)));
 }
 PC_FN RoundContact pc_no_contact(Mask apart) {
@@ -88,8 +90,8 @@ PC_FN SegmentPair pc_closest_segments(Vec3 xa, Vec3 ua, Real ha, Vec3 xb, Vec3 u
 
 // 1 for parallel lines, falling to 0 at three degrees.
 PC_FN Real pc_parallel_share(Real sine_squared) {
-  precise Real left = (PC_PARALLEL_NONE - sine_squared) * PC_REAL(486.895);  // 1 / (none - full)
-  return pc_clamp(left, PC_REAL(0.0), PC_REAL(1.0));
+  precise Real left = PC_PARALLEL_NONE - sine_squared; precise Real passage = PC_PARALLEL_NONE - PC_PARALLEL_FULL;
+  return pc_clamp(pc_div(left, passage), PC_REAL(0.0), PC_REAL(1.0));
 }
 // Two points over the common stretch of two nearly parallel segments; they close in on the closest point as
 // the angle grows, so that nothing jumps where one point takes over.
@@ -109,7 +111,7 @@ PC_FN StretchEnd pc_stretch_end(Round a, Round b, SegmentPair o, Vec3 normal, Re
 PC_FN Stretch pc_stretch(Round a, Round b, SegmentPair o, Vec3 normal) {
   precise Real reach = pc_abs(o.cosine) * b.h; precise Real from = o.along - reach; precise Real to = o.along + reach;
   Real low = pc_max(from, -a.h); Real high = pc_min(to, a.h);
-  precise Real shortest = pc_min(a.h, b.h) * PC_REAL(0.01); precise Real overlap = high - low;
+  precise Real shortest = pc_min(a.h, b.h) * PC_SOME; precise Real overlap = high - low;
   StretchEnd first = pc_stretch_end(a, b, o, normal, low); StretchEnd second = pc_stretch_end(a, b, o, normal, high);
   Stretch r; r.exists = pc_and(o.sine_squared < PC_PARALLEL_NONE, overlap > shortest);
   r.first = first.p; r.first_separation = first.separation; r.second = second.p; r.second_separation = second.separation; return r;
@@ -132,7 +134,7 @@ PC_FN RoundContact pc_capsules(Round a, Round b, Real margin) {
   precise Real radii = a.r + b.r; precise Real reach = radii + margin; precise Real farthest = reach * reach;
   RoundContact c = pc_no_contact(squared > farthest); Mask near = pc_not(c.apart);
   if (!PC_ANY(near)) return c;  // lint: allow (nothing else is asked for)
-  Real distance = pc_sqrt(squared); precise Real least = radii * PC_REAL(1e-6);
+  Real distance = pc_sqrt(squared); precise Real least = radii * PC_SLIGHT;
   Mask touching = pc_not(pc_and(distance > least, pc_has_length(squared)));
   c.normal = pc_scale(d, pc_div(PC_REAL(1.0), pc_max(distance, PC_TINY)));
   if (PC_ANY(pc_and(near, touching))) {  // lint: allow (other lanes keep what they have): the axes cross, out along their common perpendicular

@@ -30,11 +30,14 @@ PC_FN Real pc_closest_on_segment_to_box(Vec3 c, Vec3 u, Real h, Vec3 b) {
   return pc_select(ends, end, pc_select(rise > zero, pc_clamp(t, k.low, k.high), k.low));
 }
 
+#define PC_OVER_FACE_TAG PC_REAL(16.0)
+#define PC_TAG_Y PC_REAL(4.0)
+#define PC_TAG_Z PC_REAL(8.0)
 // Above a face, whose outward direction `out_` is: both ends of what of the axis lies over it. Directions in the box's axes.
 struct OverFace { Mask face; Mask first; Mask second; Mask held; Real first_t; Real second_t; Real first_gap; Real second_gap; Real tag; };
 struct Span { Real low; Real high; };
 PC_FN Span pc_over_slab(Span s, Real c, Real u, Real b) {
-  Mask leans = pc_abs(u) > PC_REAL(1e-6); Real slope = pc_select(leans, u, PC_REAL(1.0));
+  Mask leans = pc_abs(u) > PC_SLIGHT; Real slope = pc_select(leans, u, PC_REAL(1.0));
   precise Real under = -b - c; precise Real over = b - c; Real t0 = pc_div(under, slope); Real t1 = pc_div(over, slope);
   Span r; r.low = pc_select(leans, pc_max(s.low, pc_min(t0, t1)), s.low); r.high = pc_select(leans, pc_min(s.high, pc_max(t0, t1)), s.high); return r;
 }
@@ -46,13 +49,13 @@ PC_FN OverFace pc_over_face(Vec3 c, Vec3 u, Real h, Real r, Vec3 hb, Vec3 out_, 
   Vec3 u_f = pc_select3(z, Vec3(u.z, u.x, u.y), pc_select3(y, Vec3(u.y, u.z, u.x), u)); Real top = pc_largest(steep);
   Real zero = PC_REAL(0.0); Real side = pc_sign(pc_select(z, out_.z, pc_select(y, out_.y, out_.x)));
   Span s; s.low = -h; s.high = h; s = pc_over_slab(s, c_f.y, u_f.y, hb_f.y); s = pc_over_slab(s, c_f.z, u_f.z, hb_f.z);
-  OverFace o; o.face = top > PC_REAL(0.9999); Mask some = pc_and(o.face, s.high > s.low); o.first_t = s.low; o.second_t = s.high;
+  OverFace o; o.face = top > PC_FACE_FLAT; Mask some = pc_and(o.face, s.high > s.low); o.first_t = s.low; o.second_t = s.high;
   precise Real height0 = c_f.x + u_f.x * s.low; precise Real above0 = height0 * side - hb_f.x; precise Real gap0 = pc_div(above0, top) - r;
   precise Real height1 = c_f.x + u_f.x * s.high; precise Real above1 = height1 * side - hb_f.x; precise Real gap1 = pc_div(above1, top) - r;
   o.first_gap = gap0; o.second_gap = gap1; o.first = pc_and(some, pc_not(gap0 > margin)); o.second = pc_and(some, pc_not(gap1 > margin));
   precise Real deepest = separation + (r + h) * PC_HELD_SLOP;
   o.held = pc_or(pc_and(o.first, pc_not(gap0 > deepest)), pc_and(o.second, pc_not(gap1 > deepest)));
-  precise Real tag = PC_REAL(16.0) + pc_select(z, PC_REAL(8.0), pc_select(y, PC_REAL(4.0), zero)) + pc_select(side > zero, PC_REAL(2.0), zero); o.tag = tag; return o;
+  precise Real tag = PC_OVER_FACE_TAG + pc_select(z, PC_TAG_Z, pc_select(y, PC_TAG_Y, zero)) + pc_select(side > zero, PC_REAL(2.0), zero); o.tag = tag; return o;
 }
 // The point x of a core, whose surface lies `radius` along n and the box's `separation` beyond.
 PC_FN Vec3 pc_midway(Vec3 x, Vec3 n, Real radius, Real separation) { precise Real reach = radius + separation * PC_REAL(0.5); return pc_madd(x, n, reach); }

@@ -102,6 +102,8 @@ PC_FN void pc_box_plane(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(Narr
   }
 }
 
+// The squared sine of 0.02 degrees: of what leans less, fixed points are right to 1e-4 of the radius.
+#define PC_STANDS PC_REAL(1e-7)
 // Rim points at four fixed angles, or the exact lowest points where the cylinder leans: the lowest of both
 // rims, and the two a quarter turn beside it.
 PC_FN void pc_cylinder_plane(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(NarrowManifold) m) {
@@ -110,7 +112,7 @@ PC_FN void pc_cylinder_plane(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
   m.normal = pc_negate(up);
   precise Real lean_squared = l.x * l.x + l.z * l.z;
   Real bottom = l.y > PC_REAL(0.0) ? -h : h;
-  bool leans = lean_squared > PC_REAL(1e-7);  // 0.02 degrees: below, fixed points are right to 1e-4 of the radius
+  bool leans = lean_squared > PC_STANDS;
   Real ux = PC_REAL(1.0); Real uz = PC_REAL(0.0);
   if (leans) { Real i = pc_div(PC_REAL(-1.0), pc_sqrt(lean_squared)); precise Real x = l.x * i; precise Real z = l.z * i; ux = x; uz = z; }
   uint base = leans ? 8u : 0u;
@@ -118,7 +120,7 @@ PC_FN void pc_cylinder_plane(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
     // k = 0 lowest, 1 and 2 beside, 3 opposite; a leaning cylinder's other rim is nearer than its opposite side when it lies
     Real cx = k == 0u ? ux : (k == 1u ? -uz : (k == 2u ? uz : -ux)); Real cz = k == 0u ? uz : (k == 1u ? ux : (k == 2u ? -ux : -uz));
     Real y = bottom;
-    if (k == 3u && pc_abs(l.y) < PC_REAL(0.70710678)) { cx = ux; cz = uz; y = -bottom; }
+    if (k == 3u && pc_abs(l.y) < PC_ROOT_HALF) { cx = ux; cz = uz; y = -bottom; }
     precise Real vx = cx * r; precise Real vz = cz * r; Vec3 v = Vec3(vx, y, vz);
     precise Real separation = height + pc_dot(l, v);
     pc_push_from(m, pc_add(a.p, pc_to_world(axes, v)), m.normal, PC_REAL(0.0), separation, margin, base + k);

@@ -83,5 +83,3 @@ PC_FN void pc_push_from(PC_INOUT(NarrowManifold) m, Vec3 x, Vec3 n, Real radius,
 #define PC_EPA_ROUNDING PC_REAL(3e-7)
 #define PC_SHARPEN_SLOP PC_REAL(1e-6)
 #endif
-// A face whose normal is this near the contact normal carries the contact (0.8 degrees).
-#define PC_FACE_FLAT PC_REAL(0.9999)
