@@ -98,13 +98,13 @@ void Balance::stepped(const Observation& seen, double work, double dt) {
   double noise = 0;
   for (const SeenBody& b : seen.bodies) {
     if (!b.there || b.kind != BodyKind::dynamic) continue;
-    const double slowest = rounding_ * (length(b.pose.position) + spread(b.mass)) / dt;
+    const double slowest = unresolved_speed(b, rounding_, dt);
     noise += 0.5 * b.mass.mass * slowest * slowest;
   }
   if (std::isfinite(noise)) noise_ = std::max(noise_, noise);
   const double balance = energy(seen) - offset_;
   const double scale = motion_ + fall_ + put_in_ + lift_ + noise_;
-  if (scale > 0) rise_ = std::max(rise_, (balance - lowest_ - allowed_) / scale);
+  if (scale > 0) rise_ = std::max(rise_, (balance - lowest_ - allowed_ - 2 * unresolved_spring_energy(seen, rounding_)) / scale);
   if (!std::isfinite(balance)) rise_ = balance;
   lowest_ = std::min(lowest_, balance);
   see_scale(seen);

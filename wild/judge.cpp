@@ -79,8 +79,8 @@ Measure Verdict::worst() const {
 Judge::Judge(const Scene& scene, Precision precision)
     : scene_(scene),
       f64_(precision == Precision::f64),
-      balance_(f64_ ? double(std::numeric_limits<double>::epsilon()) : double(std::numeric_limits<float>::epsilon()),
-               !scene.rules.single_encounter) {}
+      rounding_(f64_ ? double(std::numeric_limits<double>::epsilon()) : double(std::numeric_limits<float>::epsilon())),
+      balance_(rounding_, !scene.rules.single_encounter) {}
 
 double Judge::energy_bound() const {
   if (!scene_.rules.single_encounter) return energy_share;
@@ -111,12 +111,13 @@ void Judge::changed(const Observation& before, const Observation& after) {
   closed_ = is_closed(after);
 }
 
-void Judge::judge_momentum(const Observation& seen) {
+void Judge::judge_momentum(const Observation& seen, double dt) {
   if (!closed_) return;
   double momentum = 0, angular = 0;
   for (const SeenBody& b : seen.bodies) {
     if (!b.there) continue;
-    const double p = b.mass.mass * length(b.velocity);
+    const double least = b.kind == BodyKind::dynamic ? unresolved_speed(b, rounding_, dt) : 0;
+    const double p = b.mass.mass * std::max(length(b.velocity), least);
     momentum += p;
     angular += p * length(b.pose.position) + length(angular_momentum_about_centre(b));
   }
@@ -188,7 +189,7 @@ void Judge::stepped(const Observation& before, const Observation& after, const S
                             : facts.contact_work + driven_work(before, after, facts.contact_impulses, facts.dt);
   balance_.stepped(after, work, facts.dt);
   raise(Measure::energy, balance_.rise(), energy_bound());
-  judge_momentum(after);
+  judge_momentum(after, facts.dt);
   judge_untouched(after);
   judge_glide(after);
   judge_bodies(after);

@@ -34,7 +34,7 @@ class Judge {
 
  private:
   void raise(Measure measure, double value, std::optional<double> bound);
-  void judge_momentum(const Observation& seen);
+  void judge_momentum(const Observation& seen, double dt);
   void judge_untouched(const Observation& seen);
   void judge_glide(const Observation& seen);
   void judge_bodies(const Observation& seen);
@@ -42,6 +42,7 @@ class Judge {
 
   const Scene& scene_;
   bool f64_;
+  double rounding_;  // of a number about 1
   Verdict verdict_;
   Balance balance_;
   Observation start_;    // before the first step, or since the host last changed something

@@ -22,20 +22,31 @@ Vec3 rotation_vector(Quat q) {
   return sine > 0 ? v * (2 * std::atan2(sine, q.w) / sine) : Vec3{};
 }
 
-double energy_of(const Observation& seen, const SeenJoint& joint) {
-  const AngularSpring& spring = joint.def.spring;
-  if (!joint.there || spring.stiffness == 0) return 0;
+/// How far a joint's spring is from rest [rad].
+double away(const Observation& seen, const SeenJoint& joint) {
   const Quat a = seen.body(joint.a).pose.orientation * joint.def.frame_a.orientation;
   const Quat b = seen.body(joint.b).pose.orientation * joint.def.frame_b.orientation;
-  const Vec3 turn = rotation_vector(conjugate(spring.rest) * (conjugate(a) * b));
-  return 0.5 * spring.stiffness * dot(turn, turn);
+  return length(rotation_vector(conjugate(joint.def.spring.rest) * (conjugate(a) * b)));
 }
-
+/// How much longer a spring is than at rest [m].
+double away(const Observation& seen, const SeenSpring& spring) {
+  const Vec3 a = transform(seen.body(spring.a).pose, spring.def.anchor_a);
+  return length(transform(seen.body(spring.b).pose, spring.def.anchor_b) - a) - spring.def.rest_length;
+}
+double energy_of(const Observation& seen, const SeenJoint& joint) {
+  const double stiffness = joint.there ? joint.def.spring.stiffness : 0;
+  if (stiffness == 0) return 0;
+  const double turn = away(seen, joint);
+  return 0.5 * stiffness * turn * turn;
+}
 double energy_of(const Observation& seen, const SeenSpring& spring) {
   if (!spring.there) return 0;
-  const Vec3 a = transform(seen.body(spring.a).pose, spring.def.anchor_a);
-  const double longer = length(transform(seen.body(spring.b).pose, spring.def.anchor_b) - a) - spring.def.rest_length;
+  const double longer = away(seen, spring);
   return 0.5 * spring.def.stiffness * longer * longer;
+}
+/// By how much a step of `step` from where a spring is changes its energy.
+double energy_of_step(double stiffness, double away, double step) {
+  return stiffness * step * (std::fabs(away) + 0.5 * step);
 }
 
 }  // namespace
@@ -73,6 +84,23 @@ double spring_energy(const Observation& seen) {
   double sum = 0;
   for (const SeenJoint& joint : seen.joints) sum += energy_of(seen, joint);
   for (const SeenSpring& spring : seen.springs) sum += energy_of(seen, spring);
+  return sum;
+}
+
+double unresolved_speed(const SeenBody& b, double rounding, double dt) {
+  return rounding * (length(b.pose.position) + spread(b.mass)) / dt;
+}
+
+double unresolved_spring_energy(const Observation& seen, double rounding) {
+  double sum = 0;
+  for (const SeenJoint& j : seen.joints)
+    if (j.there && j.def.spring.stiffness > 0) sum += energy_of_step(j.def.spring.stiffness, away(seen, j), 4 * rounding);
+  for (const SeenSpring& s : seen.springs) {
+    if (!s.there) continue;
+    const double reach = length(seen.body(s.a).pose.position) + length(seen.body(s.b).pose.position) + length(s.def.anchor_a) +
+                         length(s.def.anchor_b);
+    sum += energy_of_step(s.def.stiffness, away(seen, s), rounding * reach);
+  }
   return sum;
 }
 

@@ -55,6 +55,11 @@ inline double energy(const Observation& seen) {
   return kinetic_energy(seen) + potential_energy(seen) + spring_energy(seen);
 }
 
+/// What a body moves no faster than does not move: its place is rounded by more in a step of `dt` [m/s].
+double unresolved_speed(const SeenBody& body, double rounding, double dt);
+/// How much of the energy of springs one rounding of each end's place, and of each number of an orientation, makes up [J].
+double unresolved_spring_energy(const Observation& seen, double rounding);
+
 /// How far the two pins of a joint are apart [m].
 double gap(const Observation& seen, const SeenJoint& joint);
 /// The widest gap of a joint [m], and the most that one is beyond its limits [rad].
