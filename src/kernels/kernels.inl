@@ -61,7 +61,7 @@ PC_KERNEL(tree_joint_mass_driven, tree_joint, joints, PC_READ(joint_paths) PC_RE
 PC_KERNEL(tree_joint_solve, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_READ(joint_rows) PC_READ(node_operator) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_joint_solve_driven, tree_joint, joints, PC_READ(joint_paths) PC_READ(joint_order) PC_WRITE(joint_rows) PC_READ(node_operator) PC_READ(inertia) PC_WRITE(joint_impulse) PC_WRITE(motion) PC_WRITE(node_pending))
 PC_KERNEL(tree_joint_arms, tree_joint, joints, PC_READ(joint_paths) PC_READ(pose) PC_WRITE(joint_rows))
-PC_KERNEL(net_prepare, net, joints, PC_READ(nets) PC_READ(pose) PC_READ(mass) PC_READ(motion) PC_READ(joint_frame) PC_READ(joint_drive) PC_WRITE(net_rows))
+PC_KERNEL(net_prepare, net, joints, PC_READ(nets) PC_READ(pose) PC_READ(mass) PC_READ(motion) PC_READ(joint_frame) PC_READ(joint_drive) PC_READ(joint_impulse) PC_WRITE(net_rows))
 PC_KERNEL(net_solve, net, joints, PC_READ(nets) PC_READ(pose) PC_READ(mass) PC_WRITE(motion) PC_WRITE(net_rows))
 PC_KERNEL(net_settle, net, joints, PC_READ(nets) PC_READ(pose) PC_READ(mass) PC_READ(joint_frame) PC_WRITE(motion) PC_WRITE(velocity_parts) PC_WRITE(joint_impulse) PC_WRITE(net_rows))
 PC_KERNEL(joint_keep, joint, joints, PC_READ(joint_order) PC_WRITE(joint_impulse))

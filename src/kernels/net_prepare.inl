@@ -17,6 +17,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   for (uint k = 0u; k < n.bodies; k++) {
     pc_prepare_body(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
   }
+  Index keeper = pc_net_row(PC_PASS m, n, n.bodies);
+  PC_ST(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_OWED, PC_GATHER(joint_impulse, keeper, 1u).v.x);
   pc_net_clear(PC_PASS m, n, NET_PUSH);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);

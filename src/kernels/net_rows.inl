@@ -13,7 +13,12 @@ const uint NET_SPIN = 39u;      // angular velocity before the solve
 const uint NET_PUSHED = 42u;    // NET_PUSH before the solve
 const uint NET_MADE = 48u;      // what the first halves did to its energy
 const uint NET_FRESH = 54u;     // of the first body: 1 before the sub-step's first solve
-const uint NET_BOUND = 55u;     // and 1 where net_bound made less of what was solved
+const uint NET_OWED = 56u;      // of the first body: energy that was made and not paid yet (net_settle)
+const uint NET_BOUND = 55u;     // and the share of the rigid motion in what net_bound made of what was solved
+const uint NET_RIGID = 57u;     // impulse and angular impulse of the rigid motion, and of what was solved (net_bound)
+const uint NET_SOLVED = 63u;
+const uint NET_LACKS = 49u;     // of the first body: angular momentum that the rigid motion lacks until bodies have moved, and its spin
+const uint NET_RIGID_SPIN = 69u;
 // of a spring
 const uint NET_LINE = 0u;       // from its point of a to that of b, where the sub-step began
 const uint NET_LENGTH = 3u;
@@ -176,4 +181,8 @@ PC_FN Vec3 pc_net_rate(PC_IO Slot a, Slot b, Vec3 ra, Vec3 rb) {
   Vec3 va = pc_add(pc_ld3_net(PC_PASS a, NET_RATE), pc_cross(pc_ld3_net(PC_PASS a, NET_RATE + 3u), ra));
   Vec3 vb = pc_add(pc_ld3_net(PC_PASS b, NET_RATE), pc_cross(pc_ld3_net(PC_PASS b, NET_RATE + 3u), rb));
   return pc_sub(vb, va);
+}
+// (a net that is not asked keeps what it has, to the bit, where nets beside it are)
+PC_FN void pc_net_keep(PC_IO Slot b, uint f, Mask these, Vec3 v) {
+  pc_st3_net(PC_PASS b, f, pc_select3(these, v, pc_ld3_net(PC_PASS b, f)));
 }

@@ -43,52 +43,43 @@ PC_FN void pc_settle_line(PC_IO Slot m, Net n, uint k) {
   pc_st3_net(PC_PASS s, NET_START + 3u, rb);
   pc_st3_net(PC_PASS s, NET_NOW, line);
 }
-// An impulse and a couple on b, which add to its push; on a their opposites, but for the couple `whole`, of which both
-// have a share.
-PC_FN void pc_settle_push(PC_IO Slot a, Slot b, Vec3 impulse, Vec3 turn_a, Vec3 turn_b) {
-  pc_st3_net(PC_PASS a, NET_PUSH, pc_sub(pc_ld3_net(PC_PASS a, NET_PUSH), impulse));
-  pc_st3_net(PC_PASS b, NET_PUSH, pc_add(pc_ld3_net(PC_PASS b, NET_PUSH), impulse));
-  pc_st3_net(PC_PASS a, NET_PUSH + 3u, pc_add(pc_ld3_net(PC_PASS a, NET_PUSH + 3u), turn_a));
-  pc_st3_net(PC_PASS b, NET_PUSH + 3u, pc_add(pc_ld3_net(PC_PASS b, NET_PUSH + 3u), turn_b));
-}
-PC_FN Real pc_settle_looseness(PC_IO Slot b) {
-  Sym3 i = pc_lds_net(PC_PASS b, NET_INERTIA);
-  precise Real trace = i.xx + i.yy + i.zz;
-  return trace;
-}
-// The second half.
-PC_FN void pc_second_half(PC_IO Slot s, Slot a, Slot b) {
+#include "net_second.inl"
+#include "net_whole.inl"
+
+PC_FN void pc_settle_second(PC_IO Slot s, Slot a, Slot b) {
   Vec3 line = pc_ld3_net(PC_PASS s, NET_NOW);
-  Vec3 first = pc_ld3_net(PC_PASS s, NET_IMPULSE);
   Vec3 couple = pc_ld3_net(PC_PASS s, NET_WAY);
-  Vec3 mid_a = pc_ld3_net(PC_PASS s, NET_ARM_A);
-  Vec3 mid_b = pc_ld3_net(PC_PASS s, NET_ARM_B);
-  Vec3 arm_a = pc_ld3_net(PC_PASS s, NET_START);
-  Vec3 arm_b = pc_ld3_net(PC_PASS s, NET_START + 3u);
-  Real inverse = pc_inverse_or_zero(pc_length(line));
-  Vec3 along = pc_scale(line, inverse);
-  Real late = PC_LD(net_rows, s, NET_LATE);
-  precise Real less = PC_REAL(1.0) - late;
-  precise Real more = PC_REAL(1.0) + late;
-  Vec3 same = pc_scale(first, pc_div(less, more));
-  Vec3 lever = pc_add(line, pc_sub(pc_sub(mid_b, arm_b), pc_sub(mid_a, arm_a)));
-  Vec3 rest = pc_add(couple, pc_cross(lever, same));
-  // not where the spring has shrunk to a point, about which nothing has a lever
-  Vec3 back = pc_scale(pc_cross(along, rest), inverse);
-  Real most = pc_length(first);
-  Real backs = pc_length(back);
-  Vec3 across = pc_scale(back, pc_div(most, pc_max(pc_max(backs, most), PC_TINY)));
-  Vec3 left = pc_negate(pc_add(rest, pc_cross(line, across)));
-  Real loose_a = pc_settle_looseness(PC_PASS a);
-  Real loose_b = pc_settle_looseness(PC_PASS b);
-  precise Real loose = loose_a + loose_b;
-  Vec3 left_a = pc_scale(left, pc_div(loose_b, pc_max(loose, PC_TINY)));
-  Vec3 left_b = pc_scale(left, pc_div(loose_a, pc_max(loose, PC_TINY)));
-  precise Vec3 turn_a = (left_a - pc_cross(mid_a, same)) - pc_cross(arm_a, across);
-  precise Vec3 turn_b = (left_b + pc_cross(mid_b, same)) + pc_cross(arm_b, across);
-  Vec3 all = pc_add(same, across);
-  pc_settle_push(PC_PASS a, b, all, turn_a, turn_b);
-  pc_st3_net(PC_PASS s, NET_SECOND, all);
+  Second d = pc_second_half(PC_PASS s, a, b, line, couple, pc_ld3_net(PC_PASS s, NET_START), pc_ld3_net(PC_PASS s, NET_START + 3u));
+  pc_add_second(PC_PASS a, b, NET_PUSH, d);
+  pc_st3_net(PC_PASS s, NET_SECOND, d.impulse);
+}
+// Once bodies have moved along the chords of their turn (net_bound) they go on along its tangents: what a chord leads outward is stopped, and
+// what it lacks of angular momentum is given to the net as one body.
+PC_FN void pc_settle_chord(PC_IO Slot m, Net n, Real share) {
+  Whole all = pc_net_whole(PC_PASS m, n);
+  Slot keeper = pc_net_body(PC_PASS m, n, 0u);
+  Vec3 spin = pc_ld3_net(PC_PASS keeper, NET_RIGID_SPIN);
+  Vec3 axis = pc_unit_or_zero(spin);
+  Turn turn = pc_turn(pc_scale(spin, PC_INFO(h)));
+  precise Real outward = pc_dot(turn.q.v, turn.q.v) * PC_INFO(inverse_h) * share * PC_REAL(-2.0);
+  Vec3 lacks = pc_scale(pc_ld3_net(PC_PASS keeper, NET_LACKS), share);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, pc_net_body(PC_PASS m, n, k), NET_MASS));
+    Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), all.centre);
+    precise Real push = outward * heavy;
+    lacks = pc_sub(lacks, pc_cross(arm, pc_scale(pc_madd(arm, axis, -pc_dot(axis, arm)), push)));
+  }
+  Vec3 w = pc_net_spin(all, lacks);
+  Mask some = share > PC_REAL(0.0);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
+    Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), all.centre);
+    Vec3 change = pc_madd(pc_cross(w, arm), pc_madd(arm, axis, -pc_dot(axis, arm)), outward);
+    Vec3 turned = pc_sym_mul(pc_net_moments(PC_PASS pc_net_row(PC_PASS m, n, k)), w);
+    pc_net_keep(PC_PASS b, NET_PUSH, some, pc_madd(pc_ld3_net(PC_PASS b, NET_PUSH), change, heavy));
+    pc_net_keep(PC_PASS b, NET_PUSH + 3u, pc_and(some, heavy > PC_REAL(0.0)), pc_add(pc_ld3_net(PC_PASS b, NET_PUSH + 3u), turned));
+  }
 }
 // How much the spring stores beyond what it stored.
 PC_FN Real pc_stored_more(PC_IO Slot s) {
@@ -152,8 +143,8 @@ PC_FN Dues pc_settle_dues(PC_IO Slot m, Net n) {
   return d;
 }
 
-// `first`: 1 where the first half was no spring's (net_bound) and is no change that will go on either.
-PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share, Real first) {
+// `blow`: 1 where the first half was net_bound's, which is no change that will go on.
+PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share, Real blow) {
   Quad linear = PC_GATHER(motion, row, 0u);
   Quad angular = PC_GATHER(motion, row, 1u);
   Quad before = PC_GATHER(velocity_parts, row, 0u);
@@ -167,8 +158,8 @@ PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share, Real first) {
   precise Vec3 all_turn = turn + paid_turn;
   // the velocity that is read lacks half of what the sub-step changed: what came after it counts as if it had come
   // before
-  Vec3 solved = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED), first);
-  Vec3 solved_turn = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED + 3u), first);
+  Vec3 solved = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED), blow);
+  Vec3 solved_turn = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED + 3u), blow);
   precise Vec3 shift = (push * PC_REAL(2.0) + paid) + solved;
   precise Vec3 shift_turn = (turn * PC_REAL(2.0) + paid_turn) + solved_turn;
   linear.v = pc_madd(linear.v, all, linear.s);
@@ -185,7 +176,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
   Real zero = PC_REAL(0.0);
   Real made = zero;
-  Real first = PC_LD(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_BOUND);
+  Real rigid = PC_LD(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_BOUND);
+  Real blow = pc_select(rigid > zero, PC_REAL(1.0), zero);
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     pc_settle_body(PC_PASS b, pc_net_row(PC_PASS m, n, k));
@@ -198,10 +190,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     pc_settle_line(PC_PASS m, n, k);
-    pc_second_half(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u));
+    pc_settle_second(PC_PASS s, pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u));
     precise Real sum = made + pc_stored_more(PC_PASS s);
     made = sum;
   }
+  if (PC_ANY(rigid > zero)) pc_settle_chord(PC_PASS m, n, rigid);  // lint: allow (others keep what they have)
   for (uint k = 0u; k < n.bodies; k++) {
     precise Real sum = made + pc_settle_work(PC_PASS pc_net_body(PC_PASS m, n, k));
     made = sum;
@@ -220,7 +213,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real paid = share * d.first - share * share * d.second * PC_REAL(0.5);
   precise Real left = due - paid;
   for (uint k = 0u; k < n.bodies; k++) {
-    pc_settle_store(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k), share, first);
+    pc_settle_store(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k), share, blow);
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);

@@ -129,10 +129,6 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
   block.zz = zz;
   pc_sts_net(PC_PASS s, NET_BLOCK, pc_sym_inverse(block));
 }
-// (a net that is not asked keeps what it has, to the bit, where nets beside it are)
-PC_FN void pc_net_keep(PC_IO Slot b, uint f, Mask these, Vec3 v) {
-  pc_st3_net(PC_PASS b, f, pc_select3(these, v, pc_ld3_net(PC_PASS b, f)));
-}
 // Impulses and arms with a share of the step that was found, and what they make of the bodies, where `live`.
 PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share, Mask live) {
   pc_net_clear(PC_PASS m, n, NET_SUM);
@@ -195,15 +191,18 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
     pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_ld3_net(PC_PASS s, NET_ARM_B));
   }
 }
-// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after; of
-// one that moves as it is told what it took from the springs.
+// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after, those before without what
+// gravity gave it in the sub-step (what only holds it does no work); of one that moves as it is told what it took from the springs.
 PC_FN Real pc_net_count(PC_IO Slot b) {
   Vec3 before = pc_ld3_net(PC_PASS b, NET_PUSHED);
   Vec3 before_turn = pc_ld3_net(PC_PASS b, NET_PUSHED + 3u);
   Vec3 now = pc_ld3_net(PC_PASS b, NET_PUSH);
   Vec3 now_turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
   Vec3 mean = pc_scale(pc_add(before, now), PC_REAL(0.5));
-  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), mean, PC_LD(net_rows, b, NET_MASS));
+  precise Real half_h = PC_INFO(h) * PC_REAL(0.5);
+  Real falls = pc_select(PC_LD(net_rows, b, NET_MASS) > PC_REAL(0.0), half_h, PC_REAL(0.0));
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Vec3 v = pc_madd(pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), gravity, -falls), mean, PC_LD(net_rows, b, NET_MASS));
   Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_scale(pc_add(before_turn, now_turn), PC_REAL(0.5)));
   Vec3 w = pc_add(pc_ld3_net(PC_PASS b, NET_SPIN), turned);
   precise Real work = pc_dot(pc_sub(now, before), v) + pc_dot(pc_sub(now_turn, before_turn), w);
@@ -272,22 +271,25 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   uint rounds = PC_COUNT(rounds);
   Real share = zero;
   Real level = zero;
-  Real open = zero;
+  Mask bent = zero > one;
   for (uint i = 0u; i < rounds; i++) {
     Merit now = pc_net_merit(PC_PASS m, n, share);
     Mask first = pc_select(PC_IS(i), zero, one) > PC_REAL(0.5);
     precise Real bound = level + pc_abs(level) * PC_INFO(rounding);
-    Mask better = pc_or(first, pc_or(now.level < bound, now.open < open));
+    Mask better = pc_or(pc_or(first, share < PC_TINY), now.level < bound);
     level = pc_select(better, now.level, level);
-    open = pc_select(better, now.open, open);
     pc_net_take(PC_PASS m, n, share, pc_and(live, better));
     precise Real enough = now.given * (PC_INFO(rounding) * PC_INFO(rounding));
     Mask goes = pc_and(live, pc_and(better, now.open > enough));
     Mask back = pc_and(live, pc_select(better, zero, one) > PC_REAL(0.5));
-    share = pc_select(better, zero, share);
+    // what led up is sought anew from where it was, by the other form; that only in smaller steps
+    Real kept_bent = pc_select(bent, pc_select(pc_and(better, share > zero), zero, one), zero);
+    Mask anew = pc_and(back, kept_bent < PC_REAL(0.5));
+    bent = pc_select(anew, one, kept_bent) > PC_REAL(0.5);
+    share = pc_select(pc_or(better, anew), zero, share);
     live = pc_or(goes, back);
     if (!PC_ANY(live)) break;  // lint: allow (nothing more is found)
-    if (i + 1u < rounds) pc_net_search(PC_PASS m, n, goes);
+    if (i + 1u < rounds) pc_net_search(PC_PASS m, n, goes, bent);
     uint left = rounds - 1u - i;
     // a step that led up is made a quarter of it; the last one that may be is not taken
     Real less = pc_select(PC_IS(left), pc_quarter(PC_REAL(1.0)), zero);
