@@ -330,10 +330,11 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.loop_give = Scalar(1e-5);
     info.spin_floor = Scalar(6e-5);
     info.stale_share = Scalar(0.1);
+    info.locked_interval = Scalar(1e-6);
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.tree_damping = Scalar(0.25);
-    info.restitution_threshold = Scalar(mood_.speed / 10);
+    info.restitution_threshold = Scalar(mood_.speed / 20);
     info.rounding = Scalar(1e-3);
     info.substeps = Scalar(3);
     info.largest_state = Scalar(1e4);  // some bodies are beyond it

@@ -53,9 +53,6 @@ inline constexpr double contact_preload = 1.75;
 inline constexpr double settled_load = 1.5;
 /// Not for loads below this share of what gravity makes in a sub-step: those are rounding.
 inline constexpr double least_load = 0.01;
-/// In a round a row goes so many times the share of its own correction that is safe if all four rows pull together.
-/// They seldom do.
-inline constexpr double settling_pace = 1.5;
 /// What moves by more than this share of its size in a sub-step, or turns by more than this [rad], is no longer where it was
 /// seen: bodies that both answer and pass each other so, or turn into each other, have no contact but an impact, of which
 /// nothing lasts; rows of what has turned so are made anew; and where Newton's method for a tree more than doubles the energy

@@ -19,9 +19,9 @@ PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real arriving, Real coming, Rea
 }
 
 // In a round all rows move at once, so that no point comes before another: each by a share of what would stop its own point that
-// is safe whatever the others do (settling_pace times its part in the sum of the responses that it feels).
+// is safe whatever the others do (its part in the sum of the responses that it feels).
 PC_FN Real pc_pace(PC_IO Real own, Real x, Real y, Real z) {
-  precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum) * PC_INFO(settling_pace); return pc_min(pace, PC_REAL(1.0));
+  precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum); return pace;
 }
 PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Real loose) {
   precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, loose) - now) * pace; return pc_snap(next);

@@ -16,7 +16,6 @@ PC_INFO_FIELD(soft_impulse_scale, "share of its impulse that a soft row lets go 
 PC_INFO_FIELD(contact_preload, "where one body stands, or hangs on joints, of what the load goes beyond this change of velocity [m/s]")
 PC_INFO_FIELD(settled_load, "rounds where a load grows by this factor, or friction changes by half of its limit")
 PC_INFO_FIELD(least_load, "rounds are for loads that make more than this change of the velocity [m/s]")
-PC_INFO_FIELD(settling_pace, "of a row in a round, as a multiple of its part in the responses it feels")
 PC_INFO_FIELD(load_ahead, "1 in the relax phase: friction goes by the load that the normal rows will take up; else 0")
 PC_INFO_FIELD(push_speed, "largest speed at which an overlap is undone [m/s]")
 PC_INFO_FIELD(tree_push_speed, "the same of what stands in trees, by velocities: what gravity gives in a step; what is more moves poses alone [m/s]")

@@ -131,15 +131,11 @@ PC_FN Real pc_net_stiffen(PC_IO Slot m, Net n, Rigid r) {
   Slot keeper = pc_net_body(PC_PASS m, n, 0u);
   pc_st3_net(PC_PASS keeper, NET_LACKS, lacks);
   pc_st3_net(PC_PASS keeper, NET_RIGID_SPIN, r.w);
-  // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work. Where nothing
-  // does all take what rounding has left, by their mass: the net may move so for many sub-steps, with the same rounding in each
+  // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
-    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
-    Mask stands = pc_select(heavy > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
-    precise Real share = heavy * r.light;
-    Vec3 rest = pc_madd(pc_ld3_net(PC_PASS b, NET_RIGID), sum, -pc_select(r.held, zero, share));
-    pc_st3_net(PC_PASS b, NET_RIGID, pc_select3(stands, pc_negate(sum), rest));
+    Mask moves = PC_LD(net_rows, b, NET_MASS) > zero;
+    pc_st3_net(PC_PASS b, NET_RIGID, pc_select3(moves, pc_ld3_net(PC_PASS b, NET_RIGID), pc_negate(sum)));
     pc_st3_net(PC_PASS b, NET_SOLVED, pc_ld3_net(PC_PASS b, NET_PUSH));
     pc_st3_net(PC_PASS b, NET_SOLVED + 3u, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
   }

@@ -156,6 +156,29 @@ PC_FN void pc_net_clear(PC_IO Slot m, Net n, uint sums) {
     pc_st3_net(PC_PASS b, sums + 3u, pc_zero3());
   }
 }
+// What rounding leaves of the momentum of pushes that have no sum goes to all bodies by their mass, unless something holds the net: impulses of
+// stiff springs are large beside what they leave, and a net that moves as one would round alike in each sub-step.
+PC_FN void pc_net_even(PC_IO Slot m, Net n, Mask these) {
+  Real zero = PC_REAL(0.0);
+  Real mass = zero;
+  Mask even = these;
+  Vec3 sum = pc_zero3();
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
+    precise Real more = mass + heavy;
+    mass = more;
+    even = pc_and(even, heavy > zero);
+    sum = pc_add(sum, pc_ld3_net(PC_PASS b, NET_PUSH));
+  }
+  Real light = pc_inverse_or_zero(mass);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    precise Real share = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS)) * light;
+    Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
+    pc_st3_net(PC_PASS b, NET_PUSH, pc_select3(even, pc_madd(push, sum, -share), push));
+  }
+}
 // The velocities that sums of impulses make.
 PC_FN void pc_net_rates(PC_IO Slot m, Net n, uint sums) {
   for (uint k = 0u; k < n.bodies; k++) {

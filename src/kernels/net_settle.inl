@@ -195,6 +195,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     made = sum;
   }
   if (PC_ANY(rigid > zero)) pc_settle_chord(PC_PASS m, n, rigid);  // lint: allow (others keep what they have)
+  pc_net_even(PC_PASS m, n, PC_IS(1u));
   for (uint k = 0u; k < n.bodies; k++) {
     precise Real sum = made + pc_settle_work(PC_PASS pc_net_body(PC_PASS m, n, k));
     made = sum;

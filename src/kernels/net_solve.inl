@@ -298,6 +298,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_net_try(PC_PASS m, n, share, live);
   }
   pc_net_bound(PC_PASS m, n, asked);
+  pc_net_even(PC_PASS m, n, asked);
   PC_ST(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH, zero);
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);

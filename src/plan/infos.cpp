@@ -44,7 +44,6 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.soft_impulse_scale = Scalar(rows.impulse_scale);
   biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
   biased.settled_load = Scalar(constants::settled_load);
-  biased.settling_pace = Scalar(constants::settling_pace);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.push_speed = Scalar(from.push_speed);
   biased.tree_push_speed = Scalar(std::min(from.push_speed, length(from.gravity) * from.h * from.substeps));
