@@ -20,7 +20,7 @@ PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real arriving, Real coming, Rea
 
 // In a round all rows move at once, so that no point comes before another: each by a share of what would stop its own point that
 // is safe whatever the others do (its part in the sum of the responses that it feels).
-PC_FN Real pc_pace(PC_IO Real own, Real x, Real y, Real z) {
+PC_FN Real pc_pace(Real own, Real x, Real y, Real z) {
   precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum); return pace;
 }
 PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Real loose) {
@@ -36,7 +36,7 @@ PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real loos
   Real w2 = pc_select(m2 > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)); Real w3 = pc_select(m3 > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
   precise Real d02 = PC_LD(contact_rows, m, ROW_D + 1u) * w2; precise Real d03 = PC_LD(contact_rows, m, ROW_D + 2u) * w3; precise Real d12 = PC_LD(contact_rows, m, ROW_D + 3u) * w2;
   precise Real d13 = PC_LD(contact_rows, m, ROW_D + 4u) * w3; precise Real d23 = PC_LD(contact_rows, m, ROW_D + 5u) * w3; Real d01 = PC_LD(contact_rows, m, ROW_D);
-  Real p0 = pc_pace(PC_PASS o0, d01, d02, d03); Real p1 = pc_pace(PC_PASS o1, d01, d12, d13); Real p2 = pc_pace(PC_PASS o2, d02, d12, d23); Real p3 = pc_pace(PC_PASS o3, d03, d13, d23);
+  Real p0 = pc_pace(o0, d01, d02, d03); Real p1 = pc_pace(o1, d01, d12, d13); Real p2 = pc_pace(o2, d02, d12, d23); Real p3 = pc_pace(o3, d03, d13, d23);
   precise Real c0 = m0 * mass_scale; precise Real c1 = m1 * mass_scale; precise Real c2 = m2 * mass_scale; precise Real c3 = m3 * mass_scale;
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
   Real k0 = l0; Real k1 = l1; Real k2 = l2; Real k3 = l3; Friction f = r.f;

@@ -68,10 +68,10 @@ PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
   precise Real held = pc_max(lacks, PC_REAL(0.0)) * times + all * fast * PC_INFO(spin_floor);
   precise Real least = all * PC_EPSILON;
   Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
-  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 factor = pc_inverse_factor(PC_PASS freedom);
+  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 factor = pc_inverse_factor(freedom);
 #ifdef PC_DRIVES
   if (PC_ANY(pc_has_drive(PC_PASS n))) {  // lint: allow (others keep what they have)
-    freedom = pc_with_drives(PC_PASS n, up, freedom, pc_of_factor(factor)); factor = pc_sym_select(pc_has_drive(PC_PASS n), pc_inverse_factor(PC_PASS freedom), factor);
+    freedom = pc_with_drives(PC_PASS n, up, freedom, pc_of_factor(factor)); factor = pc_sym_select(pc_has_drive(PC_PASS n), pc_inverse_factor(freedom), factor);
   }
 #endif
   Mask has_rows = pc_has_rows(PC_PASS n);

@@ -70,7 +70,7 @@ PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
 // Positive matrices m by the factor of their inverse: m^-1 = E^T d E, E a lower triangle with ones on its diagonal, where d stands in
 // these. It stays positive, and a small scale beside large ones keeps its digits: cofactors are off by a rounding of the largest entry squared.
 // A pivot is known no better than to a rounding of its diagonal.
-PC_FN Sym3 pc_inverse_factor(PC_IO Sym3 m) {
+PC_FN Sym3 pc_inverse_factor(Sym3 m) {
   Real dx = pc_inverse_or_zero(m.xx); precise Real yx = m.xy * dx; precise Real zx = m.xz * dx;
   precise Real yy = m.yy - m.xy * yx; precise Real zy_rest = m.yz - m.xz * yx; precise Real least_y = m.yy * PC_EPSILON;
   Real dy = pc_inverse_or_zero(pc_max(yy, least_y)); precise Real zy = zy_rest * dy;
