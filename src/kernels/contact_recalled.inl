@@ -3,10 +3,13 @@ PC_FN Real pc_recalled_of(PC_IO Index i) {
   Mask moves = PC_GATHER(motion, i, 0u).s > PC_REAL(0.0);
   return pc_select(moves, PC_GATHER(delta, i, 2u).v.z, PC_REAL(1.0));
 }
+// (one of which all is kept stays as it is to the last bit, where lanes beside it do not)
 PC_FN void pc_keep_share(PC_IO Slot m, Real share) {
+  Mask less = share < PC_REAL(1.0);
   for (uint i = 0u; i < IMPULSES; i++) {
-    precise Real kept = PC_LD(contact_impulses, m, i) * share;
-    PC_ST(contact_impulses, m, i, pc_snap(kept));
+    Real before = PC_LD(contact_impulses, m, i);
+    precise Real kept = before * share;
+    PC_ST(contact_impulses, m, i, pc_select(less, pc_snap(kept), before));
   }
 }
 PC_FN void pc_keep_recalled(PC_IO Slot m, Index ia, Index ib) {

@@ -60,6 +60,8 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
     e.made = made;
     e.scale = scale;
   }
+  precise Real all = e.made + pc_net_held(PC_PASS m, n);
+  e.made = all;
   return e;
 }
 
@@ -102,7 +104,7 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
 // What the net is given to move so. Its bodies go along chords of their turn, or springs would be stretched; what of its angular momentum a
 // chord lacks comes after they have moved (net_settle).
 // Answers with what that will do to its energy.
-PC_FN Real pc_net_stiffen(PC_IO Slot m, Net n, Rigid r) {
+PC_FN Real pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
   Real later = PC_REAL(0.0);
   Vec3 sum = pc_zero3();
   Vec3 lacks = pc_zero3();
@@ -124,18 +126,18 @@ PC_FN Real pc_net_stiffen(PC_IO Slot m, Net n, Rigid r) {
     Vec3 l = pc_sub(pc_sym_mul(pc_net_moments(PC_PASS row), r.w), pc_ld3_net(PC_PASS b, NET_MOMENTUM));
     Mask here = heavy > zero;
     Vec3 push = pc_scale(v, heavy);
-    pc_st3_net(PC_PASS b, NET_RIGID, push);
-    pc_st3_net(PC_PASS b, NET_RIGID + 3u, pc_select3(here, l, pc_zero3()));
+    pc_net_keep(PC_PASS b, NET_RIGID, these, push);
+    pc_net_keep(PC_PASS b, NET_RIGID + 3u, these, pc_select3(here, l, pc_zero3()));
     sum = pc_add(sum, push);
   }
   Slot keeper = pc_net_body(PC_PASS m, n, 0u);
-  pc_st3_net(PC_PASS keeper, NET_LACKS, lacks);
-  pc_st3_net(PC_PASS keeper, NET_RIGID_SPIN, r.w);
+  pc_net_keep(PC_PASS keeper, NET_LACKS, these, lacks);
+  pc_net_keep(PC_PASS keeper, NET_RIGID_SPIN, these, r.w);
   // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
-    Mask moves = PC_LD(net_rows, b, NET_MASS) > zero;
-    pc_st3_net(PC_PASS b, NET_RIGID, pc_select3(moves, pc_ld3_net(PC_PASS b, NET_RIGID), pc_negate(sum)));
+    Mask stands = pc_select(PC_LD(net_rows, b, NET_MASS) > zero, zero, PC_REAL(1.0)) > PC_REAL(0.5);
+    pc_net_keep(PC_PASS b, NET_RIGID, pc_and(these, stands), pc_negate(sum));
     pc_st3_net(PC_PASS b, NET_SOLVED, pc_ld3_net(PC_PASS b, NET_PUSH));
     pc_st3_net(PC_PASS b, NET_SOLVED + 3u, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
   }
@@ -184,7 +186,7 @@ PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
     makes = pc_and(makes, made > pc_select(share < PC_REAL(1.0), PC_REAL(0.0), pc_max(most, PC_REAL(0.0))));
     if (!PC_ANY(makes)) return;  // lint: allow (others keep what they have)
     if (i == 0u) {
-      spun = pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n));
+      spun = pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
     }
     uint left = rounds - 1u - i;
     precise Real part = share * PC_REAL(0.5);

@@ -179,6 +179,27 @@ PC_FN void pc_net_even(PC_IO Slot m, Net n, Mask these) {
     pc_st3_net(PC_PASS b, NET_PUSH, pc_select3(even, pc_madd(push, sum, -share), push));
   }
 }
+// What holds a weight does no work: of an impulse that comes before the bodies move half of what gravity gives in the sub-step is in the velocities
+// that it met. Between bodies that all fall that cancels; here is what it makes with those that do not.
+PC_FN Real pc_net_held(PC_IO Slot m, Net n) {
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Vec3 push = pc_zero3();
+  for (uint k = 0u; k < n.springs; k++) {
+    Slot s = pc_net_spring(PC_PASS m, n, k);
+    Real falls_a = pc_select(PC_LD(net_rows, pc_net_end(PC_PASS m, n, k, 0u), NET_MASS) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
+    Real falls_b = pc_select(PC_LD(net_rows, pc_net_end(PC_PASS m, n, k, 1u), NET_MASS) > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
+    precise Real share = (falls_a - falls_b) * PC_LD(net_rows, s, NET_LATE);
+    push = pc_madd(push, pc_ld3_net(PC_PASS s, NET_IMPULSE), share);
+  }
+  Real rigid = PC_LD(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_BOUND);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Real share = pc_select(PC_LD(net_rows, b, NET_MASS) > PC_REAL(0.0), PC_REAL(0.0), rigid);
+    push = pc_net_further(push, pc_ld3_net(PC_PASS b, NET_RIGID), share);
+  }
+  precise Real work = pc_dot(push, gravity) * PC_INFO(h) * PC_REAL(0.5);
+  return work;
+}
 // The velocities that sums of impulses make.
 PC_FN void pc_net_rates(PC_IO Slot m, Net n, uint sums) {
   for (uint k = 0u; k < n.bodies; k++) {

@@ -201,7 +201,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     made = sum;
   }
   Index keeper = pc_net_row(PC_PASS m, n, n.bodies);
-  precise Real owed = PC_GATHER(joint_impulse, keeper, 1u).v.x + made;
+  precise Real owed = PC_GATHER(joint_impulse, keeper, 1u).v.x + made + pc_net_held(PC_PASS m, n);
   Real due = pc_max(owed, zero);
   Dues d = pc_settle_dues(PC_PASS m, n);
   // first share - second share^2 / 2 = due, or as much as there is

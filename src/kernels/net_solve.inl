@@ -191,18 +191,15 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
     pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_ld3_net(PC_PASS s, NET_ARM_B));
   }
 }
-// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after, those before without what
-// gravity gave it in the sub-step (what only holds it does no work); of one that moves as it is told what it took from the springs.
+// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after; of
+// one that moves as it is told what it took from the springs.
 PC_FN Real pc_net_count(PC_IO Slot b) {
   Vec3 before = pc_ld3_net(PC_PASS b, NET_PUSHED);
   Vec3 before_turn = pc_ld3_net(PC_PASS b, NET_PUSHED + 3u);
   Vec3 now = pc_ld3_net(PC_PASS b, NET_PUSH);
   Vec3 now_turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
   Vec3 mean = pc_scale(pc_add(before, now), PC_REAL(0.5));
-  precise Real half_h = PC_INFO(h) * PC_REAL(0.5);
-  Real falls = pc_select(PC_LD(net_rows, b, NET_MASS) > PC_REAL(0.0), half_h, PC_REAL(0.0));
-  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
-  Vec3 v = pc_madd(pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), gravity, -falls), mean, PC_LD(net_rows, b, NET_MASS));
+  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), mean, PC_LD(net_rows, b, NET_MASS));
   Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_scale(pc_add(before_turn, now_turn), PC_REAL(0.5)));
   Vec3 w = pc_add(pc_ld3_net(PC_PASS b, NET_SPIN), turned);
   precise Real work = pc_dot(pc_sub(now, before), v) + pc_dot(pc_sub(now_turn, before_turn), w);
@@ -267,6 +264,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Mask asked = pc_net_wants(PC_PASS m, n);
   if (!PC_ANY(asked)) return;  // lint: allow (nothing is stored otherwise)
   pc_net_begin(PC_PASS m, n, asked);
+  // what moved as one body is solved for anew
+  Slot keeper = pc_net_body(PC_PASS m, n, 0u);
+  Mask rigid = pc_and(asked, PC_LD(net_rows, keeper, NET_BOUND) > zero);
+  if (PC_ANY(rigid)) pc_net_try(PC_PASS m, n, zero, rigid);  // lint: allow (others keep what they have)
+  PC_ST(net_rows, keeper, NET_BOUND, pc_select(rigid, zero, PC_LD(net_rows, keeper, NET_BOUND)));
   Mask live = asked;  // a net that is done stays as it is, where nets beside it go on
   uint rounds = PC_COUNT(rounds);
   Real share = zero;
