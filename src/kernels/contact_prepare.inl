@@ -69,7 +69,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Mask over = seen.s > PC_REAL(1.0); Mask jointed = material.s < PC_REAL(0.0);
   Mask unjointed = material.s > PC_REAL(-0.5); Mask all = these; Mask made = pc_or(of_step, pc_or(jointed, seen.s < PC_REAL(2.0))); these = pc_and(these, made);
   Vec3 n = head.v; Real count = pc_select(pc_and(over, jointed), PC_REAL(0.0), head.s);
-  Mask steep = pc_abs(n.x) < PC_ROOT_THIRD;
+  Mask steep = pc_abs(n.x) < PC_STEEP;
   Vec3 e = Vec3(pc_select(steep, one, zero), pc_select(steep, zero, one), zero);
   Vec3 t1 = pc_unit_or_zero(pc_madd(e, n, -pc_dot(e, n))); Vec3 t2 = pc_cross(n, t1);
 

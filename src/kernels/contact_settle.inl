@@ -19,9 +19,9 @@ PC_FN Mask pc_unsettled(PC_IO Slot m, Real load, Real arriving, Real coming, Rea
 }
 
 // In a round all rows move at once, so that no point comes before another: each by a share of what would stop its own point that
-// is safe whatever the others do (its part in the sum of the responses that it feels).
+// is safe whatever the others do (half as much again as its part in the sum of the responses that it feels).
 PC_FN Real pc_pace(Real own, Real x, Real y, Real z) {
-  precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum); return pace;
+  precise Real sum = own + pc_abs(x) + pc_abs(y) + pc_abs(z); precise Real pace = own * pc_inverse_or_zero(sum); precise Real more = pace + pace * PC_REAL(0.5); return pc_min(more, PC_REAL(1.0));
 }
 PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, Real loose) {
   precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, loose) - now) * pace; return pc_snap(next);

@@ -19,7 +19,8 @@ PC_FN Vec3 pc_zero3() { return Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); }
 #define PC_SIXTH PC_REAL(0.16666666666666666667)
 #define PC_TWELFTH PC_REAL(0.083333333333333333)
 #define PC_ROOT_HALF PC_REAL(0.70710678118654752)
-#define PC_ROOT_THIRD PC_REAL(0.577350269189625765)
+// A unit vector has a component below it, so that an axis of the world that is far from it is found so.
+#define PC_STEEP PC_REAL(0.57)
 // The distance from 1 to the next number.
 #ifdef PC_DOUBLE
 #define PC_EPSILON PC_REAL(2.220446049250313e-16)

@@ -47,7 +47,7 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
     Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), turn);
     Vec3 w = pc_madd(pc_ld3_net(PC_PASS b, NET_RATE + 3u), turned, PC_REAL(0.5));
     precise Real second = pc_dot(push, v) + pc_dot(turn, w);
-    precise Real made = e.made + PC_LD(net_rows, b, NET_MADE) + pc_net_count(PC_PASS b) + second;
+    precise Real made = e.made + pc_net_count(PC_PASS b) + second;
     e.made = made;
   }
   for (uint k = 0u; k < n.springs; k++) {
@@ -101,28 +101,16 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
   r.centre = pc_select3(r.held, held_at, r.centre);
   return r;
 }
-// What the net is given to move so. Its bodies go along chords of their turn, or springs would be stretched; what of its angular momentum a
-// chord lacks comes after they have moved (net_settle).
-// Answers with what that will do to its energy.
-PC_FN Real pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
-  Real later = PC_REAL(0.0);
+// What the net is given to move so.
+PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
   Vec3 sum = pc_zero3();
-  Vec3 lacks = pc_zero3();
   Real zero = PC_REAL(0.0);
-  Turn turn = pc_turn(pc_scale(r.w, PC_INFO(h)));
-  precise Real twice = PC_INFO(inverse_h) * PC_REAL(2.0);
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     Index row = pc_net_row(PC_PASS m, n, k);
     Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
     Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), r.centre);
-    // R r - r = 2 q x (q x r + w r)
-    Vec3 chord = pc_scale(pc_cross(turn.q.v, pc_madd(pc_cross(turn.q.v, arm), arm, turn.q.w)), twice);
-    Vec3 orbit = pc_cross(r.w, arm);
-    lacks = pc_madd(lacks, pc_cross(arm, pc_sub(orbit, chord)), heavy);
-    precise Real more = later + heavy * (pc_dot(orbit, orbit) - pc_dot(chord, chord)) * PC_REAL(0.5);
-    later = more;
-    Vec3 v = pc_sub(pc_add(r.v, chord), pc_ld3_net(PC_PASS b, NET_VELOCITY));
+    Vec3 v = pc_sub(pc_add(r.v, pc_cross(r.w, arm)), pc_ld3_net(PC_PASS b, NET_VELOCITY));
     Vec3 l = pc_sub(pc_sym_mul(pc_net_moments(PC_PASS row), r.w), pc_ld3_net(PC_PASS b, NET_MOMENTUM));
     Mask here = heavy > zero;
     Vec3 push = pc_scale(v, heavy);
@@ -130,9 +118,6 @@ PC_FN Real pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
     pc_net_keep(PC_PASS b, NET_RIGID + 3u, these, pc_select3(here, l, pc_zero3()));
     sum = pc_add(sum, push);
   }
-  Slot keeper = pc_net_body(PC_PASS m, n, 0u);
-  pc_net_keep(PC_PASS keeper, NET_LACKS, these, lacks);
-  pc_net_keep(PC_PASS keeper, NET_RIGID_SPIN, these, r.w);
   // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
@@ -145,7 +130,6 @@ PC_FN Real pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     pc_st3_net(PC_PASS s, NET_FOUND, pc_ld3_net(PC_PASS s, NET_IMPULSE));
   }
-  return later;
 }
 // A share of what was solved, and for the rest the rigid motion, where `brings`.
 PC_FN void pc_net_blend(PC_IO Slot m, Net n, Real share, Mask brings) {
@@ -176,25 +160,18 @@ PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
   Mask makes = asked;
   Real share = PC_REAL(1.0);
   Real owed = PC_LD(net_rows, keeper, NET_OWED);
-  Real spun = PC_REAL(0.0);   // what a chord's angular momentum will add
-  Real after = PC_REAL(0.0);  // of which as much as is rigid
   uint rounds = PC_COUNT(rounds);
   for (uint i = 0u; i < rounds; i++) {
     Energy e = pc_net_energy(PC_PASS m, n);
     precise Real most = (e.scale + motion) * PC_INFO(net_made) - owed;
-    precise Real made = e.made + after;
-    makes = pc_and(makes, made > pc_select(share < PC_REAL(1.0), PC_REAL(0.0), pc_max(most, PC_REAL(0.0))));
+    makes = pc_and(makes, e.made > pc_select(share < PC_REAL(1.0), PC_REAL(0.0), pc_max(most, PC_REAL(0.0))));
     if (!PC_ANY(makes)) return;  // lint: allow (others keep what they have)
-    if (i == 0u) {
-      spun = pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
-    }
+    if (i == 0u) pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
     uint left = rounds - 1u - i;
     precise Real part = share * PC_REAL(0.5);
     share = pc_select(PC_IS(left), part, PC_REAL(0.0));
     pc_net_blend(PC_PASS m, n, share, makes);
     precise Real rigid = PC_REAL(1.0) - share;
     PC_ST(net_rows, keeper, NET_BOUND, pc_select(makes, rigid, PC_LD(net_rows, keeper, NET_BOUND)));
-    precise Real later = rigid * spun;
-    after = pc_select(makes, later, after);
   }
 }

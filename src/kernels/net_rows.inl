@@ -15,10 +15,10 @@ const uint NET_MADE = 48u;      // what the first halves did to its energy
 const uint NET_FRESH = 54u;     // of the first body: 1 before the sub-step's first solve
 const uint NET_OWED = 56u;      // of the first body: energy that was made and not paid yet (net_settle)
 const uint NET_BOUND = 55u;     // and the share of the rigid motion in what net_bound made of what was solved
+const uint NET_FIRST = 69u;     // NET_VELOCITY and NET_SPIN of the sub-step's first solve
+const uint NET_FIRST_SPIN = 49u;
 const uint NET_RIGID = 57u;     // impulse and angular impulse of the rigid motion, and of what was solved (net_bound)
 const uint NET_SOLVED = 63u;
-const uint NET_LACKS = 49u;     // of the first body: angular momentum that the rigid motion lacks until bodies have moved, and its spin
-const uint NET_RIGID_SPIN = 69u;
 // of a spring
 const uint NET_LINE = 0u;       // from its point of a to that of b, where the sub-step began
 const uint NET_LENGTH = 3u;

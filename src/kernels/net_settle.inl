@@ -44,7 +44,6 @@ PC_FN void pc_settle_line(PC_IO Slot m, Net n, uint k) {
   pc_st3_net(PC_PASS s, NET_NOW, line);
 }
 #include "net_second.inl"
-#include "net_whole.inl"
 
 PC_FN void pc_settle_second(PC_IO Slot s, Slot a, Slot b) {
   Vec3 line = pc_ld3_net(PC_PASS s, NET_NOW);
@@ -52,34 +51,6 @@ PC_FN void pc_settle_second(PC_IO Slot s, Slot a, Slot b) {
   Second d = pc_second_half(PC_PASS s, a, b, line, couple, pc_ld3_net(PC_PASS s, NET_START), pc_ld3_net(PC_PASS s, NET_START + 3u));
   pc_add_second(PC_PASS a, b, NET_PUSH, d);
   pc_st3_net(PC_PASS s, NET_SECOND, d.impulse);
-}
-// Once bodies have moved along the chords of their turn (net_bound) they go on along its tangents: what a chord leads outward is stopped, and
-// what it lacks of angular momentum is given to the net as one body.
-PC_FN void pc_settle_chord(PC_IO Slot m, Net n, Real share) {
-  Whole all = pc_net_whole(PC_PASS m, n);
-  Slot keeper = pc_net_body(PC_PASS m, n, 0u);
-  Vec3 spin = pc_ld3_net(PC_PASS keeper, NET_RIGID_SPIN);
-  Vec3 axis = pc_unit_or_zero(spin);
-  Turn turn = pc_turn(pc_scale(spin, PC_INFO(h)));
-  precise Real outward = pc_dot(turn.q.v, turn.q.v) * PC_INFO(inverse_h) * share * PC_REAL(-2.0);
-  Vec3 lacks = pc_scale(pc_ld3_net(PC_PASS keeper, NET_LACKS), share);
-  for (uint k = 0u; k < n.bodies; k++) {
-    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, pc_net_body(PC_PASS m, n, k), NET_MASS));
-    Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), all.centre);
-    precise Real push = outward * heavy;
-    lacks = pc_sub(lacks, pc_cross(arm, pc_scale(pc_madd(arm, axis, -pc_dot(axis, arm)), push)));
-  }
-  Vec3 w = pc_net_spin(all, lacks);
-  Mask some = share > PC_REAL(0.0);
-  for (uint k = 0u; k < n.bodies; k++) {
-    Slot b = pc_net_body(PC_PASS m, n, k);
-    Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
-    Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), all.centre);
-    Vec3 change = pc_madd(pc_cross(w, arm), pc_madd(arm, axis, -pc_dot(axis, arm)), outward);
-    Vec3 turned = pc_sym_mul(pc_net_moments(PC_PASS pc_net_row(PC_PASS m, n, k)), w);
-    pc_net_keep(PC_PASS b, NET_PUSH, some, pc_madd(pc_ld3_net(PC_PASS b, NET_PUSH), change, heavy));
-    pc_net_keep(PC_PASS b, NET_PUSH + 3u, pc_and(some, heavy > PC_REAL(0.0)), pc_add(pc_ld3_net(PC_PASS b, NET_PUSH + 3u), turned));
-  }
 }
 // How much the spring stores beyond what it stored.
 PC_FN Real pc_stored_more(PC_IO Slot s) {
@@ -194,7 +165,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     precise Real sum = made + pc_stored_more(PC_PASS s);
     made = sum;
   }
-  if (PC_ANY(rigid > zero)) pc_settle_chord(PC_PASS m, n, rigid);  // lint: allow (others keep what they have)
   pc_net_even(PC_PASS m, n, PC_IS(1u));
   for (uint k = 0u; k < n.bodies; k++) {
     precise Real sum = made + pc_settle_work(PC_PASS pc_net_body(PC_PASS m, n, k));

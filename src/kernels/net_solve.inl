@@ -169,6 +169,7 @@ PC_FN void pc_net_take(PC_IO Slot m, Net n, Real share, Mask takes) {
 #include "net_search.inl"
 
 PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
+  Mask fresh = pc_and(asked, PC_LD(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH) > PC_REAL(0.5));
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     Index row = pc_net_row(PC_PASS m, n, k);
@@ -183,6 +184,8 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
     pc_net_keep(PC_PASS b, NET_VELOCITY, asked, pc_madd(linear.v, push, -linear.s));
     pc_net_keep(PC_PASS b, NET_MOMENTUM, asked, l);
     pc_net_keep(PC_PASS b, NET_SPIN, asked, pc_sym_mul(inverse, l));
+    pc_net_keep(PC_PASS b, NET_FIRST, fresh, pc_ld3_net(PC_PASS b, NET_VELOCITY));
+    pc_net_keep(PC_PASS b, NET_FIRST_SPIN, fresh, pc_ld3_net(PC_PASS b, NET_SPIN));
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
@@ -191,18 +194,16 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
     pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_ld3_net(PC_PASS s, NET_ARM_B));
   }
 }
-// What the solve did to a body's energy: its change of momenta times the means of the velocities before and after; of
-// one that moves as it is told what it took from the springs.
+// What the first halves do to a body's energy: their momenta times the means of the velocities before all of them and after, with what contacts
+// did in between (what only presses on something does no work); of one that moves as it is told what it took from the springs.
 PC_FN Real pc_net_count(PC_IO Slot b) {
-  Vec3 before = pc_ld3_net(PC_PASS b, NET_PUSHED);
-  Vec3 before_turn = pc_ld3_net(PC_PASS b, NET_PUSHED + 3u);
-  Vec3 now = pc_ld3_net(PC_PASS b, NET_PUSH);
-  Vec3 now_turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
-  Vec3 mean = pc_scale(pc_add(before, now), PC_REAL(0.5));
-  Vec3 v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), mean, PC_LD(net_rows, b, NET_MASS));
-  Vec3 turned = pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), pc_scale(pc_add(before_turn, now_turn), PC_REAL(0.5)));
-  Vec3 w = pc_add(pc_ld3_net(PC_PASS b, NET_SPIN), turned);
-  precise Real work = pc_dot(pc_sub(now, before), v) + pc_dot(pc_sub(now_turn, before_turn), w);
+  Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
+  Vec3 turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
+  Vec3 both = pc_add(pc_ld3_net(PC_PASS b, NET_FIRST), pc_ld3_net(PC_PASS b, NET_VELOCITY));
+  Vec3 both_spin = pc_add(pc_ld3_net(PC_PASS b, NET_FIRST_SPIN), pc_ld3_net(PC_PASS b, NET_SPIN));
+  Vec3 v = pc_madd(both, push, PC_LD(net_rows, b, NET_MASS));
+  Vec3 w = pc_add(both_spin, pc_sym_mul(pc_lds_net(PC_PASS b, NET_INERTIA), turn));
+  precise Real work = (pc_dot(push, v) + pc_dot(turn, w)) * PC_REAL(0.5);
   return work;
 }
 
@@ -311,8 +312,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     Mask kept = pc_select(asked, zero, one) > PC_REAL(0.5);
     pc_net_keep(PC_PASS b, NET_PUSH, kept, pc_ld3_net(PC_PASS b, NET_PUSHED));
     pc_net_keep(PC_PASS b, NET_PUSH + 3u, kept, pc_ld3_net(PC_PASS b, NET_PUSHED + 3u));
-    precise Real made = PC_LD(net_rows, b, NET_MADE) + pc_net_count(PC_PASS b);
-    PC_ST(net_rows, b, NET_MADE, pc_select(asked, made, PC_LD(net_rows, b, NET_MADE)));
+    PC_ST(net_rows, b, NET_MADE, pc_select(asked, pc_net_count(PC_PASS b), PC_LD(net_rows, b, NET_MADE)));
     linear.v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
     Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
     PC_SCATTER_IF(moves, motion, row, 0u, linear);

@@ -98,7 +98,7 @@ PC_FN void pc_rates_left(PC_IO Slot n, Slot up) {
 // act on a tree from outside of its solve and feed its modes: there it begins at x = 0.02, and where an arm swings by more than a
 // seventh of a radian in the sub-step.
 PC_FN Real pc_damped_share(PC_IO Real fast, Real swing, Mask held) {
-  Real zero = PC_REAL(0.0); precise Real beyond = fast - PC_EARLY_DAMPING; precise Real swung = swing - PC_EARLY_DAMPING; Real whip = pc_div(swung, PC_INFO(stale_share));
+  Real zero = PC_REAL(0.0); precise Real beyond = fast - PC_EARLY_DAMPING; precise Real swung = swing - PC_EARLY_DAMPING; precise Real whip = swung * pc_div(PC_REAL(1.0), PC_INFO(stale_share));
   precise Real early = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real square = fast * fast; Real late = pc_four_times(square);
   Real alone = pc_select(fast > PC_LITTLE, late, zero);  // less is rounding, and its squares would be subnormal
   return pc_min(pc_select(held, early, alone), PC_REAL(1.0));

@@ -13,6 +13,8 @@ PC_FN Sym3 pc_geometric(Sym3 k, Vec3 r, Vec3 f) {
 // of stability at 1. `fast` = x / (1 + x); the inertia gets fast h / 2 (k - low 1), low at most the smallest eigenvalue
 // of k: a term of fourth order where the sub-step resolves the motion, stable at any x.
 struct Stiffened { Sym3 inertia; Real fast; };
+#define PC_ROOT_THIRD PC_REAL(0.577350269189625765)
+#define PC_ROOT_THIRD_PAST_HALF PC_REAL(0.0773502691896257645)
 // At most the smallest eigenvalue of k and zero, from invariants, so that it does not depend on how the world is turned. With the mean m of
 // the eigenvalues, s = sqrt(|k - m|^2 / 6) and r = det(k - m) / (2 s^3) it is m - 2 s cos(acos(-r) / 3). For that cosine stands
 // 1/2 + sqrt(x / 3) + (1/2 - sqrt(1/3)) x, x = (1 - r) / 2, which is exact where two eigenvalues are equal, as those of one pin that pulls
@@ -45,7 +47,7 @@ PC_FN Real pc_lowest_or_zero(Sym3 k) {
   precise Real det = a * (b * c - h * h) - f * (f * c - h * g) + g * (f * h - b * g);
   precise Real part = PC_REAL(0.5) - pc_quarter(det);
   Real of_all = pc_clamp(part, PC_REAL(0.0), PC_REAL(1.0));
-  precise Real cosine = PC_REAL(0.5) + pc_sqrt(of_all) * PC_ROOT_THIRD - of_all * (PC_ROOT_THIRD - PC_REAL(0.5));
+  precise Real cosine = PC_REAL(0.5) + pc_sqrt(of_all) * PC_ROOT_THIRD - of_all * PC_ROOT_THIRD_PAST_HALF;
   precise Real low = mean - size * cosine * PC_REAL(2.0);
   return pc_min(PC_REAL(0.0), low);
 }

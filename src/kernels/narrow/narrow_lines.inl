@@ -4,6 +4,7 @@
 // squared sine of 1.5 and 3 degrees: between them two lines pass from parallel (two points) to crossing (one)
 #define PC_PARALLEL_FULL PC_REAL(0.000685237)
 #define PC_PARALLEL_NONE PC_REAL(0.00273905)
+#define PC_PARALLEL_RATE PC_REAL(486.895)  // 1 / (none - full)
 // below this squared sine two directions have no usable cross product
 #define PC_PARALLEL_EXACT PC_REAL(1e-8)
 // cores closer than this times their size have no usable difference vector
@@ -49,7 +50,7 @@ PC_FN Real pc_largest(Vec3 v) { return pc_max(v.x, pc_max(v.y, v.z)); }
 PC_FN Mask pc_has_length(Real squared) { precise Real least = PC_TINY * PC_TINY; return squared > least; }
 // Any unit vector perpendicular to the unit vector u, always the same one.
 PC_FN Vec3 pc_perpendicular(Vec3 u) {
-  Vec3 e = pc_select3(pc_abs(u.x) < PC_ROOT_THIRD, Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)), Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
+  Vec3 e = pc_select3(pc_abs(u.x) < PC_STEEP, Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0)), Vec3(PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0)));
   return pc_unit_or_zero(pc_madd(e, u, -pc_dot(e, u)));
 }
 PC_FN RoundContact pc_no_contact(Mask apart) {
@@ -90,8 +91,8 @@ PC_FN SegmentPair pc_closest_segments(Vec3 xa, Vec3 ua, Real ha, Vec3 xb, Vec3 u
 
 // 1 for parallel lines, falling to 0 at three degrees.
 PC_FN Real pc_parallel_share(Real sine_squared) {
-  precise Real left = PC_PARALLEL_NONE - sine_squared; precise Real passage = PC_PARALLEL_NONE - PC_PARALLEL_FULL;
-  return pc_clamp(pc_div(left, passage), PC_REAL(0.0), PC_REAL(1.0));
+  precise Real left = (PC_PARALLEL_NONE - sine_squared) * PC_PARALLEL_RATE;
+  return pc_clamp(left, PC_REAL(0.0), PC_REAL(1.0));
 }
 // Two points over the common stretch of two nearly parallel segments; they close in on the closest point as
 // the angle grows, so that nothing jumps where one point takes over.
