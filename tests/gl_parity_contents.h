@@ -64,7 +64,7 @@ template <class Scalar> class Maker {
 
  private:
   // trees have bodies of their own: others are torn at by more than what would hold them together
-  static constexpr std::uint32_t loose_bodies = 600, fixed_bodies = 6, kinematic_bodies = 6;
+  static constexpr std::uint32_t loose_bodies = 640, fixed_bodies = 6, kinematic_bodies = 6;
   const std::uint32_t free_bodies = loose_bodies + tree_bodies();
   const std::uint32_t body_count = 1 + free_bodies + fixed_bodies + kinematic_bodies;
 
@@ -334,7 +334,7 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.limit_stiffness = Scalar(20);
     info.lock_stiffness = Scalar(1e4);
     info.tree_damping = Scalar(0.25);
-    info.restitution_threshold = Scalar(mood_.speed / 20);
+    info.restitution_threshold = Scalar(mood_.speed / 10);
     info.rounding = Scalar(1e-3);
     info.substeps = Scalar(3);
     info.largest_state = Scalar(1e4);  // some bodies are beyond it
