@@ -30,7 +30,9 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
   e.made = PC_REAL(0.0);
   e.scale = PC_REAL(0.0);
   pc_net_clear(PC_PASS m, n, NET_SUM);
-  for (uint k = 0u; k < n.bodies; k++) pc_net_foresee(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
+  for (uint k = 0u; k < n.bodies; k++) {
+    pc_net_foresee(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
+  }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     Slot a = pc_net_end(PC_PASS m, n, k, 0u);
@@ -94,7 +96,8 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
     Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
     Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), r.centre);
     Vec3 orbit = pc_cross(arm, pc_sub(pc_ld3_net(PC_PASS b, NET_VELOCITY), r.v));
-    l = pc_madd(pc_madd(l, orbit, heavy), pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_select(heavy > zero, PC_REAL(1.0), zero));
+    Vec3 spun = pc_ld3_net(PC_PASS b, NET_MOMENTUM);
+    l = pc_madd(pc_madd(l, orbit, heavy), spun, pc_select(heavy > zero, PC_REAL(1.0), zero));
   }
   r.w = pc_select3(r.held, pc_zero3(), pc_net_spin(all, l));
   r.v = pc_select3(r.held, held_v, r.v);
@@ -146,8 +149,9 @@ PC_FN void pc_net_blend(PC_IO Slot m, Net n, Real share, Mask brings) {
     pc_net_keep(PC_PASS s, NET_IMPULSE, brings, pc_net_further(pc_zero3(), pc_ld3_net(PC_PASS s, NET_FOUND), share));
   }
 }
-// Where Newton's method did not come far enough, and the sub-step would make energy, the net takes a quarter of the way from the rigid motion
-// to what was solved, and so on; at last it moves as one body.
+// Where Newton's method did not come far enough, and the sub-step would make energy, the net goes a quarter of the way
+// from the rigid motion to what was solved, then a quarter of that, and so on; in later solves of the sub-step, against
+// contacts, it is rigid at once: between the two they would push it apart. Of these ways it keeps what makes least.
 PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
   Real motion = PC_REAL(0.0);
   for (uint k = 0u; k < n.bodies; k++) {
@@ -157,21 +161,29 @@ PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
     motion = sum;
   }
   Slot keeper = pc_net_body(PC_PASS m, n, 0u);
+  Real owed = PC_LD(net_rows, keeper, NET_OWED);
+  Real fresh = PC_LD(net_rows, keeper, NET_FRESH);
   Mask makes = asked;
   Real share = PC_REAL(1.0);
-  Real owed = PC_LD(net_rows, keeper, NET_OWED);
+  Real kept = share;
+  Real least = PC_REAL(0.0);
   uint rounds = PC_COUNT(rounds);
   for (uint i = 0u; i < rounds; i++) {
     Energy e = pc_net_energy(PC_PASS m, n);
     precise Real most = (e.scale + motion) * PC_INFO(net_made) - owed;
-    makes = pc_and(makes, e.made > pc_select(share < PC_REAL(1.0), PC_REAL(0.0), pc_max(most, PC_REAL(0.0))));
+    Mask better = pc_and(makes, pc_or(least > e.made, share > PC_REAL(0.5)));  // all of it is looked at first
+    kept = pc_select(better, share, kept);
+    least = pc_select(better, e.made, least);
+    makes = pc_and(makes, e.made > pc_max(most, PC_REAL(0.0)));
     if (!PC_ANY(makes)) return;  // lint: allow (others keep what they have)
     if (i == 0u) pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
     uint left = rounds - 1u - i;
-    precise Real part = share * PC_REAL(0.5);
-    share = pc_select(PC_IS(left), part, PC_REAL(0.0));
+    Mask goes = pc_and(share > PC_REAL(0.0), PC_IS(left));
+    precise Real part = pc_quarter(share) * fresh;
+    share = pc_select(goes, part, kept);
     pc_net_blend(PC_PASS m, n, share, makes);
     precise Real rigid = PC_REAL(1.0) - share;
     PC_ST(net_rows, keeper, NET_BOUND, pc_select(makes, rigid, PC_LD(net_rows, keeper, NET_BOUND)));
+    makes = pc_and(makes, goes);
   }
 }
