@@ -58,7 +58,7 @@ void match_nearest(const Manifold<Scalar>& m, const Scalar* before, std::uint32_
 template <class Scalar> struct Detector::Substep {
   WorldState& s;
   const Bodies<Scalar>& bodies;
-  std::span<const std::uint32_t> contacts;
+  std::span<const std::uint32_t> contacts, places;  // of the level: see Listed
   const Options& options;
   double h;
   bool first = false, last = false;  // the first sub-step of the step; the last look of the sub-step
@@ -67,7 +67,7 @@ template <class Scalar> struct Detector::Substep {
 /// Looks, of which `does` is one. The rows that it renews are those that count as such until the level is looked at
 /// again.
 template <class Does>
-void Detector::look_in(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options,
+void Detector::look_in(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options,
                        const Does& does) {
   meetings_++;
   renewed_.clear();
@@ -76,11 +76,12 @@ void Detector::look_in(WorldState& s, std::span<const std::uint32_t> contacts, u
     Scalar* const rows = s.tables.data<Scalar>(Buffer::contact);
     for (const std::uint32_t row : anew_[level]) rows[row * contact_reals + place::found_anew] = 0;
     const Bodies<Scalar> bodies(s.tables);
-    does(Substep<Scalar>{s, bodies, contacts, options, h});
+    scratch<Scalar>().twists.resize(twisted_.size());
+    does(Substep<Scalar>{s, bodies, contacts.rows, contacts.places, options, h});
   };
   s.tables.precision() == Precision::f32 ? in(float{}) : in(double{});
   anew_[level].clear();
-  for (const std::uint32_t at : renewed_) anew_[level].push_back(contacts[at]);
+  for (const std::uint32_t at : renewed_) anew_[level].push_back(contacts.rows[at]);
 }
 
 /// One contact in one sub-step.
@@ -99,7 +100,7 @@ template <class Scalar> struct Detector::Meeting {
   double thick = double(c.thick);
   double share = share_of<Scalar>(s.tables, row_a, row_b);
   Moved now = bodies.moved(row_a, row_b);
-  TwistOf<Scalar> ta = bodies.twist(row_a), tb = bodies.twist(row_b);
+  const TwistOf<Scalar>&ta = d.twist_of(bodies, row_a), &tb = d.twist_of(bodies, row_b);
   Scalar apart[3] = {0, 0, 0};
   Scalar look = 0;
 
@@ -126,6 +127,9 @@ template <class Scalar> struct Detector::Meeting {
     const double shifts = (speed() * std::min(share, 1 - share) + turns) * h;
     return shifts > constants::stale_share * thick;
   }
+
+  /// Whether shapes that are apart come no nearer than `near` in the sub-step, where others send them no further than `sent`.
+  bool passes_by(double sent, double near) const { return !c.touches && c.gap - moved() > std::max(way(), sent) + near; }
 
   void stand_aside() {
     if (!c.acts) return;
@@ -231,11 +235,12 @@ template <class Scalar> struct Detector::Meeting {
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.
   bool find_from(double from) {
     if (is_lost(way())) return false;
-    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
-    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way());
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
+    if (passes_by(0, near)) return false;
+    const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
+    look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way());
     const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
       look_at(x, y, z);
     };
@@ -278,5 +283,9 @@ template <class Scalar> struct Detector::Meeting {
     d.later_[c.later].origin = bodies.poses().position(row_a) + Vec3{on_the_way(0), on_the_way(1), on_the_way(2)};
   }
 };
+
+template <class Scalar> Detector::Meeting<Scalar> Detector::meeting(const Substep<Scalar>& look, std::uint32_t row) {
+  return {*this, look.s, look.bodies, look.options, look.h, row};
+}
 
 }  // namespace pcphys

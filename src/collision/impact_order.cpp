@@ -35,7 +35,7 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
   each([&](double& at, std::uint32_t) { at = std::numeric_limits<double>::infinity(); });
   for (std::size_t i = begin; i < struck_.size(); i++) {
     if (!standing(struck_[i]).waits) continue;
-    Meeting<Scalar>{*this, look.s, look.bodies, look.options, h, look.contacts[struck_[i]]}.stand_aside();
+    meeting(look, look.contacts[struck_[i]]).stand_aside();
     gone_.push_back(look.contacts[struck_[i]]);
     waiting_++;
   }
@@ -61,18 +61,17 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
   const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
   const std::size_t before = struck_.size();
   inner_.clear();
-  for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
+  for (const std::uint32_t at : may_strike_) {
     const std::uint32_t row = look.contacts[at];
     Standing& c = standings_[row];
-    if (row == 0 || c.acts || c.touches || c.jointed) continue;
+    if (c.acts || c.touches) continue;
     if (!is_marked(c.rows[0]) && !is_marked(c.rows[1]) && !c.waits) continue;  // as it was when it was looked at last
     const double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
     c.waits = false;
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
     make_record(c);
-    Meeting<Scalar> m{*this, look.s, look.bodies, look.options, look.h, row};
-    if (!m.find_from(from)) continue;
+    if (!meeting(look, row).find_from(from)) continue;
     renewed_.push_back(at);
     struck_.push_back(at);
     if (!look.s.stands(c.rows[1])) continue;
@@ -91,16 +90,23 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
 template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, bool first) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
+  const auto standing = [&](std::uint32_t at) -> const Standing& { return standings_[look.contacts[at]]; };
+  if (first) {  // a contact that rests, and does not bounce, does so until the next sub-step
+    may_strike_.clear();
+    for (const std::uint32_t at : look.places) {
+      const Standing& c = standing(at);
+      if (!c.jointed && (!c.touches || c.struck || c.bounces)) may_strike_.push_back(at);
+    }
+  }
   unseen_.clear();
-  for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
-    const std::uint32_t row = look.contacts[at];
-    const Standing& c = standings_[row];
-    if (row == 0 || !c.acts || c.jointed || !(c.struck || c.bounces)) continue;
+  for (const std::uint32_t at : may_strike_) {
+    const Standing& c = standing(at);
+    if (!c.acts || !(c.struck || c.bounces)) continue;
     if (first || is_marked(c.rows[0]) || is_marked(c.rows[1])) unseen_.push_back(at);
   }
 }
 
-void Detector::meet_again(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool last, double h,
+void Detector::meet_again(WorldState& s, const Listed& contacts, unsigned level, bool last, double h,
                           const Options& options) {
   look_in(s, contacts, level, h, options, [&](auto look) {
     look.last = last;

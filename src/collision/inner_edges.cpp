@@ -87,15 +87,13 @@ template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& l
   if (inner_.empty()) return;
   const auto row_of = [&](std::uint32_t at) { return look.contacts[at]; };
   const auto body_of = [&](std::uint32_t at) { return standings_[row_of(at)].rows[0]; };
-  const auto meeting = [&](std::uint32_t at) {
-    return Meeting<Scalar>{*this, look.s, look.bodies, look.options, look.h, row_of(at)};
-  };
+  const auto meeting_at = [&](std::uint32_t at) { return meeting(look, row_of(at)); };
   const auto is_covered = [&](std::uint32_t at) {
     const auto first = std::ranges::lower_bound(beside_, body_of(at), {}, body_of);
     const auto last = std::ranges::upper_bound(beside_, body_of(at), {}, body_of);
-    const Meeting<Scalar> x = meeting(at);
+    const Meeting<Scalar> x = meeting_at(at);
     for (std::uint32_t point = 0; point < 4; point++) {
-      const auto covers_it = [&](std::uint32_t other) { return covers<Scalar>(meeting(other), x, point); };
+      const auto covers_it = [&](std::uint32_t other) { return covers<Scalar>(meeting_at(other), x, point); };
       if ((x.c.together >> point & 1) != 0 && std::none_of(first, last, covers_it)) return false;
     }
     return x.c.together != 0;
@@ -110,7 +108,7 @@ template <class Scalar> void Detector::drop_inner_edges(const Substep<Scalar>& l
   std::ranges::sort(beside_, {}, [&](std::uint32_t at) { return std::pair(body_of(at), row_of(at)); });
   std::erase_if(inner_, [&](std::uint32_t at) { return !is_covered(at); });
   for (const std::uint32_t at : inner_) {
-    meeting(at).stand_aside();
+    meeting_at(at).stand_aside();
     gone_.push_back(row_of(at));
     standings_[row_of(at)].touches = false;  // it is looked at again while it is near
     renewed_.push_back(at);

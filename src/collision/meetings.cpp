@@ -48,10 +48,12 @@ template <class Scalar> void Detector::find_sent(const Substep<Scalar>& look) {
 /// `finds(meeting, look)` of all looks, on as many threads as there are: a look writes what is of its own contact alone. Then
 /// notes whose rows are to be made anew.
 template <class Scalar, class Finds> void Detector::find_all(const Substep<Scalar>& look, const Finds& finds) {
+  for (const Look& l : looks_)
+    for (const std::uint32_t body : standings_[look.contacts[l.at]].rows) twist_of(look.bodies, body);
   look.options.share(looks_.size(), [&](std::uint32_t begin, std::uint32_t end) {
     for (const Look& l : std::span(looks_).subspan(begin, end - begin)) {
-      Meeting<Scalar> meeting{*this, look.s, look.bodies, look.options, look.h, look.contacts[l.at]};
-      finds(meeting, l);
+      Meeting<Scalar> at_it = meeting(look, look.contacts[l.at]);
+      finds(at_it, l);
     }
   });
   const Scalar* const rows = look.s.tables.template data<Scalar>(Buffer::contact);
@@ -70,9 +72,8 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     if (anew) inner_.push_back(at);
   };
   looks_.clear();
-  for (std::uint32_t at = 0; at < look.contacts.size(); at++) {
+  for (const std::uint32_t at : look.places) {
     const std::uint32_t row = look.contacts[at];
-    if (row == 0) continue;
     Standing& c = standings_[row];
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
     const float moved = a.went + b.went + c.looked, from_others = c.jointed ? sent(c.rows[0]) + sent(c.rows[1]) : 0.0f;
@@ -81,6 +82,10 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
                        moved <= float(constants::contact_share) * c.thick;
     const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
     if (rests || far) {
+      stands_on(at, look.first);
+      continue;
+    }
+    if (!c.touches && !c.acts && meeting(look, row).passes_by(double(from_others), 0)) {
       stands_on(at, look.first);
       continue;
     }
@@ -99,7 +104,7 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
   put_off(look, 0);
 }
 
-void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, bool first, double h,
+void Detector::meet(WorldState& s, const Listed& contacts, unsigned level, bool first, double h,
                     const Options& options) {
   struck_.clear();
   on_standing_.clear();
@@ -112,11 +117,11 @@ void Detector::meet(WorldState& s, std::span<const std::uint32_t> contacts, unsi
   });
 }
 
-void Detector::find_missed(WorldState& s, std::span<const std::uint32_t> contacts, unsigned level, double h, const Options& options) {
+void Detector::find_missed(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options) {
   look_in(s, contacts, level, h, options, [&]<class Scalar>(const Substep<Scalar>& look) {
     looks_.clear();
-    for (std::uint32_t at = 0; at < contacts.size(); at++)
-      if (contacts[at] != 0 && standings_[contacts[at]].sent) looks_.push_back({at, 0, true});
+    for (const std::uint32_t at : look.places)
+      if (standings_[look.contacts[at]].sent) looks_.push_back({at, 0, true});
     find_all(look, [](Meeting<Scalar>& x, const Look&) { x.find_missed(); });
   });
 }
