@@ -38,7 +38,9 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   Mask now = ahead < most;
   now = pc_and(pc_and(now, mass > zero), pc_or(pc_and(fast, e > zero), pc_and(always, impact < zero)));
   Real bounce = pc_select(fast, e, zero); precise Real thrown = -bounce * impact;
-  precise Real aim = half_change - acceleration * t + pc_max(thrown, zero);
+  precise Real falls = half_change - acceleration * t + pc_max(thrown, zero);
+  // what touches already is held: else it would sink by what it falls in each sub-step, and no impact pushes it out
+  Real aim = pc_select(open, falls, pc_max(falls, zero));
   Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); return r;
 }
 PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
