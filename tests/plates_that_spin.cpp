@@ -1,5 +1,5 @@
-// A plate that spins on its flat side stays on a floor without friction: the points of its contact move far in a sub-step, so that each is an
-// impact, and what an impact leaves of the fall sank it through the floor (1.4 mm a step of 1/30 s).
+// A plate that spins on its flat side stays on a floor without friction. The points of its contact move far in a sub-step,
+// so it is an impact in each, and what an impact left of the fall sank it through the floor (1.4 mm a step of 1/30 s).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -12,15 +12,18 @@ using namespace worldtest;
 
 namespace {
 
-/// How deep a box or a cylinder of random size has sunk after two seconds at 20 to 200 rad/s about the vertical, and what is left of its spin.
+/// How deep a body has sunk [m], and what is left of its spin, of what it had.
 struct Spun {
-  double depth = 0, spin = 0;  // [m]; of what it had
+  double depth = 0, spin = 0;
 };
+
+/// A box or a cylinder of random size after two seconds at 20 to 200 rad/s about the vertical.
 Spun spun(unsigned seed, double dt) {
   std::mt19937 dice(seed * 19 + 3);
   const auto between = [&](double low, double high) { return low + (high - low) * (double(dice()) / 4294967296.0); };
   World world({seed % 2 == 0 ? Precision::f32 : Precision::f64, {0, -9.81, 0}});
-  const Material smooth{.static_friction = 0, .kinetic_friction = 0, .restitution = seed % 4 < 2 ? 0.0 : between(0, 0.8)};
+  const double restitution = seed % 4 < 2 ? 0.0 : between(0, 0.8);
+  const Material smooth{.static_friction = 0, .kinetic_friction = 0, .restitution = restitution};
   BodyDef floor;
   floor.kind = BodyKind::fixed;
   floor.shapes = {ShapeDef::box({5, 0.5, 5})};
@@ -50,7 +53,7 @@ TEST_CASE("what spins on its flat side does not sink into a floor") {
       deepest = std::max(deepest, s.depth / fall);
       least_spin = std::min(least_spin, s.spin);
     }
-    MESSAGE("steps of ", dt, " s: at most ", deepest, " times what falls in a sub-step deep; ", least_spin, " of the spin left");
+    MESSAGE("steps of ", dt, " s: at most ", deepest, " times as deep as it falls in a sub-step; spin left ", least_spin);
     CHECK(deepest < 1.01);
     CHECK(least_spin > 0.999);
   }

@@ -67,8 +67,7 @@ template <class Scalar> struct Detector::Substep {
 /// Looks, of which `does` is one. The rows that it renews are those that count as such until the level is looked at
 /// again.
 template <class Does>
-void Detector::look_in(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options,
-                       const Does& does) {
+void Detector::look_in(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options, const Does& does) {
   meetings_++;
   renewed_.clear();
   if (anew_.size() <= level) anew_.resize(level + 1);
@@ -128,8 +127,10 @@ template <class Scalar> struct Detector::Meeting {
     return shifts > constants::stale_share * thick;
   }
 
-  /// Whether shapes that are apart come no nearer than `near` in the sub-step, where others send them no further than `sent`.
-  bool passes_by(double sent, double near) const { return !c.touches && c.gap - moved() > std::max(way(), sent) + near; }
+  /// Whether shapes that are apart come no nearer than `near` in the sub-step; `sent`: how far others may send them.
+  bool passes_by(double sent, double near) const {
+    return !c.touches && c.gap - moved() > std::max(way(), sent) + near;
+  }
 
   void stand_aside() {
     if (!c.acts) return;

@@ -28,8 +28,8 @@ namespace pcphys {
 
 template <class Scalar> class Bodies;
 
-/// The contacts of one level of islands: rows, in the order of a backend's blocks, 0 where one is not full; and their places there, in
-/// the order of the rows.
+/// The contacts of one level of islands: rows, in the order of a backend's blocks, 0 where one is not full; and their
+/// places there, in the order of the rows.
 struct Listed {
   std::span<const std::uint32_t> rows, places;
 };
@@ -69,14 +69,11 @@ class Detector {
   Status find_contacts(WorldState& state, const Options& options, Found& found);
   /// In a sub-step of `h` [s], after its forces: finds manifolds anew whose bodies have moved against each other by
   /// more than a share of what they were made for, and of shapes that are apart whether, when and how they meet in it.
-  /// `contacts`: rows, 0 among them (padding); those of one level (octave) come together, from its `first` sub-step of
-  /// the step on.
-  void meet(WorldState& state, const Listed& contacts, unsigned level, bool first, double h,
-            const Options& options);
+  /// `contacts`: those of one level (octave) come together, from its `first` sub-step of the step on.
+  void meet(WorldState& state, const Listed& contacts, unsigned level, bool first, double h, const Options& options);
   /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for
   /// others. `last`: none waits any longer.
-  void meet_again(WorldState& state, const Listed& contacts, unsigned level, bool last, double h,
-                  const Options& options);
+  void meet_again(WorldState& state, const Listed& contacts, unsigned level, bool last, double h, const Options& options);
   /// After its bodies have moved: contacts whose rows acted since others of a joint tree might have sent their shapes together, and which are
   /// still apart. They count as renewed.
   void find_missed(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options);
@@ -234,17 +231,17 @@ class Detector {
   template <class Scalar> struct Substep;
   template <class Scalar> struct Meeting;
   template <class Does>
-  void look_in(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options,
-               const Does& does);
+  void look_in(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options, const Does& does);
   template <class Scalar, class Finds> void find_all(const Substep<Scalar>& look, const Finds& finds);
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
   template <class Scalar> Meeting<Scalar> meeting(const Substep<Scalar>& look, std::uint32_t row);
   template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
-  /// Of a body in this look; made where none is yet, so not by looks that go beside others.
+  /// Of a body in this look. It is made where none is yet, so before looks that go beside others.
   template <class Scalar> const TwistOf<Scalar>& twist_of(const Bodies<Scalar>& bodies, std::uint32_t body) {
     TwistOf<Scalar>& twist = scratch<Scalar>().twists[body];
-    if (std::exchange(twisted_[body], meetings_) != meetings_) twist = bodies.twist(body);
-    return twist;
+    if (twisted_[body] == meetings_) return twist;
+    twisted_[body] = meetings_;
+    return twist = bodies.twist(body);
   }
   template <class Scalar> void find_sent(const Substep<Scalar>& look);
   template <class Scalar> void point_of(const Meeting<Scalar>& x, std::uint32_t point, Scalar* at) const;
@@ -288,10 +285,11 @@ class Detector {
   std::vector<Vec3> starts_;           // of bodies: where their centres were when the step began [m]
   std::vector<float> levers_;          // of bodies: how far a turn of one radian moves any point of their shapes, at most [m]
   std::vector<Way> ways_;              // of bodies
-  std::vector<std::uint32_t> twisted_; // of bodies: the look that their twists are of
+  std::vector<std::uint32_t> twisted_;  // of bodies: the look that their twists are of
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
-  std::vector<std::uint32_t> renewed_, struck_, may_strike_, unseen_, on_standing_, inner_, beside_;  // places: see Listed
+  // places in what was listed
+  std::vector<std::uint32_t> renewed_, struck_, may_strike_, unseen_, on_standing_, inner_, beside_;
   std::vector<std::uint32_t> touching_;  // by body: how much of what stands it touches
   std::vector<Look> looks_;
   std::vector<std::uint32_t> alone_;              // pairs that do not go in lanes

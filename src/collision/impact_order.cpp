@@ -106,8 +106,7 @@ template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, 
   }
 }
 
-void Detector::meet_again(WorldState& s, const Listed& contacts, unsigned level, bool last, double h,
-                          const Options& options) {
+void Detector::meet_again(WorldState& s, const Listed& contacts, unsigned level, bool last, double h, const Options& options) {
   look_in(s, contacts, level, h, options, [&](auto look) {
     look.last = last;
     mark_struck(look);

@@ -52,8 +52,8 @@ template <class Scalar, class Finds> void Detector::find_all(const Substep<Scala
     for (const std::uint32_t body : standings_[look.contacts[l.at]].rows) twist_of(look.bodies, body);
   look.options.share(looks_.size(), [&](std::uint32_t begin, std::uint32_t end) {
     for (const Look& l : std::span(looks_).subspan(begin, end - begin)) {
-      Meeting<Scalar> at_it = meeting(look, look.contacts[l.at]);
-      finds(at_it, l);
+      Meeting<Scalar> of_it = meeting(look, look.contacts[l.at]);
+      finds(of_it, l);
     }
   });
   const Scalar* const rows = look.s.tables.template data<Scalar>(Buffer::contact);

@@ -76,9 +76,9 @@ class ContactLooks final : public Collider {
   Detector& detector_;
   ColouredSlots& contacts_;
   Detector::Options options_;
-  // of the sub-step in hand: rows of contacts, their places there, the block of each so many of them, and the blocks of some
+  // of the sub-step in hand: rows of contacts, their places there, the block of each so many of them
   std::vector<std::uint32_t> rows_, places_, place_of_, blocks_;
-  std::vector<char> some_;
+  std::vector<char> some_;  // of blocks
   std::vector<Range> renewed_, struck_;
 };
 
