@@ -187,10 +187,10 @@ template <class Scalar> struct Detector::Meeting {
 
   /// `sent`: how far others of a joint tree may send them against each other.
   void find(double sent) {
-    const double way = this->way(), goes = std::max(way, sent), moved = this->moved();
+    const double goes = std::max(way(), sent);
     const bool quick = this->quick();
-    if (c.touches && !c.struck && !quick && moved <= constants::contact_share * thick) return;
-    if ((!c.touches && c.gap - moved > goes) || is_lost(goes)) return stand_aside();
+    if (c.touches && !c.struck && !quick && moved() <= constants::contact_share * thick) return;
+    if (passes_by(sent, 0) || is_lost(goes)) return stand_aside();
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
     look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * goes);
