@@ -78,11 +78,13 @@ class Detector {
   /// still apart. They count as renewed.
   void find_missed(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options);
   /// Whether impacts wait for others that come before them.
-  bool waits() const { return waiting_ > 0; }
+  bool waits() const { return !waiting_.empty(); }
   /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before;
   /// and of impacts that may act, since their bodies were struck after they were looked for last.
   std::span<const std::uint32_t> renewed() const { return renewed_; }
   std::span<const std::uint32_t> struck() const { return unseen_; }
+  /// By contact row.
+  std::span<const Standing> standings() const { return standings_; }
   /// Of a contact, after the step: where the first body's centre was when its rows were found, as its points see it [m].
   Vec3 origin(std::uint32_t contact) const {
     const Standing& c = standings_[contact];
@@ -207,6 +209,7 @@ class Detector {
     std::uint32_t row;
     double gap, comes[2];
   };
+  bool comes_together(const Standing& standing, const Vec3& normal) const;
   Distant distant(std::uint32_t row, const Standing& standing, const Vec3& normal) const;
   void drop_distant(ContactColumns& contacts, AlignedBytes& table, std::size_t row_bytes);
   /// The shapes of a pair in the order of the contact's bodies.
@@ -235,7 +238,11 @@ class Detector {
   template <class Scalar, class Finds> void find_all(const Substep<Scalar>& look, const Finds& finds);
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
   template <class Scalar> Meeting<Scalar> meeting(const Substep<Scalar>& look, std::uint32_t row);
-  template <class Scalar> Way way_of(const Substep<Scalar>& look, std::uint32_t body);
+  template <class Scalar> const Way& way_of(const Substep<Scalar>& look, std::uint32_t body) {
+    if (ways_[body].of != meetings_) find_way(look, body);
+    return ways_[body];
+  }
+  template <class Scalar> void find_way(const Substep<Scalar>& look, std::uint32_t body);
   /// Of a body in this look. It is made where none is yet, so before looks that go beside others.
   template <class Scalar> const TwistOf<Scalar>& twist_of(const Bodies<Scalar>& bodies, std::uint32_t body) {
     TwistOf<Scalar>& twist = scratch<Scalar>().twists[body];
@@ -250,7 +257,12 @@ class Detector {
   template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
   template <class Scalar> void mark_struck(const Substep<Scalar>& look);
-  template <class Scalar> void find_unseen(const Substep<Scalar>& look, bool first);
+  template <class Scalar> void mark(const Substep<Scalar>& look, std::uint32_t body);
+  void list_contacts_of(const Listed& contacts, unsigned level);
+  void find_beside_struck(const Listed& contacts, std::span<const std::uint32_t> others);
+  static bool may_strike(const Standing& c) { return c.acts && !c.jointed && (c.struck || c.bounces); }
+  template <class Scalar> void find_unseen(const Substep<Scalar>& look);
+  template <class Scalar> void note_swept(const Substep<Scalar>& look);
   float went(std::uint32_t body) const { return ways_[body].went; }
   /// Before a look, which may go beside others.
   void make_record(Standing& contact) {
@@ -289,13 +301,16 @@ class Detector {
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
   std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
   // places in what was listed
-  std::vector<std::uint32_t> renewed_, struck_, may_strike_, unseen_, on_standing_, inner_, beside_;
+  std::vector<std::uint32_t> renewed_, struck_, waiting_, unseen_, on_standing_, inner_, beside_, beside_struck_;
   std::vector<std::uint32_t> touching_;  // by body: how much of what stands it touches
   std::vector<Look> looks_;
   std::vector<std::uint32_t> alone_;              // pairs that do not go in lanes
   std::vector<float> times_struck_;               // of bodies, when impacts were looked for last
+  bool none_struck_ = false;                      // since the step has begun
+  std::vector<std::uint32_t> marked_, swept_;     // bodies: struck since then; of the contacts that the sweep may strike
+  std::vector<std::uint32_t> first_of_, contacts_of_;  // by body, its contacts of a level: places
+  unsigned listed_level_ = 0;                     // from 1; 0: none
   std::vector<double> soonest_;                   // of bodies: when in the sub-step the first impact is [s]
-  std::uint32_t waiting_ = 0;                     // impacts
   std::vector<std::vector<std::uint32_t>> anew_;  // by level: rows that were renewed in the sub-step before
   std::vector<Distant> distant_;                  // in ascending order of their rows
   std::vector<char> sent_elsewhere_;              // bodies that contacts may send elsewhere than they go by themselves

@@ -1,6 +1,8 @@
 // The order of impacts within a sub-step: by time, and once more after each sweep for what it has struck.
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <utility>
 
 #include "collision/contact_meeting.h"
 
@@ -21,7 +23,7 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
   };
   const auto when = [&](std::uint32_t at) { return double(look.s.tables.get(Buffer::contact, look.contacts[at], 31)); };
   const double h = look.h;
-  waiting_ = 0;
+  waiting_.clear();
   std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });  // an inner edge, for one
   if (struck_.size() <= begin || look.last) return;
   soonest_.resize(levers_.size(), std::numeric_limits<double>::infinity());
@@ -37,35 +39,76 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
     if (!standing(struck_[i]).waits) continue;
     meeting(look, look.contacts[struck_[i]]).stand_aside();
     gone_.push_back(look.contacts[struck_[i]]);
-    waiting_++;
+    waiting_.push_back(struck_[i]);
   }
   std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });
 }
 
-/// Marks the bodies that impacts have struck since it was called last: looks and sweeps go by that.
+/// Marks the bodies that impacts have struck since it was called last, of those that the last sweep looked at: looks and
+/// sweeps go by that.
 template <class Scalar> void Detector::mark_struck(const Substep<Scalar>& look) {
   Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   constexpr std::size_t reals = reals_of(Buffer::delta);
-  times_struck_.resize(levers_.size());
-  for (std::size_t body = 0; body < times_struck_.size(); body++) {
-    const float times = float(delta[body * reals + 7]);
-    delta[body * reals + 9] = times != times_struck_[body];
-    times_struck_[body] = times;
+  if (std::exchange(none_struck_, false)) {  // the step has begun: what is marked or counted is of the last one
+    times_struck_.assign(levers_.size(), 0);
+    marked_.clear();
+    swept_.clear();
   }
+  for (const std::uint32_t body : marked_) delta[body * reals + 9] = 0;
+  marked_.clear();
+  for (const std::uint32_t body : swept_) {
+    const float times = float(delta[body * reals + 7]);
+    if (times == times_struck_[body]) continue;
+    times_struck_[body] = times;
+    mark(look, body);
+  }
+}
+
+template <class Scalar> void Detector::mark(const Substep<Scalar>& look, std::uint32_t body) {
+  look.s.tables.template data<Scalar>(Buffer::delta)[body * reals_of(Buffer::delta) + 9] = 1;
+  marked_.push_back(body);
+}
+
+/// By body that answers impulses, its contacts of a level.
+void Detector::list_contacts_of(const Listed& contacts, unsigned level) {
+  if (std::exchange(listed_level_, level + 1) == level + 1) return;
+  first_of_.assign(levers_.size() + 1, 0);
+  const auto each = [&](const auto& does) {
+    for (const std::uint32_t at : contacts.places) {
+      const Standing& c = standings_[contacts.rows[at]];
+      for (int side = 0; side < 2 && !c.jointed; side++)
+        if (proxies_[c.shapes[side]].responds) does(c.rows[side], at);
+    }
+  };
+  each([&](std::uint32_t body, std::uint32_t) { first_of_[body + 1]++; });
+  std::partial_sum(first_of_.begin(), first_of_.end(), first_of_.begin());
+  contacts_of_.resize(first_of_.back());
+  each([&](std::uint32_t body, std::uint32_t at) { contacts_of_[first_of_[body]++] = at; });
+  std::shift_right(first_of_.begin(), first_of_.end(), 1);
+  first_of_[0] = 0;
+}
+
+/// Places of the contacts of marked bodies, and of `others`, in the order of their rows.
+void Detector::find_beside_struck(const Listed& contacts, std::span<const std::uint32_t> others) {
+  beside_struck_.assign(others.begin(), others.end());
+  for (const std::uint32_t body : marked_)
+    for (std::uint32_t i = first_of_[body]; i < first_of_[body + 1]; i++) beside_struck_.push_back(contacts_of_[i]);
+  std::ranges::sort(beside_struck_, {}, [&](std::uint32_t at) { return contacts.rows[at]; });
+  const auto twice = std::ranges::unique(beside_struck_);
+  beside_struck_.erase(twice.begin(), twice.end());
 }
 
 /// Contacts that do not act, of bodies that were struck since: as their velocities are now, from that instant on.
 template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) {
-  Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
+  const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto struck_at = [&](std::uint32_t body) { return double(delta[body * reals_of(Buffer::delta) + 8]); };
-  const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
   const std::size_t before = struck_.size();
   inner_.clear();
-  for (const std::uint32_t at : may_strike_) {
+  find_beside_struck({look.contacts, look.places}, waiting_);
+  for (const std::uint32_t at : beside_struck_) {
     const std::uint32_t row = look.contacts[at];
     Standing& c = standings_[row];
     if (c.acts || c.touches) continue;
-    if (!is_marked(c.rows[0]) && !is_marked(c.rows[1]) && !c.waits) continue;  // as it was when it was looked at last
     const double from = std::max(struck_at(c.rows[0]), struck_at(c.rows[1]));
     c.waits = false;
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
@@ -78,48 +121,45 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     on_standing_.push_back(at);
     inner_.push_back(at);
   }
-  if (struck_.size() == before) return void(waiting_ = 0);
+  if (struck_.size() == before) return waiting_.clear();
   drop_inner_edges(look);
   put_off(look, before);
   for (std::size_t i = before; i < struck_.size(); i++)  // no sweep has seen them
-    for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows) delta[body * reals_of(Buffer::delta) + 9] = 1;
+    for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows)
+      if (look.s.responds(body)) mark(look, body);
 }
 
-/// Contacts that may have an impact: those that meet, and touching ones that bounce; after the `first` sweep those of
-/// marked bodies.
-template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look, bool first) {
-  const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
-  const auto is_marked = [&](std::uint32_t body) { return delta[body * reals_of(Buffer::delta) + 9] > 0; };
-  const auto standing = [&](std::uint32_t at) -> const Standing& { return standings_[look.contacts[at]]; };
-  if (first) {  // a contact that rests, and does not bounce, does so until the next sub-step
-    may_strike_.clear();
-    for (const std::uint32_t at : look.places) {
-      const Standing& c = standing(at);
-      if (!c.jointed && (!c.touches || c.struck || c.bounces)) may_strike_.push_back(at);
-    }
-  }
+/// Contacts of marked bodies that may have an impact: those that meet, and touching ones that bounce.
+template <class Scalar> void Detector::find_unseen(const Substep<Scalar>& look) {
   unseen_.clear();
-  for (const std::uint32_t at : may_strike_) {
-    const Standing& c = standing(at);
-    if (!c.acts || !(c.struck || c.bounces)) continue;
-    if (first || is_marked(c.rows[0]) || is_marked(c.rows[1])) unseen_.push_back(at);
-  }
+  find_beside_struck({look.contacts, look.places}, {});
+  for (const std::uint32_t at : beside_struck_)
+    if (may_strike(standings_[look.contacts[at]])) unseen_.push_back(at);
+  note_swept(look);
+}
+
+/// The bodies that the sweep to come may strike.
+template <class Scalar> void Detector::note_swept(const Substep<Scalar>& look) {
+  swept_.clear();
+  for (const std::uint32_t at : unseen_)
+    for (const std::uint32_t body : standings_[look.contacts[at]].rows) swept_.push_back(body);
 }
 
 void Detector::meet_again(WorldState& s, const Listed& contacts, unsigned level, bool last, double h, const Options& options) {
   look_in(s, contacts, level, h, options, [&](auto look) {
     look.last = last;
+    list_contacts_of(contacts, level);
     mark_struck(look);
     meet_struck(look);
-    find_unseen(look, false);
+    find_unseen(look);
   });
 }
 
 template void Detector::put_off(const Substep<float>&, std::size_t);
 template void Detector::mark_struck(const Substep<float>&);
-template void Detector::find_unseen(const Substep<float>&, bool);
+template void Detector::note_swept(const Substep<float>&);
 template void Detector::put_off(const Substep<double>&, std::size_t);
 template void Detector::mark_struck(const Substep<double>&);
-template void Detector::find_unseen(const Substep<double>&, bool);
+template void Detector::note_swept(const Substep<double>&);
 
 }  // namespace pcphys

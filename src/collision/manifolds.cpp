@@ -103,16 +103,27 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   c.thick = thickness(c.shapes[0], c.shapes[1]);
   c.jointed = touch.impact < 0;
   c.hint = hints_[pair];
-  c.gap = std::min(double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)), double(least_separation(m)));
   const double far = length({double(view.apart[0]), double(view.apart[1]), double(view.apart[2])});
   const double near = near_of(double(c.thick), far, double(std::numeric_limits<Scalar>::epsilon()));
-  c.touches = c.acts = c.gap <= (held ? seam_share * double(c.thick) : near);
+  const double most = held ? seam_share * double(c.thick) : near;
+  c.gap = double(least_separation(m));
+  if (c.gap > most) c.gap = std::min(c.gap, double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)));
+  c.touches = c.acts = c.gap <= most;
   for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
+  c.soon = !c.touches && comes_together(c, to_vec3(m.normal));
   if (c.touches)
     to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
   else
     m.count = 0;
   return c;
+}
+
+/// Whether two that are apart come together within the step, as their centres move.
+bool Detector::comes_together(const Standing& c, const Vec3& normal) const {
+  const auto along = [&](const Twist& t) {
+    return normal.x * double(t.v[0]) + normal.y * double(t.v[1]) + normal.z * double(t.v[2]);
+  };
+  return c.gap < (along(twists_[c.rows[0]]) - along(twists_[c.rows[1]])) * dt_ + fall_;
 }
 
 /// Shapes that are further apart than they are thick: how far each comes towards the other by its own motion, unless
@@ -269,6 +280,8 @@ Status Detector::narrow_all(WorldState& s, const Options& options, Scratch<Scala
   standings_.resize(1);
   later_.resize(1);
   for (std::vector<std::uint32_t>& rows : anew_) rows.clear();
+  listed_level_ = 0;
+  none_struck_ = true;
   distant_.clear();
   touched_.clear();
   hints_.resize(pairs_.pairs().size());

@@ -29,12 +29,9 @@ template void Detector::find(const Options&, const Sight<float>&, const ShapeVie
 template void Detector::find(const Options&, const Sight<double>&, const ShapeView<double>&, const ShapeView<double>&,
                              std::uint32_t, Manifold<double>&);
 
-template <class Scalar> Way Detector::way_of(const Substep<Scalar>& look, std::uint32_t body) {
-  Way& way = ways_[body];
-  if (way.of == meetings_) return way;
-  way = look.bodies.way(body, levers_[body], look.h);
-  way.of = meetings_;
-  return way;
+template <class Scalar> void Detector::find_way(const Substep<Scalar>& look, std::uint32_t body) {
+  ways_[body] = look.bodies.way(body, levers_[body], look.h);
+  ways_[body].of = meetings_;
 }
 
 /// By tree, how far the fastest of its bodies may go in the sub-step: joints may send any other as far.
@@ -72,6 +69,7 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     if (anew) inner_.push_back(at);
   };
   looks_.clear();
+  unseen_.clear();
   for (const std::uint32_t at : look.places) {
     const std::uint32_t row = look.contacts[at];
     Standing& c = standings_[row];
@@ -82,6 +80,7 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
                        moved <= float(constants::contact_share) * c.thick;
     const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
     if (rests || far) {
+      if (may_strike(c)) unseen_.push_back(at);
       stands_on(at, look.first);
       continue;
     }
@@ -102,6 +101,9 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
   }
   drop_inner_edges(look);
   put_off(look, 0);
+  for (const Look& l : looks_)
+    if (may_strike(standings_[look.contacts[l.at]])) unseen_.push_back(l.at);
+  note_swept(look);
 }
 
 void Detector::meet(WorldState& s, const Listed& contacts, unsigned level, bool first, double h,
@@ -111,9 +113,8 @@ void Detector::meet(WorldState& s, const Listed& contacts, unsigned level, bool 
   inner_.clear();
   look_in(s, contacts, level, h, options, [&](auto look) {
     look.first = first;
-    meet_in(look);
     mark_struck(look);
-    find_unseen(look, true);
+    meet_in(look);
   });
 }
 
@@ -132,7 +133,7 @@ void Detector::let_go(WorldState& s) {
   gone_.clear();
 }
 
-template Way Detector::way_of(const Substep<float>&, std::uint32_t);
-template Way Detector::way_of(const Substep<double>&, std::uint32_t);
+template void Detector::find_way(const Substep<float>&, std::uint32_t);
+template void Detector::find_way(const Substep<double>&, std::uint32_t);
 
 }  // namespace pcphys

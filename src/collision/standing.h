@@ -20,6 +20,7 @@ struct Standing {
   bool struck = false;               // as an impact: nothing of it lasts
   bool sent = false;                 // its rows act although its shapes were not foreseen to meet: others of its tree may send them
   bool waits = false;                // for an impact that comes before
+  bool soon = false;                 // its shapes were apart when the step began, and come together in it by their own motion
   bool bounces = false;              // what is fast enough does
   bool jointed = false;              // a body of it hangs on joints
   std::uint8_t together = 0;         // bit i: at point i the shapes are together, now or where they meet in the sub-step

@@ -10,6 +10,8 @@ PC_FN void pc_store_states(PC_IO Index ia, Index ib, BodyState a, BodyState b) {
   PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 0u, pc_quad(b.v, b.inverse_mass));
   PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, ib, 1u, pc_quad(b.l, b.phase));
 }
+// Bodies of a slot that does not push are not stored either.
+PC_FN void pc_spare(PC_INOUT(BodyState) b, Mask pushes) { b.inverse_mass = pc_select(pushes, b.inverse_mass, PC_REAL(0.0)); }
 // On those of the two that stand in no tree; of the others only the phase is stored.
 PC_FN void pc_apply_free(PC_IO Index ia, Index ib, PC_INOUT(BodyState) a, PC_INOUT(BodyState) b, Mask tree_a, Mask tree_b, Vec3 impulse, Vec3 torque_a, Vec3 torque_b) {
   Real zero = PC_REAL(0.0); Real mass_a = pc_select(tree_a, zero, -a.inverse_mass); Real mass_b = pc_select(tree_b, zero, b.inverse_mass);

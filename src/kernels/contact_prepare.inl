@@ -146,7 +146,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad drag = PC_GATHER(contact, record, 6u); Real old1 = PC_LD(contact_impulses, m, IMPULSE_T); Real old2 = PC_LD(contact_impulses, m, IMPULSE_T + 1u); Real old_twist = PC_LD(contact_impulses, m, IMPULSE_T + 2u);
   precise Vec3 held = old_t1 * old1 + old_t2 * old2; precise Vec3 dragged = drag.v * ratio; precise Real twisted = drag.s * ratio;
   Vec3 friction = pc_select3(of_step, dragged, held); Real any = pc_select(pc_or(of_step, pc_max(pc_max(from.v.x, from.v.y), pc_max(from.v.z, from.s)) > PC_REAL(0.5)), k0, zero);
-  precise Real f1 = pc_dot(t1, friction) * any; precise Real f2 = pc_dot(t2, friction) * any; precise Real ft = pc_select(of_step, twisted, old_twist) * any;
+  Mask held_some = any > zero;
+  Real f1 = pc_select(held_some, pc_dot(t1, friction), zero); Real f2 = pc_select(held_some, pc_dot(t2, friction), zero); Real ft = pc_select(held_some, pc_select(of_step, twisted, old_twist), zero);
   pc_st_pushes(PC_PASS m, all, IMPULSE_T, f1); pc_st_pushes(PC_PASS m, all, IMPULSE_T + 1u, f2); pc_st_pushes(PC_PASS m, all, IMPULSE_T + 2u, ft);
 #endif
   for (uint i = 0u; i < 4u; i++) pc_st_pushes(PC_PASS m, of_step, IMPULSE_LARGEST + i, zero);

@@ -12,8 +12,8 @@ PC_FN void pc_keep_share(PC_IO Slot m, Real share) {
     PC_ST(contact_impulses, m, i, pc_select(less, pc_snap(kept), before));
   }
 }
-PC_FN void pc_keep_recalled(PC_IO Slot m, Index ia, Index ib) {
-  Real share = pc_min(pc_recalled_of(PC_PASS ia), pc_recalled_of(PC_PASS ib));
+PC_FN void pc_keep_recalled(PC_IO Slot m, Index ia, Index ib, Mask these) {
+  Real share = pc_select(these, pc_min(pc_recalled_of(PC_PASS ia), pc_recalled_of(PC_PASS ib)), PC_REAL(1.0));
   if (!PC_ANY(share < PC_REAL(1.0))) return;  // lint: allow (a share of one changes nothing)
   pc_keep_share(PC_PASS m, share);
 }

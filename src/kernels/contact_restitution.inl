@@ -29,7 +29,8 @@ PC_FN void pc_note_bounce(PC_IO Slot m, uint i, Real bounce) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask some = pc_or(pc_or(pc_bounces(PC_PASS m, 0u), pc_bounces(PC_PASS m, 1u)), pc_or(pc_bounces(PC_PASS m, 2u), pc_bounces(PC_PASS m, 3u)));
   Real impact = PC_LD(contact_rows, m, ROW_IMPACT); some = pc_and(some, pc_and(impact < PC_REAL(-0.5), impact > PC_REAL(-2.0)));  // of bodies on joints: contact_impact has seen to the others
-  if (!PC_ANY(pc_and(some, PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0)))) return;  // lint: allow (zeros otherwise)
+  some = pc_and(some, PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0));
+  if (!PC_ANY(some)) return;  // lint: allow (others change nothing)
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
@@ -60,6 +61,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real c1 = pc_select(bounced, f.change1, zero); Real c2 = pc_select(bounced, f.change2, zero); Real ct = pc_select(bounced, f.change_twist, zero);
   // a bounce is an impact: the velocity it leaves is the one to be read, whole (see synchronise)
   Real touch = pc_select(bounced, push.n, zero);
+  pc_spare(a, some); pc_spare(b, some);
   a.phase = pc_select(a.inverse_mass > zero, pc_max(a.phase, touch), a.phase); b.phase = pc_select(b.inverse_mass > zero, pc_max(b.phase, touch), b.phase);
   Wrench w = pc_wrench(n, t1, t2, push, c1, c2, ct); pc_apply(PC_PASS ia, ib, a, b, arms, w.impulse, w.couple);
 }

@@ -40,4 +40,6 @@ const uint IMPULSE_T = 4u;
 const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;
 
+// Whether they push at all: those of shapes that are apart, or that an impact has to itself, do not.
+PC_FN Mask pc_pushes(PC_IO Slot m) { return PC_LD(contact_rows, m, ROW_K) > PC_REAL(0.0); }
 PC_FN Vec3 pc_ld3_rows(PC_IO Slot m, uint f) { return Vec3(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u)); }

@@ -9,10 +9,12 @@
 #include "contact_calming.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
+  Mask pushes = pc_pushes(PC_PASS m);
+  if (!PC_ANY(pushes)) return;  // lint: allow (others change nothing)
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
 #ifdef PC_PLACED
-  Mask acts = pc_max(PC_GATHER(velocity_parts, ia, 3u).s, PC_GATHER(velocity_parts, ib, 3u).s) > PC_REAL(0.0);
-  if (!PC_ANY(acts)) return;  // lint: allow (others keep what they have)
+  pushes = pc_and(pushes, pc_max(PC_GATHER(velocity_parts, ia, 3u).s, PC_GATHER(velocity_parts, ib, 3u).s) > PC_REAL(0.0));
+  if (!PC_ANY(pushes)) return;  // lint: allow (others keep what they have)
 #endif
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
@@ -23,10 +25,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real both = a.inverse_mass * b.inverse_mass;
   Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
   Twist now = pc_carried(PC_PASS pc_twist(a, b, arms, n, t1, t2), a, b, arms, t1, t2);
-  Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload PC_ACTS);
-#ifdef PC_PLACED
-  a.inverse_mass = pc_select(acts, a.inverse_mass, PC_REAL(0.0)); b.inverse_mass = pc_select(acts, b.inverse_mass, PC_REAL(0.0));  // not stored
-#endif
+  Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload, pushes);
+  pc_spare(a, pushes); pc_spare(b, pushes);
   Mask blow = PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0);
   r.touch = pc_select(blow, PC_REAL(0.0), r.touch);
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
@@ -47,6 +47,3 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #undef pc_thrown
 #undef pc_lasts
 #undef PC_BACK
-#undef PC_SOME_ACT
-#undef PC_ACTS
-#undef PC_ACTING

@@ -14,21 +14,10 @@ PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real 
 // It was of an instant: nothing of it is remembered.
 PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0.0), PC_REAL(0.0), impulse); }
 #define PC_BACK , Mask both_move, FourRows back
-#define PC_SOME_ACT
 #else
 #define pc_thrown(change, vn, mass, back) change
 #define pc_lasts(impulse, back) impulse
 #define PC_BACK
-#endif
-#ifdef PC_PLACED
-#define PC_SOME_ACT
-#endif
-#ifdef PC_SOME_ACT  // others keep what they have
-#define PC_ACTS , acts
-#define PC_ACTING , Mask acts
-#else
-#define PC_ACTS
-#define PC_ACTING
 #endif
 // Of what would close a gap within the sub-step, what is more than rounding: than a millionth of what gravity closes in one.
 PC_FN Real pc_beyond_rounding(PC_IO Real gap_rate) {
@@ -87,6 +76,10 @@ PC_FN Real pc_grip(PC_IO Slot m, Real apart) {
   return pc_select(deep, pc_clamp(share, PC_REAL(0.0), PC_REAL(1.0)), PC_REAL(1.0));
 }
 #endif
+PC_FN void pc_keep_largest(PC_IO Slot m, uint i, Mask acts, Real impulse) {
+  Real before = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i);
+  PC_ST(contact_impulses, m, IMPULSE_LARGEST + i, pc_select(acts, pc_max(before, impulse), before));
+}
 // Accumulated impulses of the four points and of friction.
 struct Rows { Real k0; Real k1; Real k2; Real k3; Friction f; };
 struct Gaps { Real s0; Real s1; Real s2; Real s3; };  // separations of now
@@ -106,7 +99,8 @@ struct Visit { Vec3 impulse; Vec3 couple; Real touch; FourRows room; };
 #else
 struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
 #endif
-PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2, Real preload PC_BACK PC_ACTING) {
+// Where it does not act all stays as it is.
+PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2, Real preload, Mask acts PC_BACK) {
   Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
@@ -188,21 +182,19 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   }
 #endif
 #endif
-#ifdef PC_SOME_ACT
   now.k0 = pc_select(acts, now.k0, l0); now.k1 = pc_select(acts, now.k1, l1); now.k2 = pc_select(acts, now.k2, l2); now.k3 = pc_select(acts, now.k3, l3);
 #ifndef PC_FRICTIONLESS
   now.f.next1 = pc_select(acts, now.f.next1, PC_LD(contact_impulses, m, IMPULSE_T)); now.f.next2 = pc_select(acts, now.f.next2, PC_LD(contact_impulses, m, IMPULSE_T + 1u));
   now.f.next_twist = pc_select(acts, now.f.next_twist, PC_LD(contact_impulses, m, IMPULSE_T + 2u));
 #endif
-#endif
 #ifndef PC_FRICTIONLESS
   PC_ST(contact_impulses, m, IMPULSE_T, now.f.next1); PC_ST(contact_impulses, m, IMPULSE_T + 1u, now.f.next2); PC_ST(contact_impulses, m, IMPULSE_T + 2u, now.f.next_twist);
 #endif
-  PC_ST(contact_impulses, m, 0u, pc_lasts(now.k0, back.r0)); PC_ST(contact_impulses, m, IMPULSE_LARGEST, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST), now.k0));
+  PC_ST(contact_impulses, m, 0u, pc_lasts(now.k0, back.r0)); pc_keep_largest(PC_PASS m, 0u, acts, now.k0);
   if (more) {  // lint: allow (as said)
-    PC_ST(contact_impulses, m, 1u, pc_lasts(now.k1, back.r1)); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 1u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), now.k1));
-    PC_ST(contact_impulses, m, 2u, pc_lasts(now.k2, back.r2)); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 2u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), now.k2));
-    PC_ST(contact_impulses, m, 3u, pc_lasts(now.k3, back.r3)); PC_ST(contact_impulses, m, IMPULSE_LARGEST + 3u, pc_max(PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), now.k3));
+    PC_ST(contact_impulses, m, 1u, pc_lasts(now.k1, back.r1)); pc_keep_largest(PC_PASS m, 1u, acts, now.k1);
+    PC_ST(contact_impulses, m, 2u, pc_lasts(now.k2, back.r2)); pc_keep_largest(PC_PASS m, 2u, acts, now.k2);
+    PC_ST(contact_impulses, m, 3u, pc_lasts(now.k3, back.r3)); pc_keep_largest(PC_PASS m, 3u, acts, now.k3);
   }
   precise Real c0 = now.k0 - l0; precise Real c1 = now.k1 - l1; precise Real c2 = now.k2 - l2; precise Real c3 = now.k3 - l3;
   precise Real pressed = now.k0 + now.k1 + now.k2 + now.k3;

@@ -23,7 +23,7 @@ PC_ROWS(contact, contact_reach, 12)
 PC_ROWS(joint, joint_rows, 96)
 PC_ROWS(joint, tree_rows, 192)
 PC_ROWS(joint, tree_drive_rows, 36)
-PC_ROWS(joint, net_rows, 72)
+PC_ROWS(joint, net_rows, 84)
 #endif
 
 #ifdef PC_KERNEL

@@ -29,7 +29,7 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
   Energy e;
   e.made = PC_REAL(0.0);
   e.scale = PC_REAL(0.0);
-  pc_net_clear(PC_PASS m, n, NET_SUM);
+  pc_net_begin_after(PC_PASS m, n, NET_SUM, PC_REAL(1.0));
   for (uint k = 0u; k < n.bodies; k++) {
     pc_net_foresee(PC_PASS pc_net_body(PC_PASS m, n, k), pc_net_row(PC_PASS m, n, k));
   }
@@ -68,14 +68,14 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
 }
 
 // The motion of the whole net as one rigid body with its momenta; or, where something holds it, that of what does.
-struct Rigid { Vec3 v; Vec3 w; Vec3 centre; Real light; Mask held; };  // light: 1 / mass
+struct Rigid { Vec3 v; Vec3 l; Vec3 centre; Whole all; };
 PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
   Rigid r;
   Real zero = PC_REAL(0.0);
-  Whole all = pc_net_whole(PC_PASS m, n);
-  r.light = all.light;
+  Whole all = pc_net_whole(PC_PASS m, n, zero);
+  r.all = all;
   r.centre = all.centre;
-  r.held = zero > PC_REAL(1.0);
+  Mask held = zero > PC_REAL(1.0);
   Vec3 held_v = pc_zero3();
   Vec3 held_at = pc_zero3();
   Vec3 p = pc_zero3();
@@ -86,10 +86,10 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
     Vec3 told = pc_ld3_net(PC_PASS b, NET_VELOCITY);
     held_v = pc_select3(pc_and(stands, pc_dot(told, told) > pc_dot(held_v, held_v)), told, held_v);
     held_at = pc_select3(stands, pc_net_place(PC_PASS m, n, k), held_at);
-    r.held = pc_or(r.held, stands);
+    held = pc_or(held, stands);
     p = pc_madd(p, told, heavy);
   }
-  r.v = pc_scale(p, r.light);
+  r.v = pc_scale(p, all.light);
   Vec3 l = pc_zero3();
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
@@ -99,28 +99,61 @@ PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
     Vec3 spun = pc_ld3_net(PC_PASS b, NET_MOMENTUM);
     l = pc_madd(pc_madd(l, orbit, heavy), spun, pc_select(heavy > zero, PC_REAL(1.0), zero));
   }
-  r.w = pc_select3(r.held, pc_zero3(), pc_net_spin(all, l));
-  r.v = pc_select3(r.held, held_v, r.v);
-  r.centre = pc_select3(r.held, held_at, r.centre);
+  r.l = pc_select3(held, pc_zero3(), l);
+  r.v = pc_select3(held, held_v, r.v);
+  r.centre = pc_select3(held, held_at, r.centre);
   return r;
 }
-// What the net is given to move so.
+// How it spins once it has turned so: its angular momentum stays.
+PC_FN Vec3 pc_rigid_spin(Rigid r, Quaternion turn) {
+  return pc_rotate(turn, pc_net_spin(r.all, pc_rotate(pc_conjugate(turn), r.l)));
+}
+// The angular momentum of a body of such moments, once it has turned so.
+PC_FN Vec3 pc_rigid_momentum(Sym3 moments, Quaternion turn, Vec3 spin) {
+  return pc_rotate(turn, pc_sym_mul(moments, pc_rotate(pc_conjugate(turn), spin)));
+}
+// How far it takes the end of an arm.
+PC_FN Vec3 pc_rigid_way(Quaternion turn, Vec3 arm) {
+  Vec3 half_way = pc_cross(turn.v, pc_madd(pc_cross(turn.v, arm), arm, turn.w));
+  return pc_scale(half_way, PC_REAL(2.0));
+}
+// What the net is given to move so. It moves along the chords of its turn, so that its springs stay as long as they are (along
+// tangents they grow by the square of it), and when it has moved it is given the velocities that it has then. Each body turns
+// freely, which is as the whole turns with the inertia that it has half way.
 PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
   Vec3 sum = pc_zero3();
   Real zero = PC_REAL(0.0);
+  precise Real half_time = PC_INFO(h) * PC_REAL(0.5);
+  Quaternion early = pc_turn(pc_scale(pc_rigid_spin(r, pc_quaternion(pc_zero3(), PC_REAL(1.0))), half_time)).q;
+  Vec3 mean = pc_rigid_spin(r, early);
+  Quaternion half_turn = pc_turn(pc_scale(mean, half_time)).q;
+  Quaternion turn = pc_turn(pc_scale(mean, PC_INFO(h))).q;
+  Vec3 spin = pc_rigid_spin(r, turn);
+  Vec3 lever = pc_zero3();
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
     Index row = pc_net_row(PC_PASS m, n, k);
     Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
     Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), r.centre);
-    Vec3 v = pc_sub(pc_add(r.v, pc_cross(r.w, arm)), pc_ld3_net(PC_PASS b, NET_VELOCITY));
-    Vec3 l = pc_sub(pc_sym_mul(pc_net_moments(PC_PASS row), r.w), pc_ld3_net(PC_PASS b, NET_MOMENTUM));
+    Sym3 moments = pc_net_moments(PC_PASS row);
+    Vec3 way = pc_rigid_way(turn, arm);
+    Vec3 chord = pc_madd(r.v, way, PC_INFO(inverse_h));
+    Vec3 l = pc_rigid_momentum(moments, half_turn, mean);
+    Vec3 v_then = pc_add(r.v, pc_cross(spin, pc_add(arm, way)));
+    Vec3 l_then = pc_rigid_momentum(moments, turn, spin);
     Mask here = heavy > zero;
-    Vec3 push = pc_scale(v, heavy);
+    Vec3 push = pc_scale(pc_sub(chord, pc_ld3_net(PC_PASS b, NET_VELOCITY)), heavy);
+    Vec3 twist = pc_sub(l, pc_ld3_net(PC_PASS b, NET_MOMENTUM));
     pc_net_keep(PC_PASS b, NET_RIGID, these, push);
-    pc_net_keep(PC_PASS b, NET_RIGID + 3u, these, pc_select3(here, l, pc_zero3()));
+    pc_net_keep(PC_PASS b, NET_RIGID + 3u, these, pc_select3(here, twist, pc_zero3()));
+    Vec3 after = pc_scale(pc_sub(v_then, chord), heavy);
+    Vec3 twist_after = pc_select3(here, pc_sub(l_then, l), pc_zero3());
+    pc_net_keep(PC_PASS b, NET_AFTER, these, after);
+    pc_net_keep(PC_PASS b, NET_AFTER + 3u, these, twist_after);
+    lever = pc_add(lever, pc_add(pc_cross(pc_add(arm, way), after), twist_after));
     sum = pc_add(sum, push);
   }
+  pc_net_keep(PC_PASS pc_net_body(PC_PASS m, n, 0u), NET_LEVER, these, lever);
   // what holds the net takes what its momentum lacks, the fastest of it by its velocity: others do no work
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
@@ -179,7 +212,8 @@ PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
     if (i == 0u) pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
     uint left = rounds - 1u - i;
     Mask goes = pc_and(share > PC_REAL(0.0), PC_IS(left));
-    precise Real part = pc_quarter(share) * fresh;
+    Mask others = PC_IS(left - 1u);  // the last that is looked at is the rigid motion
+    precise Real part = pc_select(others, pc_quarter(share), PC_REAL(0.0)) * fresh;
     share = pc_select(goes, part, kept);
     pc_net_blend(PC_PASS m, n, share, makes);
     precise Real rigid = PC_REAL(1.0) - share;

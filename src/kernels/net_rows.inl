@@ -19,6 +19,8 @@ const uint NET_FIRST = 69u;     // NET_VELOCITY and NET_SPIN of the sub-step's f
 const uint NET_FIRST_SPIN = 49u;
 const uint NET_RIGID = 57u;     // impulse and angular impulse of the rigid motion, and of what was solved (net_bound)
 const uint NET_SOLVED = 63u;
+const uint NET_AFTER = 72u;     // and of what the rigid motion gives once the bodies have moved
+const uint NET_LEVER = 78u;     // of the first body: what all of that changes the angular momentum by
 // of a spring
 const uint NET_LINE = 0u;       // from its point of a to that of b, where the sub-step began
 const uint NET_LENGTH = 3u;

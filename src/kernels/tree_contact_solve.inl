@@ -62,7 +62,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
   Mask both_move = pc_both_move(PC_PASS w, m);
-  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, PC_INFO(contact_preload), both_move, pc_bounce(PC_PASS w, m), acts);
+  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, PC_INFO(contact_preload), acts, both_move, pc_bounce(PC_PASS w, m));
   pc_keep_room(PC_PASS w, m, r.room);
   r.impulse = pc_select3(acts, r.impulse, pc_zero3());
   r.couple = pc_select3(acts, r.couple, pc_zero3());
@@ -84,6 +84,3 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #undef pc_thrown
 #undef pc_lasts
 #undef PC_BACK
-#undef PC_SOME_ACT
-#undef PC_ACTS
-#undef PC_ACTING

@@ -29,8 +29,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m); Real zero = PC_REAL(0.0);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   pc_keep_approach(PC_PASS w, m, ia, ib);
-  pc_keep_recalled(PC_PASS m, ia, ib);
-  Wrench wrench = pc_warm_start(PC_PASS m); Real size = pc_max(pc_largest(wrench.impulse), pc_largest(wrench.couple));
+  Mask all = zero < PC_REAL(1.0);
+  pc_keep_recalled(PC_PASS m, ia, ib, all);
+  Wrench wrench = pc_warm_start(PC_PASS m, all); Real size = pc_max(pc_largest(wrench.impulse), pc_largest(wrench.couple));
   Mask some = size > zero;
   if (!PC_ANY(some)) return;  // lint: allow (nothing changes nothing)
   wrench.impulse = pc_select3(some, wrench.impulse, pc_zero3()); wrench.couple = pc_select3(some, wrench.couple, pc_zero3());

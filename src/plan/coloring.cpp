@@ -5,7 +5,6 @@
 #include <cassert>
 
 #include "collision/radix_sort.h"
-#include "plan/tree_paths.h"
 
 namespace pcphys {
 
@@ -22,13 +21,13 @@ void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> u
   assert(units.size() == 2 * priorities.size() && (kinds.empty() || kinds.size() == priorities.size()));
   sort_by_priority(priorities);
   colour_of_.resize(order_.size());
-  std::uint32_t above = 0;
+  const bool some_lead = std::ranges::any_of(kinds, [](std::uint16_t kind) { return kind >= first_leading; });
+  std::uint32_t above = leading_colours_ = 0;
   for (const bool leads : {true, false}) {
-    if (leads && kinds.empty()) continue;
+    if (leads && !some_lead) continue;
     for (const bool with_fixed : {false, true}) above = choose(unit_count, units, kinds, with_fixed, leads, above);
     if (leads) leading_colours_ = above;
   }
-  if (kinds.empty()) leading_colours_ = 0;
   group(kinds);
 }
 
@@ -52,7 +51,7 @@ std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::u
     const auto i = static_cast<std::uint32_t>(item);
     const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count),
                         b = std::min(units[2 * std::size_t{i} + 1], unit_count);
-    if ((a == unit_count || b == unit_count) != with_fixed || (!kinds.empty() && (kinds[i] > 0) != leads)) continue;
+    if ((a == unit_count || b == unit_count) != with_fixed || (!kinds.empty() && (kinds[i] >= first_leading) != leads)) continue;
     const std::uint64_t free = ~(taken[a] | taken[b]), lowest = free & (0 - free);
     taken[a] |= lowest;
     taken[b] |= lowest;
@@ -85,9 +84,9 @@ void Colouring::group(std::span<const std::uint16_t> kinds) {
     for (std::uint32_t i = 0; i < colour_of_.size(); ++i) place(i);
     return;
   }
-  std::uint32_t starts[path_kinds + 1] = {};  // of each kind in by_kind_: a counting sort
+  std::uint32_t starts[most_kinds + 1] = {};  // of each kind in by_kind_: a counting sort
   for (const std::uint16_t kind : kinds) ++starts[kind + 1];
-  for (std::uint32_t k = 0; k < path_kinds; ++k) starts[k + 1] += starts[k];
+  for (std::uint32_t k = 0; k < most_kinds; ++k) starts[k + 1] += starts[k];
   by_kind_.resize(kinds.size());
   for (std::uint32_t i = 0; i < kinds.size(); ++i) by_kind_[starts[kinds[i]]++] = i;
   for (const std::uint32_t i : by_kind_) place(i);

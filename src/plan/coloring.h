@@ -38,10 +38,12 @@ class Colouring {
  public:
   /// A unit that nothing moves: the ground, fixed and kinematic bodies. It conflicts with nothing.
   static constexpr std::uint32_t fixed_unit = 0xffffffffu;
+  static constexpr std::uint32_t first_leading = 3, most_kinds = first_leading + 512;
 
   /// Constraint i acts on units[2i] and units[2i + 1], each below `unit_count` or `fixed_unit`. Lower
-  /// priorities choose first; of equal ones the constraint with the lower index. `kinds`: above 0 where a constraint
-  /// belongs to the first group of colours; those of a kind stand together within a colour. Empty where there is one group.
+  /// priorities choose first; of equal ones the constraint with the lower index. `kinds`: from `first_leading` on where a
+  /// constraint belongs to the first group of colours; those of a kind stand together within a colour, in ascending order.
+  /// Empty where there is one group of one kind.
   /// The first 64 colours of either kind are greedy exactly. What finds none of them free goes on above: it takes the colour
   /// after the last one above 63 on either unit. Only a unit with more than 64 constraints comes to that.
   void build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,

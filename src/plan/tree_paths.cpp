@@ -5,6 +5,8 @@
 #include <cassert>
 #include <numeric>
 
+#include "plan/coloring.h"
+
 namespace pcphys {
 
 void TreeNodes::build(const Forest& forest, std::span<const double> masses, std::span<const std::uint32_t> closings) {
@@ -80,7 +82,7 @@ std::uint16_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b
   const auto steps = [&](std::uint32_t node) { return node == 0 ? 0 : std::min(nodes.level(node) + 1, most); };
   const bool within = nodes.unit(a) == nodes.unit(b);
   const std::uint32_t length = steps(node_a) * (most + 1) + steps(node_b);
-  return std::uint16_t((idle * 4 + turns * 2 + within) * (most + 1) * (most + 1) + length);
+  return std::uint16_t(Colouring::first_leading + (idle * 4 + turns * 2 + within) * (most + 1) * (most + 1) + length);
 }
 
 std::uint32_t pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,

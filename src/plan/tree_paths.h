@@ -43,8 +43,7 @@ class TreeNodes {
 };
 
 /// Contacts or joints of one kind have ways of about one length, and do about the same work: `turns`, a contact of more than
-/// one point; `idle`, one that will probably be left alone. 0 where neither body has a node; below `path_kinds`.
-inline constexpr std::uint32_t path_kinds = 512;
+/// one point; `idle`, one that will probably be left alone. 0 where neither body has a node.
 std::uint16_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b, bool turns, bool idle);
 
 /// The lists `contact_paths` and `joint_paths` of tree_path.inl for the first `blocks` blocks of slots; how many slots of

@@ -228,7 +228,7 @@ struct Stepper::Inside {
   void walk_in_debug(WorldState& s) const;
 
   void update_contacts(const WorldState& s) {
-    schedule.update_contacts(s);
+    schedule.update_contacts(s, detector.standings());
     octaves.update_contacts(s, schedule.trees.nodes(), schedule.uneven);
     fourth.forget_contacts();
   }

@@ -9,27 +9,28 @@ namespace pcphys {
 
 namespace {
 
-/// By contact row, what its work will be like. It orders contacts within a colour, and changes no result.
-template <class Scalar> void foresee(const WorldState& state, std::vector<ContactWork>& works) {
+/// By contact row.
+template <class Scalar>
+void foresee(const WorldState& state, std::span<const Standing> standings, std::vector<ContactWork>& works) {
   const std::uint32_t reals = schema(Buffer::contact).reals;
   const Scalar* contact = state.tables.data<Scalar>(Buffer::contact);
   works.resize(state.tables.rows(Table::contact));
-  for (ContactWork& work : works) {
+  for (std::size_t row = 0; row < works.size(); row++) {
     const auto points = std::uint32_t(contact[3]);
     bool idle = true;
     for (std::uint32_t i = 0; i < points; i++) idle &= contact[20 + i] == 0 && contact[7 + 4 * i] > 0;
-    work = {points > 1, idle};
+    const Standing c = standings.empty() ? Standing() : standings[row];
+    works[row] = {points > 1, idle, std::uint16_t(points > 0 ? 0 : c.soon ? 1 : 2)};
     contact += reals;
   }
 }
 
 }  // namespace
 
-void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
-                           const TreeNodes& trees) {
-  works_.clear();
-  if (trees.rows() > 1)
-    state.tables.precision() == Precision::f32 ? foresee<float>(state, works_) : foresee<double>(state, works_);
+void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
+                           std::span<const Standing> standings, std::uint32_t kind, const TreeNodes& trees) {
+  if (ends.size() > 1)
+    state.tables.precision() == Precision::f32 ? foresee<float>(state, standings, works_) : foresee<double>(state, standings, works_);
   rows_.clear();
   for (std::uint32_t row = 1; row < ends.size(); row++)
     if (state.sleepers == 0 || !(state.asleep(ends[row][0]) || state.asleep(ends[row][1]))) rows_.push_back(row);
@@ -63,10 +64,11 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
       ends_.push_back(ends[row][side]);
     }
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
-    if (!some_trees) continue;
-    const bool within_trees = alone.empty() || !alone[row];
     const ContactWork work = works_.empty() ? ContactWork{} : works_[row];
-    kinds_.push_back(within_trees ? path_kind(trees, ends[row][0], ends[row][1], work.turns, work.idle) : std::uint16_t{0});
+    const bool within_trees = some_trees && (alone.empty() || !alone[row]);
+    const std::uint16_t path = within_trees ? path_kind(trees, ends[row][0], ends[row][1], work.turns, work.idle) : std::uint16_t{0};
+    kinds_.push_back(path > 0 ? path : work.later);
+    if (!some_trees) continue;
     beside_trees_ += trees.is_large(ends[row][0]) || trees.is_large(ends[row][1]);
   }
   colouring_.build(std::uint32_t(state.bodies.size()), units_, priorities_, kinds_);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "collision/standing.h"
 #include "pcphys/step.h"
 #include "plan/coloring.h"
 #include "plan/forest.h"
@@ -19,9 +20,10 @@
 
 namespace pcphys {
 
-/// See path_kind.
+/// What a contact's work will be like. It orders contacts within a colour, and changes no result.
 struct ContactWork {
-  bool turns = false, idle = false;
+  bool turns = false, idle = false;  // see path_kind
+  std::uint16_t later = 0;           // of one in no tree: 1 where its shapes will come together, 2 where they are apart for good
 };
 
 /// Constraints of one domain, grouped into colours: two of one colour share no body that moves.
@@ -30,8 +32,8 @@ class ColouredSlots {
   /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ. Of all
   /// rows but 0, or of those in `rows`.
   /// Constraints with bodies of `trees` come first, and whole trees are what answers them; but not those that are set in `alone`.
-  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
-              const TreeNodes& trees);
+  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
+              std::span<const Standing> standings, std::uint32_t kind, const TreeNodes& trees);
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::span<const std::uint32_t> rows,
               std::uint32_t kind, const TreeNodes& trees, std::span<const char> alone);
   /// Which octave each body is of, by row; the span lasts until the next call.
@@ -86,7 +88,7 @@ class ColouredSlots {
   std::uint64_t serial_ = 0, structure_ = 0, rest_ = 0;  // of the world that they are of
   std::vector<std::uint32_t> units_, priorities_, ends_, rows_, paths_;
   std::vector<std::uint16_t> kinds_;
-  std::vector<ContactWork> works_;  // by row, of contacts where there are trees
+  std::vector<ContactWork> works_;  // by row, of contacts
   const TreeNodes* trees_ = nullptr;
   OctaveOf of_bodies_;
   std::vector<std::uint8_t> octaves_;  // of the constraints, where there are several
@@ -185,9 +187,9 @@ class Schedule {
  public:
   /// Follows a change of the world's objects.
   void update_structure(const WorldState& state);
-  void update_contacts(const WorldState& state) {
+  void update_contacts(const WorldState& state, std::span<const Standing> standings = {}) {
     changes_++;
-    contacts.colour(state, state.contacts.ends, 1, trees.nodes());
+    contacts.colour(state, state.contacts.ends, standings, 1, trees.nodes());
   }
   /// Sorts everything that moves by octave; `octaves` by body row, empty: all of octave 0. After each update_structure.
   void group(std::span<const std::uint8_t> octaves);
