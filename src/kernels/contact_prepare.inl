@@ -142,6 +142,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real k0 = pc_select(over, zero, w0); Real k1 = pc_select(over, zero, w1); Real k2 = pc_select(over, zero, w2); Real k3 = pc_select(over, zero, w3);
   precise Real l0 = pc_select(of_step, told_v.x, h0) * k0; precise Real l1 = pc_select(of_step, told_v.y, h1) * k1; precise Real l2 = pc_select(of_step, told_v.z, h2) * k2; precise Real l3 = pc_select(of_step, told_s, h3) * k3;
   pc_st_pushes(PC_PASS m, all, 0u, l0); pc_st_pushes(PC_PASS m, all, 1u, l1); pc_st_pushes(PC_PASS m, all, 2u, l2); pc_st_pushes(PC_PASS m, all, 3u, l3);
+  pc_st_pushes(PC_PASS m, all, IMPULSE_LAST, l0); pc_st_pushes(PC_PASS m, all, IMPULSE_LAST + 1u, l1); pc_st_pushes(PC_PASS m, all, IMPULSE_LAST + 2u, l2); pc_st_pushes(PC_PASS m, all, IMPULSE_LAST + 3u, l3);
 #ifndef PC_FRICTIONLESS
   Quad drag = PC_GATHER(contact, record, 6u); Real old1 = PC_LD(contact_impulses, m, IMPULSE_T); Real old2 = PC_LD(contact_impulses, m, IMPULSE_T + 1u); Real old_twist = PC_LD(contact_impulses, m, IMPULSE_T + 2u);
   precise Vec3 held = old_t1 * old1 + old_t2 * old2; precise Vec3 dragged = drag.v * ratio; precise Real twisted = drag.s * ratio;

@@ -39,6 +39,7 @@ const uint IMPULSES = 7u;
 const uint IMPULSE_T = 4u;
 const uint IMPULSE_BEFORE = 7u;
 const uint IMPULSE_LARGEST = 8u;
+const uint IMPULSE_LAST = 12u;  // normal impulses as they lasted in the sub-step before
 
 // Whether they push at all: those of shapes that are apart, or that an impact has to itself, do not.
 PC_FN Mask pc_pushes(PC_IO Slot m) { return PC_LD(contact_rows, m, ROW_K) > PC_REAL(0.0); }

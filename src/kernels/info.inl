@@ -12,6 +12,7 @@ PC_INFO_FIELD(begins, "1 in the first sub-step of a step: rows of contacts are a
 PC_INFO_FIELD(impulse_ratio, "h / h_before: remembered impulses scale with the sub-step")
 PC_INFO_FIELD(soft_rate, "share of an overlap, or of a joint's error, removed per second [1/s]; 0 in the relax phase")
 PC_INFO_FIELD(soft_mass_scale, "of the rigid impulse that a soft row has; 1 in the relax phase")
+PC_INFO_FIELD(soft_trend, "share of its last change by which an impulse goes on, so that a soft row is no stiffer at rest than in motion")
 PC_INFO_FIELD(soft_impulse_scale, "share of its impulse that a soft row lets go of; 0 in the relax phase")
 PC_INFO_FIELD(contact_preload, "where one body stands, or hangs on joints, of what the load goes beyond this change of velocity [m/s]")
 PC_INFO_FIELD(settled_load, "rounds where a load grows by this factor, or friction changes by half of its limit")

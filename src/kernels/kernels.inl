@@ -17,7 +17,7 @@
 #ifdef PC_ROWS
 PC_ROWS(contact, contact_rows, 64)
 PC_ROWS(contact, frictionless_rows, 48)
-PC_ROWS(contact, contact_impulses, 12)
+PC_ROWS(contact, contact_impulses, 16)
 PC_ROWS(contact, rolling_impulses, 4)
 PC_ROWS(contact, contact_reach, 12)
 PC_ROWS(joint, joint_rows, 96)

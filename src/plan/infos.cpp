@@ -42,6 +42,7 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.soft_rate = Scalar(rows.rate);
   biased.soft_mass_scale = Scalar(rows.mass_scale);
   biased.soft_impulse_scale = Scalar(rows.impulse_scale);
+  biased.soft_trend = Scalar(std::max(0.0, 1 - 2 * rows.impulse_scale / (rows.rate * h)));
   biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
   biased.settled_load = Scalar(constants::settled_load);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
