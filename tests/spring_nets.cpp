@@ -3,6 +3,7 @@
 // 200 such draws energy rose by more than a twentieth, up to 1e20 times.
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "support_world.h"
@@ -12,6 +13,15 @@ using namespace worldtest;
 namespace {
 
 double energy(const World& world) { return world.kinetic_energy() + world.potential_energy() + world.spring_energy(); }
+
+/// A number between two, and a vector of up to so much along each axis.
+auto draws_of(std::mt19937& dice) {
+  const auto between = [&dice](double low, double high) { return low + (high - low) * (double(dice()) / 4294967296.0); };
+  const auto vector = [between](double most) {
+    return Vec3{between(-most, most), between(-most, most), between(-most, most)};
+  };
+  return std::pair(between, vector);
+}
 
 /// How stiff springs are, and how far masses and arms go.
 struct Range {
@@ -23,8 +33,7 @@ struct Range {
 /// Six bodies and six undamped springs, which are not at rest.
 void draw(World& world, unsigned seed, const Range& range = {}) {
   std::mt19937 dice(seed);
-  const auto between = [&](double low, double high) { return low + (high - low) * (double(dice()) / 4294967296.0); };
-  const auto vector = [&](double most) { return Vec3{between(-most, most), between(-most, most), between(-most, most)}; };
+  const auto [between, vector] = draws_of(dice);
   std::vector<BodyId> bodies;
   for (int i = 0; i < 6; i++) {
     BodyDef def = ball(vector(2), 0.2);
@@ -49,8 +58,7 @@ void draw(World& world, unsigned seed, const Range& range = {}) {
 /// Two to five bodies that turn as one by up to 30 rad/s, and springs between any two of them, at rest.
 void turn_as_one(World& world, unsigned seed) {
   std::mt19937 dice(seed * 7 + 1);
-  const auto between = [&](double low, double high) { return low + (high - low) * (double(dice()) / 4294967296.0); };
-  const auto vector = [&](double most) { return Vec3{between(-most, most), between(-most, most), between(-most, most)}; };
+  const auto [between, vector] = draws_of(dice);
   const double fastest = std::pow(10, between(-1, 1.5)), least = between(5, 9);
   const Vec3 axis = vector(1), spin = axis * (fastest / length(axis)), velocity = vector(10);
   std::vector<BodyId> bodies;

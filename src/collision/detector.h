@@ -209,7 +209,7 @@ class Detector {
     std::uint32_t row;
     double gap, comes[2];
   };
-  bool comes_together(const Standing& standing, const Vec3& normal) const;
+  double centre_comes(const Standing& standing, int side, const Vec3& normal) const;
   Distant distant(std::uint32_t row, const Standing& standing, const Vec3& normal) const;
   void drop_distant(ContactColumns& contacts, AlignedBytes& table, std::size_t row_bytes);
   /// The shapes of a pair in the order of the contact's bodies.

@@ -94,8 +94,7 @@ void Detector::find_beside_struck(const Listed& contacts, std::span<const std::u
   for (const std::uint32_t body : marked_)
     for (std::uint32_t i = first_of_[body]; i < first_of_[body + 1]; i++) beside_struck_.push_back(contacts_of_[i]);
   std::ranges::sort(beside_struck_, {}, [&](std::uint32_t at) { return contacts.rows[at]; });
-  const auto twice = std::ranges::unique(beside_struck_);
-  beside_struck_.erase(twice.begin(), twice.end());
+  beside_struck_.erase(std::unique(beside_struck_.begin(), beside_struck_.end()), beside_struck_.end());
 }
 
 /// Contacts that do not act, of bodies that were struck since: as their velocities are now, from that instant on.

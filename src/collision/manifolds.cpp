@@ -110,7 +110,8 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   if (c.gap > most) c.gap = std::min(c.gap, double(support_gap(scratch.shapes[view.shapes[0]], view.there, m.normal)));
   c.touches = c.acts = c.gap <= most;
   for (std::uint32_t i = 0; i < m.count && c.touches; i++) c.together |= std::uint8_t(1u << i);
-  c.soon = !c.touches && comes_together(c, to_vec3(m.normal));
+  const Vec3 normal = to_vec3(m.normal);
+  c.soon = !c.touches && c.gap < centre_comes(c, 0, normal) + centre_comes(c, 1, normal);
   if (c.touches)
     to_light_side(m, share_of<Scalar>(s.tables, touch.rows[0], touch.rows[1]));
   else
@@ -118,12 +119,11 @@ Standing Detector::stand(const WorldState& s, const Scratch<Scalar>& scratch, st
   return c;
 }
 
-/// Whether two that are apart come together within the step, as their centres move.
-bool Detector::comes_together(const Standing& c, const Vec3& normal) const {
-  const auto along = [&](const Twist& t) {
-    return normal.x * double(t.v[0]) + normal.y * double(t.v[1]) + normal.z * double(t.v[2]);
-  };
-  return c.gap < (along(twists_[c.rows[0]]) - along(twists_[c.rows[1]])) * dt_ + fall_;
+/// How far a body of a contact comes towards the other in the step, as its centre moves [m].
+double Detector::centre_comes(const Standing& c, int side, const Vec3& normal) const {
+  const Twist& t = twists_[c.rows[side]];
+  const double along = normal.x * double(t.v[0]) + normal.y * double(t.v[1]) + normal.z * double(t.v[2]);
+  return (side == 0 ? along : -along) * dt_ + (proxies_[c.shapes[side]].responds ? fall_ : 0);
 }
 
 /// Shapes that are further apart than they are thick: how far each comes towards the other by its own motion, unless
@@ -132,10 +132,9 @@ Detector::Distant Detector::distant(std::uint32_t row, const Standing& c, const 
   const auto comes = [&](int side) {
     const Proxy& p = proxies_[c.shapes[side]];
     const Twist& t = twists_[c.rows[side]];
-    const double along = normal.x * double(t.v[0]) + normal.y * double(t.v[1]) + normal.z * double(t.v[2]);
     const double turns = std::min(double(t.across) * dt_, double(largest_turn)) * double(p.lever_across) +
                          std::min(double(t.turn) * dt_, double(largest_turn)) * double(p.lever_any);
-    return (side == 0 ? along : -along) * dt_ + turns + (p.responds ? fall_ : 0);
+    return centre_comes(c, side, normal) + turns;
   };
   return {row, c.gap - margin(c.shapes[0], c.shapes[1]), {comes(0), comes(1)}};
 }

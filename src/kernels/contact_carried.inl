@@ -5,7 +5,7 @@ PC_FN Mask pc_turns_alone(BodyState b) { return pc_and(b.response < PC_REAL(0.5)
 // Mean velocity of a point at `arm` over the sub-step, less that of now.
 PC_FN Vec3 pc_chord(PC_IO BodyState b, Vec3 arm) {
   Vec3 w = pc_angular_velocity(b); precise Real way = PC_REAL(1.0) - PC_INFO(load_ahead) * PC_REAL(2.0); precise Real time = PC_INFO(h) * way; Turn turn = pc_turn(pc_scale(w, time));
-  precise Vec3 s = pc_cross(turn.q.v, arm) * PC_REAL(2.0); precise Vec3 moved = s * turn.q.w + pc_cross(turn.q.v, s);
+  Vec3 moved = pc_swing(turn.q, arm);
   precise Vec3 off = moved * PC_INFO(inverse_h) * way - pc_cross(w, arm); return off;
 }
 PC_FN_LARGE Twist pc_by_chords(PC_IO Twist v, BodyState a, BodyState b, Arms arms, Vec3 t1, Vec3 t2) {

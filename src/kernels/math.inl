@@ -135,6 +135,10 @@ PC_FN Vec3 pc_rotate(Quaternion q, Vec3 v) {
   Vec3 c = pc_cross(q.v, v); precise Vec3 t = c * PC_REAL(2.0); Vec3 d = pc_cross(q.v, t);
   precise Vec3 r = v + t * q.w + d; return r;
 }
+// A vector rotated, less the vector: with the digits that a difference of the two would lose.
+PC_FN Vec3 pc_swing(Quaternion q, Vec3 v) {
+  Vec3 c = pc_cross(q.v, v); precise Vec3 t = c * PC_REAL(2.0); precise Vec3 r = t * q.w + pc_cross(q.v, t); return r;
+}
 PC_FN Quaternion pc_conjugate(Quaternion q) { return pc_quaternion(pc_negate(q.v), q.w); }
 PC_FN Quaternion pc_quaternion_mul(Quaternion a, Quaternion b) {
   Vec3 c = pc_cross(a.v, b.v); precise Vec3 v = b.v * a.w + a.v * b.w + c;

@@ -112,11 +112,6 @@ PC_FN Vec3 pc_rigid_spin(Rigid r, Quaternion turn) {
 PC_FN Vec3 pc_rigid_momentum(Sym3 moments, Quaternion turn, Vec3 spin) {
   return pc_rotate(turn, pc_sym_mul(moments, pc_rotate(pc_conjugate(turn), spin)));
 }
-// How far it takes the end of an arm.
-PC_FN Vec3 pc_rigid_way(Quaternion turn, Vec3 arm) {
-  Vec3 half_way = pc_cross(turn.v, pc_madd(pc_cross(turn.v, arm), arm, turn.w));
-  return pc_scale(half_way, PC_REAL(2.0));
-}
 // What the net is given to move so. It moves along the chords of its turn, so that its springs stay as long as they are (along
 // tangents they grow by the square of it), and when it has moved it is given the velocities that it has then. Each body turns
 // freely, which is as the whole turns with the inertia that it has half way.
@@ -136,7 +131,7 @@ PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
     Real heavy = pc_inverse_or_zero(PC_LD(net_rows, b, NET_MASS));
     Vec3 arm = pc_sub(pc_net_place(PC_PASS m, n, k), r.centre);
     Sym3 moments = pc_net_moments(PC_PASS row);
-    Vec3 way = pc_rigid_way(turn, arm);
+    Vec3 way = pc_swing_closely(turn, arm);
     Vec3 chord = pc_madd(r.v, way, PC_INFO(inverse_h));
     Vec3 l = pc_rigid_momentum(moments, half_turn, mean);
     Vec3 v_then = pc_add(r.v, pc_cross(spin, pc_add(arm, way)));
@@ -212,8 +207,8 @@ PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
     if (i == 0u) pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
     uint left = rounds - 1u - i;
     Mask goes = pc_and(share > PC_REAL(0.0), PC_IS(left));
-    Mask others = PC_IS(left - 1u);  // the last that is looked at is the rigid motion
-    precise Real part = pc_select(others, pc_quarter(share), PC_REAL(0.0)) * fresh;
+    Real quarter = pc_select(PC_IS(left - 1u), pc_quarter(share), PC_REAL(0.0));  // the last look is at the rigid motion
+    precise Real part = quarter * fresh;
     share = pc_select(goes, part, kept);
     pc_net_blend(PC_PASS m, n, share, makes);
     precise Real rigid = PC_REAL(1.0) - share;

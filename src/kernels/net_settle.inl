@@ -130,12 +130,12 @@ PC_FN void pc_settle_store(PC_IO Slot b, Index row, Real share, Real blow) {
   precise Vec3 all_turn = turn + paid_turn;
   // the velocity that is read lacks half of what the sub-step changed: what came after it counts as if it had come
   // before, and what the rigid motion gave then is read whole
-  Vec3 whole = pc_ld3_net(PC_PASS b, NET_SOLVED);
-  Vec3 whole_turn = pc_ld3_net(PC_PASS b, NET_SOLVED + 3u);
+  Vec3 rigid = pc_ld3_net(PC_PASS b, NET_AFTER);
+  Vec3 rigid_turn = pc_ld3_net(PC_PASS b, NET_AFTER + 3u);
   Vec3 solved = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED), blow);
   Vec3 solved_turn = pc_scale(pc_ld3_net(PC_PASS b, NET_PUSHED + 3u), blow);
-  precise Vec3 shift = (push * PC_REAL(2.0) - whole + paid) + solved;
-  precise Vec3 shift_turn = (turn * PC_REAL(2.0) - whole_turn + paid_turn) + solved_turn;
+  precise Vec3 shift = (push * PC_REAL(2.0) - rigid + paid) + solved;
+  precise Vec3 shift_turn = (turn * PC_REAL(2.0) - rigid_turn + paid_turn) + solved_turn;
   linear.v = pc_madd(linear.v, all, linear.s);
   before.v = pc_madd(before.v, shift, linear.s);
   Vec3 l = pc_add(angular.v, all_turn);
@@ -163,8 +163,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_net_begin_after(PC_PASS m, n, NET_PUSH, zero);
   for (uint k = 0u; k < n.bodies; k++) {
     Slot b = pc_net_body(PC_PASS m, n, k);
-    pc_st3_net(PC_PASS b, NET_SOLVED, pc_ld3_net(PC_PASS b, NET_PUSH));
-    pc_st3_net(PC_PASS b, NET_SOLVED + 3u, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+    pc_st3_net(PC_PASS b, NET_AFTER, pc_ld3_net(PC_PASS b, NET_PUSH));
+    pc_st3_net(PC_PASS b, NET_AFTER + 3u, pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
   }
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);

@@ -1,6 +1,5 @@
 // Where the sub-step will take the bodies of a tree, and what that leaves for its pins to undo.
 #include "free_rotation.inl"
-#include "tree_swing.inl"
 #include "roll_axis.inl"
 
 // How much of the sub-step a body is seen ahead: until it has turned by `most` [rad]. Rates of what comes later are those of until then.
@@ -8,10 +7,15 @@ PC_FN Real pc_seen_ahead(PC_IO Vec3 spin, Real most) {
   precise Real turn = pc_length(spin) * PC_INFO(h);
   return pc_share_within(turn, most);
 }
+// The turn of a node in the sub-step.
+PC_FN Quaternion pc_turn_of(PC_IO Slot n) {
+  precise Real w = PC_LD(tree_rows, n, TREE_TURN + 3u) + PC_REAL(1.0);
+  return pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_TURN), w);
+}
 // How fast an arm of a node moves until then, as a mean.
 PC_FN Vec3 pc_swing_rate(PC_IO Slot n, Vec3 arm, Real most) {
   precise Real rate = PC_INFO(inverse_h) * pc_inverse_or_zero(pc_seen_ahead(PC_PASS pc_ld3_tree(PC_PASS n, TREE_X + 3u), most));
-  return pc_scale(pc_swing(PC_PASS n, arm), rate);
+  return pc_scale(pc_swing(pc_turn_of(PC_PASS n), arm), rate);
 }
 
 // An arm halfway through the sub-step.
