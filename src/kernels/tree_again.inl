@@ -54,7 +54,8 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
     lacks = pc_select(pc_is_crossed(pc_crosses(PC_PASS n, i, now)), PC_REAL(1.0), lacks);
     if (PC_ANY(pc_throws_back(PC_PASS n))) {  // lint: allow (none otherwise)
       precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * -PC_LACKS_REBOUND;
-      lacks = pc_select(pc_lacks_rebound(PC_PASS n, i, now) < much, PC_REAL(1.0), lacks);
+      Mask much_lacks = pc_and(pc_throws_back(PC_PASS n), pc_lacks_rebound(PC_PASS n, i, now) < much);
+      lacks = pc_select(much_lacks, PC_REAL(1.0), lacks);
     }
   }
   return lacks;

@@ -48,7 +48,8 @@ PC_FN void pc_note_free(PC_IO Index i, Mask moves, Vec3 impulse, Vec3 torque) {
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  if (!PC_ANY(PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0))) return;  // lint: allow (without mass they do nothing)
+  Mask acts = PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0);
+  if (!PC_ANY(acts)) return;  // lint: allow (without mass they do nothing)
   Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY));
   Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
@@ -61,7 +62,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Mask tree_b = pc_in_tree(PC_PASS w, m, 1u);
   Mask free_a = pc_free_mass(tree_a, now.a) > none;
   Mask free_b = pc_free_mass(tree_b, now.b) > none;
-  uint turning = PC_ANY(PC_LD(contact_rows, m, ROW_RADIUS) > none) ? pc_reach_all(w) : 0u;
+  Mask turns = pc_and(acts, PC_LD(contact_rows, m, ROW_RADIUS) > none);  // rows of couples are set where one acts alone
+  uint turning = PC_ANY(turns) ? pc_reach_all(w) : 0u;
   Twist v = pc_push_twist(PC_PASS ia, ib, free_a, free_b, now, n, t1, t2);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y;
