@@ -155,7 +155,7 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   for (int i = 4; i < 8; i++) at[i] = Scalar(fresh ? 0 : either(mood_.impulse / 4));
   at[8] = Scalar(rarely() ? 0 : real(0, 1.2));
   at[9] = Scalar(at[8] * Scalar(real(0.5, 1)));
-  at[10] = Scalar(rarely() ? 0 : real(0, 1));
+  at[10] = Scalar(rarely() ? 0 : real(0.5, 1));
   at[11] = Scalar(rarely() ? real(0, 1.0 / 240) : -double(below(2)));  // meets within the sub-step, rests, hangs on joints
   Scalar* const contact = state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals;
   for (int i = 0; i < 3; i++) contact[place::apart + i] = Scalar(either(1));  // from one body to the other

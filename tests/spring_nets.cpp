@@ -3,9 +3,9 @@
 // 200 such draws energy rose by more than a twentieth, up to 1e20 times.
 #include <cmath>
 #include <random>
-#include <utility>
 #include <vector>
 
+#include "support_draws.h"
 #include "support_world.h"
 
 using namespace worldtest;
@@ -13,15 +13,6 @@ using namespace worldtest;
 namespace {
 
 double energy(const World& world) { return world.kinetic_energy() + world.potential_energy() + world.spring_energy(); }
-
-/// A number between two, and a vector of up to so much along each axis.
-auto draws_of(std::mt19937& dice) {
-  const auto between = [&dice](double low, double high) { return low + (high - low) * (double(dice()) / 4294967296.0); };
-  const auto vector = [between](double most) {
-    return Vec3{between(-most, most), between(-most, most), between(-most, most)};
-  };
-  return std::pair(between, vector);
-}
 
 /// How stiff springs are, and how far masses and arms go.
 struct Range {

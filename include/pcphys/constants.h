@@ -54,9 +54,9 @@ inline constexpr double settled_load = 1.5;
 /// Not for loads below this share of what gravity makes in a sub-step: those are rounding.
 inline constexpr double least_load = 0.01;
 /// What moves by more than this share of its size in a sub-step, or turns by more than this [rad], is no longer where it was
-/// seen: bodies that both answer and pass each other so, or turn into each other, have no contact but an impact, of which
-/// nothing lasts; rows of what has turned so are made anew; and where Newton's method for a tree more than doubles the energy
-/// of the motion within it, as after a blow or in a whip that sub-steps are too long for, bodies are seen ahead so far alone.
+/// seen: bodies that answer and pass each other so, or turn into each other, have no contact but an impact, of which nothing
+/// lasts; rows of what has turned so are made anew; no spring on a tree turns a body so far; and where Newton's method for a
+/// tree more than doubles the energy of the motion within it, as after a blow or in a whip, bodies are seen ahead so far alone.
 inline constexpr double stale_share = 0.1;
 /// What contacts remember makes a body faster by no more than this squared over how much its velocity changed in the
 /// sub-step before [m/s]: a blow is no load.

@@ -31,9 +31,28 @@ PC_FN Vec3 pc_drive_steps(PC_IO Slot m, Vec3 w, Sym3 both) {
   Real next = pc_select(driven, pc_clamp(wanted, -most, most), total); precise Real change = next - total;
   PC_ST(joint_rows, m, JOINT_MOTOR_TOTAL, next); return pc_madd(couple, axis, change);
 }
+// What a spring gives beyond stopping its ends: it turns no body by more than `stale_share` in the sub-step. Where bodies turn
+// further its points leave its line and it stays as long as it is: what it gave would be made of nothing. `turns_a`, `turns_b`:
+// angular velocities that a unit impulse along it makes.
+PC_FN Real pc_spring_most(PC_IO Vec3 turns_a, Vec3 turns_b) {
+  Real turns = pc_sqrt(pc_max(pc_dot(turns_a, turns_a), pc_dot(turns_b, turns_b)));
+  precise Real most = PC_INFO(inverse_h) * PC_INFO(stale_share) * pc_inverse_or_zero(turns);
+  return most;
+}
 // Change of a spring's impulse on b at the relative velocity of its ends; what it was points along the line of the last sub-step.
+// What brings them to rest takes energy, whatever it is.
 PC_FN Vec3 pc_spring_change(PC_IO Slot m, Vec3 rate, Vec3 impulse) {
-  Vec3 axis = pc_ld3_joint(PC_PASS m, JOINT_DRIVE_AXIS); Real total = pc_dot(axis, impulse);
-  precise Real next = total + pc_soft_change(PC_PASS m, 0u, pc_dot(axis, rate), total); return pc_sub(pc_scale(axis, next), impulse);
+  Vec3 axis = pc_ld3_joint(PC_PASS m, JOINT_DRIVE_AXIS);
+  Real zero = PC_REAL(0.0);
+  Real total = pc_dot(axis, impulse);
+  Real speed = pc_dot(axis, rate);
+  Real most = PC_LD(joint_rows, m, JOINT_MOTOR_MOST);
+  precise Real wanted = total + pc_soft_change(PC_PASS m, 0u, speed, total);
+  precise Real stops = total - speed * pc_inverse_or_zero(PC_LD(joint_rows, m, JOINT_DRIVE_ANSWER));
+  precise Real least = stops - most;
+  precise Real largest = stops + most;
+  Real within = pc_clamp(wanted, pc_min(zero, least), pc_max(zero, largest));
+  Real next = pc_select(most > zero, within, wanted);
+  return pc_sub(pc_scale(axis, next), impulse);
 }
 PC_FN Mask pc_is_spring(PC_IO Slot m) { return PC_LD(joint_rows, m, JOINT_DRIVE) > PC_REAL(1.0); }

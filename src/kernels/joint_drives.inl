@@ -41,7 +41,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st3_drive(PC_PASS m, JOINT_DRIVE_AXIS, x); pc_st3_drive(PC_PASS m, JOINT_DRIVE_AXIS + 3u, f.y); pc_st3_drive(PC_PASS m, JOINT_DRIVE_AXIS + 6u, f.z);
   pc_st3_drive(PC_PASS m, JOINT_DRIVE_AWAY, away); pc_st3_drive(PC_PASS m, JOINT_DRIVE_LAST, last);
   precise Real half_kick = PC_INFO(h) * PC_REAL(0.5); Real kick = pc_select(pc_or(a.fresh, b.fresh), half_kick, PC_INFO(h));
-  Mask any = pc_or(is_driven, is_spring); precise Real most = pc_select(is_driven, drive.v.y, zero) * kick;
+  Mask any = pc_or(is_driven, is_spring); precise Real motor_most = pc_select(is_driven, drive.v.y, zero) * kick;
+  Real most = pc_select(is_spring, pc_spring_most(PC_PASS pc_sym_mul(a.inertia, ta), pc_sym_mul(b.inertia, tb)), motor_most);
   PC_ST(joint_rows, m, JOINT_DRIVE_KICK, kick); PC_ST(joint_rows, m, JOINT_DRIVE_STIFFNESS, pc_select(any, drive.v.z, zero)); PC_ST(joint_rows, m, JOINT_DRIVE_DAMPING, pc_select(any, drive.s, zero));
   PC_ST(joint_rows, m, JOINT_MOTOR_SPEED, drive.v.x); PC_ST(joint_rows, m, JOINT_MOTOR_MOST, most); PC_ST(joint_rows, m, JOINT_MOTOR_TOTAL, zero);
   pc_st3_drive(PC_PASS m, JOINT_DRIVE_TOTAL, pc_zero3());

@@ -17,6 +17,9 @@
 PC_FN Real pc_answer_along(PC_IO Slot m, uint i, Sym3 answer) {
   Vec3 axis = pc_ld3_joint(PC_PASS m, JOINT_DRIVE_AXIS + i * 3u); return pc_max(pc_dot(axis, pc_sym_mul(answer, axis)), PC_REAL(0.0));
 }
+
+// The angular velocity that an impulse at the arm makes.
+PC_FN Vec3 pc_spin_by(Sym6 side, Vec3 impulse) { return pc_mat_tmul(side.c, impulse); }
 #endif
 
 // Of a bare body: the sum of its answers at the arm, along three axes.
@@ -49,7 +52,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 arm_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A); Vec3 arm_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B);
-  Sym6 g = pc_sym6_add(pc_side_response(PC_PASS w, m, 0u, ia, arm_a), pc_side_response(PC_PASS w, m, 1u, ib, arm_b));
+  Sym6 side_a = pc_side_response(PC_PASS w, m, 0u, ia, arm_a);
+  Sym6 side_b = pc_side_response(PC_PASS w, m, 1u, ib, arm_b);
+  Sym6 g = pc_sym6_add(side_a, side_b);
   if (w.below_a + w.below_b > 0u) g = pc_take_across(PC_PASS w, m, arm_a, arm_b, g);  // lint: allow (the same for all lanes; where a joint is not within one tree it takes out zeros)
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   precise Real give = (pc_bare_answer(a, arm_a) + pc_bare_answer(b, arm_b)) * PC_INFO(loop_give);
@@ -63,7 +68,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     PC_ST(joint_rows, m, JOINT_MASS + i, pc_select(bare > PC_REAL(0.0), pc_inverse_or_zero(answer), PC_REAL(0.0)));
   }
 #ifdef PC_DRIVES
-  Sym3 along = pc_sym_select(pc_is_spring(PC_PASS m), g.l, g.a);
+  Mask is_spring = pc_is_spring(PC_PASS m);
+  Vec3 line = pc_ld3_joint(PC_PASS m, JOINT_DRIVE_AXIS);
+  Real most = pc_spring_most(PC_PASS pc_spin_by(side_a, line), pc_spin_by(side_b, line));
+  PC_ST(joint_rows, m, JOINT_MOTOR_MOST, pc_select(is_spring, most, PC_LD(joint_rows, m, JOINT_MOTOR_MOST)));
+  Sym3 along = pc_sym_select(is_spring, g.l, g.a);
   pc_drive_coefficients(PC_PASS m, Vec3(pc_answer_along(PC_PASS m, 0u, along), pc_answer_along(PC_PASS m, 1u, along), pc_answer_along(PC_PASS m, 2u, along)));
 #endif
 }

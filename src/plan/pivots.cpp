@@ -53,16 +53,28 @@ bool is_locked_otherwise(const AngleFreedom& f) {
   return is_locked(f.lower.x, f.upper.x) || is_locked(f.lower.y, f.upper.y) || is_locked(f.lower.z, f.upper.z);
 }
 
+/// By row, the bodies that springs between points pull.
+std::vector<bool> sprung_rows(const WorldState& state) {
+  std::vector<bool> sprung(state.bodies.size());
+  for (std::uint32_t row = 1; row < state.joints.size(); row++) {
+    const JointRecord& joint = state.joints[row];
+    if (!joint.spring || !joint.driven()) continue;
+    for (const std::uint32_t body : {joint.body_a, joint.body_b}) sprung[state.body_ids.row(body)] = true;
+  }
+  return sprung;
+}
+
 }  // namespace
 
 std::vector<Pivot> find_pivots(const Forest& forest, const WorldState& state, const SolvedJoints& joints) {
   std::vector<Pivot> pivots;
+  const std::vector<bool> sprung = sprung_rows(state);
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.size() != 2 || !state.stands(tree[0].body) || forest.has_loop(i)) continue;
     const std::uint32_t joint = tree[1].joint;
     const AngleFreedom& freedom = joints.def(state, joint).freedom;
-    if (state.joints[joint].driven() || is_locked_otherwise(freedom)) continue;
+    if (state.joints[joint].driven() || sprung[tree[1].body] || is_locked_otherwise(freedom)) continue;
     pivots.push_back({i, tree[1].body, tree[1].joint, tree[1].flipped, !turns_freely(freedom)});
   }
   return pivots;
