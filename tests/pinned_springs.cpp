@@ -6,14 +6,12 @@
 #include <random>
 #include <vector>
 
-#include "support_draws.h"
+#include "support_springs.h"
 #include "support_world.h"
 
 using namespace worldtest;
 
 namespace {
-
-double energy(const World& world) { return world.kinetic_energy() + world.potential_energy() + world.spring_energy(); }
 
 /// One to four bodies, each pinned to one before it or to the ground, or free, and one to four undamped springs between
 /// them and the ground; half of the springs are near their rest length.

@@ -5,14 +5,12 @@
 #include <random>
 #include <vector>
 
-#include "support_draws.h"
+#include "support_springs.h"
 #include "support_world.h"
 
 using namespace worldtest;
 
 namespace {
-
-double energy(const World& world) { return world.kinetic_energy() + world.potential_energy() + world.spring_energy(); }
 
 /// How stiff springs are, and how far masses and arms go.
 struct Range {

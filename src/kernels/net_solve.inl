@@ -31,11 +31,7 @@ PC_FN void pc_net_foresee(PC_IO Slot b, Index row) {
 // What a spring does across itself is solved for where this share of its bodies' own inertia feels it.
 #define PC_FELT PC_REAL(1e-3)
 
-// How far a turn takes the end of an arm: pc_swing with half its error in momentum.
-PC_FN Vec3 pc_swing_closely(Quaternion turn, Vec3 arm) {
-  Vec3 half_way = pc_cross(turn.v, pc_madd(pc_cross(turn.v, arm), arm, turn.w));
-  return pc_scale(half_way, PC_REAL(2.0));
-}
+// How far the end of an arm goes against its centre.
 PC_FN Vec3 pc_net_swing(PC_IO Slot b, Vec3 arm) {
   return pc_swing_closely(pc_quaternion(pc_ld3_net(PC_PASS b, NET_TURN), PC_LD(net_rows, b, NET_TURN + 3u)), arm);
 }

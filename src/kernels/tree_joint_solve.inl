@@ -23,9 +23,8 @@ PC_FN Vec3 pc_mean_velocity(PC_IO BodyState b, Vec3 v, Vec3 w, Vec3 arm, Vec3 l)
   precise Real half_h = PC_INFO(h) * PC_REAL(0.5);
   Vec3 change = pc_scale(pc_sym_mul(b.inertia, pc_cross(l, w)), b.response);
   Vec3 angle = pc_scale(pc_madd(w, change, half_h), PC_INFO(h)); Turn turn = pc_turn(angle);
-  // R r - r = 2 q x (q x r + w r)
-  Vec3 moved = pc_cross(turn.q.v, pc_madd(pc_cross(turn.q.v, arm), arm, turn.q.w)); precise Real twice = PC_INFO(inverse_h) * PC_REAL(2.0);
-  return pc_select3(pc_dot(angle, angle) < pc_quarter(PC_REAL(1.0)), pc_madd(v, moved, twice), pc_add(v, pc_cross(w, arm)));
+  Vec3 moved = pc_swing_closely(turn.q, arm);
+  return pc_select3(pc_dot(angle, angle) < pc_quarter(PC_REAL(1.0)), pc_madd(v, moved, PC_INFO(inverse_h)), pc_add(v, pc_cross(w, arm)));
 }
 // Velocity that closes a share of the gap, at most joint_push_speed, and with no more energy than the lighter body has at push_speed: near the
 // straight line a loop closes only as bodies turn fast.

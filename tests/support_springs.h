@@ -1,11 +1,15 @@
-// Numbers and vectors drawn at random, the same on every machine.
+// What tests of springs share: the energy of a world with them, and random draws that are the same on every machine.
 #pragma once
 #include <random>
 #include <utility>
 
-#include "pcphys/types.h"
+#include "pcphys/world.h"
 
 namespace worldtest {
+
+inline double energy(const pcphys::World& world) {
+  return world.kinetic_energy() + world.potential_energy() + world.spring_energy();
+}
 
 /// A number between two, and a vector of up to so much along each axis.
 inline auto draws_of(std::mt19937& dice) {
