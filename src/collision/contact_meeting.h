@@ -162,15 +162,15 @@ template <class Scalar> struct Detector::Meeting {
     return std::min(double(support_gap(a, b, m.normal)), double(least_separation(m)));
   }
 
-  /// Whether they come together no faster than by what gravity gives in two sub-steps. What else holds them takes that
-  /// back, which rows that are solved together know and an impact does not. (What bounces does so however slowly it
-  /// comes.)
+  /// Whether they come together, and no faster than by what gravity gives in two sub-steps. What else holds them takes
+  /// that back, which rows that are solved together know and an impact does not. (What bounces does so however slowly it
+  /// comes. Limbs that part rest still: what their tree takes from them it gives back.)
   bool settles(const Manifold<Scalar>& m) const {
     if (c.bounces) return false;
     double closing = 0;
     for (std::uint32_t i = 0; i < m.count; i++)
       closing = std::max(closing, double(passing(ta, tb, m.normal, m.points[i].p, apart).closing));
-    return closing <= 2 * length(s.gravity) * h;
+    return (closing > 0 || c.jointed) && closing <= 2 * length(s.gravity) * h;
   }
 
   /// The points within this of the nearest are those that act. (Shapes may be as near by their supports as they are at no point of the
