@@ -24,10 +24,10 @@ std::string_view name(Stage stage);
 enum class Integrator : std::uint8_t { verlet, seed };
 const char* name(Integrator integrator);
 
-/// Which coefficients a kernel is given: those of the step's start, of the solve, of what undoes
-/// overlaps by poses, of the relax pass, or of the step's end.
-enum class Phase : std::uint8_t { first, biased, push, relax, last };
-inline constexpr unsigned phase_count = 5;
+/// Which coefficients a kernel is given: those of the step's start, of the solve, of contacts
+/// that joints have brought together in it, of what undoes overlaps by poses, of the relax pass, or of the step's end.
+enum class Phase : std::uint8_t { first, biased, sent, push, relax, last };
+inline constexpr unsigned phase_count = 6;
 
 /// Sub-step classes: islands of octave k make 2^k times the sub-steps that the settings ask for (docs/substeps.md).
 inline constexpr unsigned octave_count = 10;

@@ -127,14 +127,12 @@ template <class Scalar> struct Detector::Meeting {
     return shifts > constants::stale_share * thick;
   }
 
-  /// Whether shapes that are apart come no nearer than `near` in the sub-step; `sent`: how far others may send them.
-  bool passes_by(double sent, double near) const {
-    return !c.touches && c.gap - moved() > std::max(way(), sent) + near;
-  }
+  /// Whether shapes that are apart come no nearer than `near` in the sub-step.
+  bool passes_by(double near) const { return !c.touches && c.gap - moved() > way() + near; }
 
   void stand_aside() {
     if (!c.acts) return;
-    c.acts = c.struck = c.sent = false;
+    c.acts = c.struck = false;
     out[place::impact_time] = c.jointed ? -1 : 0;
     out[place::found_anew] = 2;
     std::fill_n(out + place::from_point, 4, Scalar(0));
@@ -162,14 +160,22 @@ template <class Scalar> struct Detector::Meeting {
     return std::min(double(support_gap(a, b, m.normal)), double(least_separation(m)));
   }
 
+  /// How fast they come together at the fastest of its points [m/s].
+  double closing(const Manifold<Scalar>& m) const {
+    double fastest = 0;
+    for (std::uint32_t i = 0; i < m.count; i++)
+      fastest = std::max(fastest, double(passing(ta, tb, m.normal, m.points[i].p, apart).closing));
+    return fastest;
+  }
+  /// Whether what meets at `t` would be within the other by a quarter of its thickness at the end of the sub-step.
+  bool sinks(const Manifold<Scalar>& m, double t) const { return closing(m) * (h - t) > thick / 2; }
+
   /// Whether they come together, and no faster than by what gravity gives in two sub-steps. What else holds them takes
   /// that back, which rows that are solved together know and an impact does not. (What bounces does so however slowly it
   /// comes. Limbs that part rest still: what their tree takes from them it gives back.)
   bool settles(const Manifold<Scalar>& m) const {
     if (c.bounces) return false;
-    double closing = 0;
-    for (std::uint32_t i = 0; i < m.count; i++)
-      closing = std::max(closing, double(passing(ta, tb, m.normal, m.points[i].p, apart).closing));
+    const double closing = this->closing(m);
     return (closing > 0 || c.jointed) && closing <= 2 * length(s.gravity) * h;
   }
 
@@ -185,12 +191,13 @@ template <class Scalar> struct Detector::Meeting {
   /// Whether one goes so far that it leaves the range of numbers: the step freezes it, and till then it meets nothing.
   static bool is_lost(double goes) { return !(goes < constants::largest_state); }
 
-  /// `sent`: how far others of a joint tree may send them against each other.
-  void find(double sent) {
-    const double goes = std::max(way(), sent);
+  /// `sent`: they were looked at before in the sub-step, and sent elsewhere since. Then what would sink in is stopped; the
+  /// next sub-step sees the rest.
+  void find(bool sent) {
+    const double goes = way();
     const bool quick = this->quick();
     if (c.touches && !c.struck && !quick && moved() <= constants::contact_share * thick) return;
-    if (passes_by(sent, 0) || is_lost(goes)) return stand_aside();
+    if (passes_by(0) || is_lost(goes)) return stand_aside();
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     bodies.poses().shift(row_a, row_b, apart);
     look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * goes);
@@ -211,9 +218,12 @@ template <class Scalar> struct Detector::Meeting {
         look_at(x, y, z);
       };
       met = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, m);
-      if (!met.together && c.gap > sent) return stand_aside();
+      if (!met.together) return stand_aside();
     }
-    c.sent = !met.together;
+    if (sent && !sinks(m, met.t)) {
+      c.touches = false;
+      return;
+    }
     find_together(m, c.touches ? seam_share * thick : near);
     to_light_side(m, share);
     if (!c.touches) back_to_start(ta, tb, apart, share, met.t, m);
@@ -224,22 +234,13 @@ template <class Scalar> struct Detector::Meeting {
     write(m, met.t, c.jointed ? -1 : c.struck ? std::max(met.t, 1e-9 * h) : 0);
   }
 
-  /// Of what was sent, after its bodies have moved: where it is still apart its rows are to let go of what they have pushed with.
-  void find_missed() {
-    bodies.poses().shift(row_a, row_b, apart);
-    const double near = seam_share * thick;
-    look = Scalar(2 * near);
-    Manifold<Scalar> m;
-    if (gap_between(view(pa, c.shapes[0], row_a), view(pb, c.shapes[1], row_b), m) > near) out[place::found_anew] = 3;
-  }
-
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.
   bool find_from(double from) {
     if (is_lost(way())) return false;
     bodies.poses().shift(row_a, row_b, apart);
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
-    if (passes_by(0, near)) return false;
+    if (passes_by(near)) return false;
     const ShapeView<Scalar> a = view(pa, c.shapes[0], row_a), b = view(pb, c.shapes[1], row_b);
     look = Scalar(d.margin(c.shapes[0], c.shapes[1]) + 2 * way());
     const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {

@@ -182,8 +182,8 @@ void Detector::rebuild(const WorldState& s) {
 std::size_t Detector::memory_bytes() const {
   const std::size_t of_shapes = bytes_of(proxies_, standing_, tight_, margins_, reach_, columns_, rows_, odd_, *filter_);
   const std::size_t of_bodies =
-      bytes_of(parts_, touched_, twists_, rounded_, moving_, bodies_, starts_, levers_, ways_, twisted_, sent_, touching_,
-               times_struck_, marked_, swept_, first_of_, contacts_of_, soonest_, sent_elsewhere_, went_, trees_, fastest_, drawn_);
+      bytes_of(parts_, touched_, twists_, rounded_, moving_, bodies_, starts_, levers_, ways_, twisted_, touching_,
+               times_struck_, marked_, swept_, first_of_, contacts_of_, of_marked_, soonest_, sent_elsewhere_, went_, trees_, fastest_, drawn_);
   const std::size_t of_contacts = bytes_of(standings_, later_, renewed_, struck_, waiting_, unseen_, beside_struck_, on_standing_, inner_,
                                            beside_, looks_, anew_, distant_, gone_, next_);
   return of_shapes + of_bodies + of_contacts + bytes_of(pairs_, near_, marks_, hints_, next_hints_, alone_, scratch_f_, scratch_d_);

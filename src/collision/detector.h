@@ -74,11 +74,10 @@ class Detector {
   /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for
   /// others. `last`: none waits any longer.
   void meet_again(WorldState& state, const Listed& contacts, unsigned level, bool last, double h, const Options& options);
-  /// After its bodies have moved: contacts whose rows acted since others of a joint tree might have sent their shapes together, and which are
-  /// still apart. They count as renewed.
-  void find_missed(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options);
   /// Whether impacts wait for others that come before them.
   bool waits() const { return !waiting_.empty(); }
+  /// After contacts and joints have acted, before the bodies move: limbs that they have sent against something.
+  void meet_sent(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options);
   /// Of the contacts that `meet` was given last, the places of those whose rows are others than in the sub-step before;
   /// and of impacts that may act, since their bodies were struck after they were looked for last.
   std::span<const std::uint32_t> renewed() const { return renewed_; }
@@ -224,19 +223,18 @@ class Detector {
   /// The smaller of what may move of the two [m].
   float thickness(std::uint32_t a, std::uint32_t b) const;
   template <class Scalar> Scratch<Scalar>& scratch();
-  /// A contact that is looked at in a sub-step: its place, how far its trees may send the two against each other [m],
-  /// and whether its rows acted.
+  /// A contact that is looked at in a sub-step: its place, and whether its rows acted.
   struct Look {
     std::uint32_t at;
-    float from_others;
     bool acted;
   };
   template <class Scalar> struct Substep;
   template <class Scalar> struct Meeting;
   template <class Does>
   void look_in(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options, const Does& does);
-  template <class Scalar, class Finds> void find_all(const Substep<Scalar>& look, const Finds& finds);
+  template <class Scalar> void find_all(const Substep<Scalar>& look, bool sent);
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
+  template <class Scalar> void meet_sent_in(const Substep<Scalar>& look);
   template <class Scalar> Meeting<Scalar> meeting(const Substep<Scalar>& look, std::uint32_t row);
   template <class Scalar> const Way& way_of(const Substep<Scalar>& look, std::uint32_t body) {
     if (ways_[body].of != meetings_) find_way(look, body);
@@ -250,11 +248,10 @@ class Detector {
     twisted_[body] = meetings_;
     return twist = bodies.twist(body);
   }
-  template <class Scalar> void find_sent(const Substep<Scalar>& look);
   template <class Scalar> void point_of(const Meeting<Scalar>& x, std::uint32_t point, Scalar* at) const;
   template <class Scalar> bool covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const;
   template <class Scalar> void drop_inner_edges(const Substep<Scalar>& look);
-  template <class Scalar> void put_off(const Substep<Scalar>& look, std::size_t begin);
+  template <class Scalar> void put_off(const Substep<Scalar>& look);
   template <class Scalar> void meet_struck(const Substep<Scalar>& look);
   template <class Scalar> void mark_struck(const Substep<Scalar>& look);
   template <class Scalar> void mark(const Substep<Scalar>& look, std::uint32_t body);
@@ -299,7 +296,6 @@ class Detector {
   std::vector<Way> ways_;              // of bodies
   std::vector<std::uint32_t> twisted_;  // of bodies: the look that their twists are of
   std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
-  std::vector<float> sent_;            // of trees, by number: how far their fastest body may go in the sub-step [m]
   // places in what was listed
   std::vector<std::uint32_t> renewed_, struck_, waiting_, unseen_, on_standing_, inner_, beside_, beside_struck_;
   std::vector<std::uint32_t> touching_;  // by body: how much of what stands it touches
@@ -308,9 +304,10 @@ class Detector {
   std::vector<float> times_struck_;               // of bodies, when impacts were looked for last
   bool none_struck_ = false;                      // since the step has begun
   std::vector<std::uint32_t> marked_, swept_;     // bodies: struck since then; of the contacts that the sweep may strike
-  std::vector<std::uint32_t> first_of_, contacts_of_;  // by body, its contacts of a level: places
-  unsigned listed_level_ = 0;                     // from 1; 0: none
+  std::vector<std::uint32_t> first_of_, contacts_of_;  // by body, its contacts of a level: numbers in the order of rows
+  Marks of_marked_;                               // of these, those of marked bodies
   std::vector<double> soonest_;                   // of bodies: when in the sub-step the first impact is [s]
+  unsigned listed_level_ = 0;                     // from 1; 0: none
   std::vector<std::vector<std::uint32_t>> anew_;  // by level: rows that were renewed in the sub-step before
   std::vector<Distant> distant_;                  // in ascending order of their rows
   std::vector<char> sent_elsewhere_;              // bodies that contacts may send elsewhere than they go by themselves

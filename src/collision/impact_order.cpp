@@ -15,8 +15,8 @@ constexpr double at_once = 1e-3;
 }  // namespace
 
 /// Impacts come in the order of time: what meets later than something else meets one of the two waits, since that one
-/// then goes elsewhere. Of those in `struck_` from `begin` on.
-template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std::size_t begin) {
+/// then goes elsewhere. Of those in `struck_`.
+template <class Scalar> void Detector::put_off(const Substep<Scalar>& look) {
   const auto standing = [&](std::uint32_t at) -> Standing& { return standings_[look.contacts[at]]; };
   const auto soonest = [&](const Standing& c, int side) -> double* {
     return proxies_[c.shapes[side]].responds ? &soonest_[c.rows[side]] : nullptr;
@@ -25,21 +25,21 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look, std:
   const double h = look.h;
   waiting_.clear();
   std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });  // an inner edge, for one
-  if (struck_.size() <= begin || look.last) return;
+  if (struck_.empty() || look.last) return;
   soonest_.resize(levers_.size(), std::numeric_limits<double>::infinity());
   const auto each = [&](const auto& does) {
-    for (std::size_t i = begin; i < struck_.size(); i++)
+    for (const std::uint32_t at : struck_)
       for (int side = 0; side < 2; side++)
-        if (double* at = soonest(standing(struck_[i]), side)) does(*at, struck_[i]);
+        if (double* soon = soonest(standing(at), side)) does(*soon, at);
   };
-  each([&](double& at, std::uint32_t place) { at = std::min(at, when(place)); });
-  each([&](double& at, std::uint32_t place) { standing(place).waits |= when(place) > at + at_once * h; });
-  each([&](double& at, std::uint32_t) { at = std::numeric_limits<double>::infinity(); });
-  for (std::size_t i = begin; i < struck_.size(); i++) {
-    if (!standing(struck_[i]).waits) continue;
-    meeting(look, look.contacts[struck_[i]]).stand_aside();
-    gone_.push_back(look.contacts[struck_[i]]);
-    waiting_.push_back(struck_[i]);
+  each([&](double& soon, std::uint32_t at) { soon = std::min(soon, when(at)); });
+  each([&](double& soon, std::uint32_t at) { standing(at).waits |= when(at) > soon + at_once * h; });
+  each([&](double& soon, std::uint32_t) { soon = std::numeric_limits<double>::infinity(); });
+  for (const std::uint32_t at : struck_) {
+    if (!standing(at).waits) continue;
+    meeting(look, look.contacts[at]).stand_aside();
+    gone_.push_back(look.contacts[at]);
+    waiting_.push_back(at);
   }
   std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });
 }
@@ -69,39 +69,42 @@ template <class Scalar> void Detector::mark(const Substep<Scalar>& look, std::ui
   marked_.push_back(body);
 }
 
-/// By body that answers impulses, its contacts of a level.
+/// By body that answers impulses, its contacts of a level: their numbers in the order of rows.
 void Detector::list_contacts_of(const Listed& contacts, unsigned level) {
   if (std::exchange(listed_level_, level + 1) == level + 1) return;
   first_of_.assign(levers_.size() + 1, 0);
   const auto each = [&](const auto& does) {
-    for (const std::uint32_t at : contacts.places) {
-      const Standing& c = standings_[contacts.rows[at]];
+    for (std::uint32_t number = 0; number < contacts.places.size(); number++) {
+      const Standing& c = standings_[contacts.rows[contacts.places[number]]];
       for (int side = 0; side < 2 && !c.jointed; side++)
-        if (proxies_[c.shapes[side]].responds) does(c.rows[side], at);
+        if (proxies_[c.shapes[side]].responds) does(c.rows[side], number);
     }
   };
   each([&](std::uint32_t body, std::uint32_t) { first_of_[body + 1]++; });
   std::partial_sum(first_of_.begin(), first_of_.end(), first_of_.begin());
   contacts_of_.resize(first_of_.back());
-  each([&](std::uint32_t body, std::uint32_t at) { contacts_of_[first_of_[body]++] = at; });
+  each([&](std::uint32_t body, std::uint32_t number) { contacts_of_[first_of_[body]++] = number; });
   std::shift_right(first_of_.begin(), first_of_.end(), 1);
   first_of_[0] = 0;
 }
 
 /// Places of the contacts of marked bodies, and of `others`, in the order of their rows.
 void Detector::find_beside_struck(const Listed& contacts, std::span<const std::uint32_t> others) {
-  beside_struck_.assign(others.begin(), others.end());
+  const auto row_of = [&](std::uint32_t at) { return contacts.rows[at]; };
+  of_marked_.clear(contacts.places.size());
+  for (const std::uint32_t at : others)
+    of_marked_.set(std::uint32_t(std::ranges::lower_bound(contacts.places, row_of(at), {}, row_of) - contacts.places.begin()));
   for (const std::uint32_t body : marked_)
-    for (std::uint32_t i = first_of_[body]; i < first_of_[body + 1]; i++) beside_struck_.push_back(contacts_of_[i]);
-  std::ranges::sort(beside_struck_, {}, [&](std::uint32_t at) { return contacts.rows[at]; });
-  beside_struck_.erase(std::unique(beside_struck_.begin(), beside_struck_.end()), beside_struck_.end());
+    for (std::uint32_t i = first_of_[body]; i < first_of_[body + 1]; i++) of_marked_.set(contacts_of_[i]);
+  beside_struck_.clear();
+  of_marked_.each([&](std::uint32_t number) { beside_struck_.push_back(contacts.places[number]); });
 }
 
 /// Contacts that do not act, of bodies that were struck since: as their velocities are now, from that instant on.
 template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) {
   const Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   const auto struck_at = [&](std::uint32_t body) { return double(delta[body * reals_of(Buffer::delta) + 8]); };
-  const std::size_t before = struck_.size();
+  struck_.clear();
   inner_.clear();
   find_beside_struck({look.contacts, look.places}, waiting_);
   for (const std::uint32_t at : beside_struck_) {
@@ -120,11 +123,10 @@ template <class Scalar> void Detector::meet_struck(const Substep<Scalar>& look) 
     on_standing_.push_back(at);
     inner_.push_back(at);
   }
-  if (struck_.size() == before) return waiting_.clear();
   drop_inner_edges(look);
-  put_off(look, before);
-  for (std::size_t i = before; i < struck_.size(); i++)  // no sweep has seen them
-    for (const std::uint32_t body : standings_[look.contacts[struck_[i]]].rows)
+  put_off(look);
+  for (const std::uint32_t at : struck_)  // no sweep has seen them
+    for (const std::uint32_t body : standings_[look.contacts[at]].rows)
       if (look.s.responds(body)) mark(look, body);
 }
 
@@ -154,10 +156,10 @@ void Detector::meet_again(WorldState& s, const Listed& contacts, unsigned level,
   });
 }
 
-template void Detector::put_off(const Substep<float>&, std::size_t);
+template void Detector::put_off(const Substep<float>&);
 template void Detector::mark_struck(const Substep<float>&);
 template void Detector::note_swept(const Substep<float>&);
-template void Detector::put_off(const Substep<double>&, std::size_t);
+template void Detector::put_off(const Substep<double>&);
 template void Detector::mark_struck(const Substep<double>&);
 template void Detector::note_swept(const Substep<double>&);
 

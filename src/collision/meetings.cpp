@@ -34,24 +34,13 @@ template <class Scalar> void Detector::find_way(const Substep<Scalar>& look, std
   ways_[body].of = meetings_;
 }
 
-/// By tree, how far the fastest of its bodies may go in the sub-step: joints may send any other as far.
-template <class Scalar> void Detector::find_sent(const Substep<Scalar>& look) {
-  std::ranges::fill(sent_, 0.0f);
-  sent_.resize(trees_.size());
-  for (std::uint32_t row = 1; row < trees_.size(); row++)
-    if (trees_[row] != 0) sent_[trees_[row]] = std::max(sent_[trees_[row]], way_of(look, row).goes);
-}
-
-/// `finds(meeting, look)` of all looks, on as many threads as there are: a look writes what is of its own contact alone. Then
-/// notes whose rows are to be made anew.
-template <class Scalar, class Finds> void Detector::find_all(const Substep<Scalar>& look, const Finds& finds) {
+/// All looks, on as many threads as there are: one writes what is of its own contact alone. Then notes whose rows are to be
+/// made anew.
+template <class Scalar> void Detector::find_all(const Substep<Scalar>& look, bool sent) {
   for (const Look& l : looks_)
     for (const std::uint32_t body : standings_[look.contacts[l.at]].rows) twist_of(look.bodies, body);
   look.options.share(looks_.size(), [&](std::uint32_t begin, std::uint32_t end) {
-    for (const Look& l : std::span(looks_).subspan(begin, end - begin)) {
-      Meeting<Scalar> of_it = meeting(look, look.contacts[l.at]);
-      finds(of_it, l);
-    }
+    for (const Look& l : std::span(looks_).subspan(begin, end - begin)) meeting(look, look.contacts[l.at]).find(sent);
   });
   const Scalar* const rows = look.s.tables.template data<Scalar>(Buffer::contact);
   for (const Look& l : looks_)
@@ -60,8 +49,6 @@ template <class Scalar, class Finds> void Detector::find_all(const Substep<Scala
 
 /// What the bounds of both bodies' motion settle needs no look at the two together.
 template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
-  find_sent(look);
-  const auto sent = [&](std::uint32_t row) { return trees_.empty() || trees_[row] == 0 ? 0.0f : sent_[trees_[row]]; };
   const auto stands_on = [&](std::uint32_t at, bool anew) {
     const Standing& c = standings_[look.contacts[at]];
     if (!c.acts || !look.s.stands(c.rows[1])) return;
@@ -74,8 +61,7 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     const std::uint32_t row = look.contacts[at];
     Standing& c = standings_[row];
     const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
-    const float moved = a.went + b.went + c.looked, from_others = c.jointed ? sent(c.rows[0]) + sent(c.rows[1]) : 0.0f;
-    const float goes = std::max(a.goes + b.goes, from_others);
+    const float moved = a.went + b.went + c.looked, goes = a.goes + b.goes;
     const bool rests = c.touches && !c.struck && goes <= float(constants::stale_share) * c.thick &&
                        moved <= float(constants::contact_share) * c.thick;
     const bool far = !c.touches && !c.acts && c.gap > double(moved) + double(goes);
@@ -84,14 +70,14 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
       stands_on(at, look.first);
       continue;
     }
-    if (!c.touches && !c.acts && meeting(look, row).passes_by(double(from_others), 0)) {
+    if (!c.touches && !c.acts && meeting(look, row).passes_by(0)) {
       stands_on(at, look.first);
       continue;
     }
     make_record(c);
-    looks_.push_back({at, from_others, c.acts});
+    looks_.push_back({at, c.acts});
   }
-  find_all(look, [](Meeting<Scalar>& x, const Look& l) { x.find(double(l.from_others)); });
+  find_all(look, false);
   for (const Look& l : looks_) {
     const std::uint32_t row = look.contacts[l.at];
     const Standing& c = standings_[row];
@@ -100,7 +86,7 @@ template <class Scalar> void Detector::meet_in(const Substep<Scalar>& look) {
     stands_on(l.at, true);
   }
   drop_inner_edges(look);
-  put_off(look, 0);
+  put_off(look);
   for (const Look& l : looks_)
     if (may_strike(standings_[look.contacts[l.at]])) unseen_.push_back(l.at);
   note_swept(look);
@@ -118,13 +104,30 @@ void Detector::meet(WorldState& s, const Listed& contacts, unsigned level, bool 
   });
 }
 
-void Detector::find_missed(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options) {
-  look_in(s, contacts, level, h, options, [&]<class Scalar>(const Substep<Scalar>& look) {
-    looks_.clear();
-    for (const std::uint32_t at : look.places)
-      if (standings_[look.contacts[at]].sent) looks_.push_back({at, 0, true});
-    find_all(look, [](Meeting<Scalar>& x, const Look&) { x.find_missed(); });
-  });
+/// Of limbs that are apart, which of those that contacts and joints have sent elsewhere since meet there.
+template <class Scalar> void Detector::meet_sent_in(const Substep<Scalar>& look) {
+  looks_.clear();
+  inner_.clear();
+  for (const std::uint32_t at : look.places) {
+    Standing& c = standings_[look.contacts[at]];
+    if (!c.jointed || c.acts || c.touches) continue;
+    const Way a = way_of(look, c.rows[0]), b = way_of(look, c.rows[1]);
+    if (c.gap > double(a.went + b.went + c.looked) + double(a.goes + b.goes)) continue;
+    make_record(c);
+    looks_.push_back({at, false});
+  }
+  find_all(look, true);
+  for (const Look& l : looks_) {
+    const Standing& c = standings_[look.contacts[l.at]];
+    if (!c.acts || !look.s.stands(c.rows[1])) continue;
+    on_standing_.push_back(l.at);
+    inner_.push_back(l.at);
+  }
+  drop_inner_edges(look);
+}
+
+void Detector::meet_sent(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options) {
+  look_in(s, contacts, level, h, options, [&](auto look) { meet_sent_in(look); });
 }
 
 void Detector::let_go(WorldState& s) {

@@ -18,7 +18,6 @@ struct Standing {
   bool touches = false;              // its shapes did, when they were looked at last
   bool acts = false;                 // its rows do
   bool struck = false;               // as an impact: nothing of it lasts
-  bool sent = false;                 // its rows act although its shapes were not foreseen to meet: others of its tree may send them
   bool waits = false;                // for an impact that comes before
   bool soon = false;                 // its shapes were apart when the step began, and come together in it by their own motion
   bool bounces = false;              // what is fast enough does

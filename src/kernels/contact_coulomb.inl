@@ -7,14 +7,14 @@ struct Friction { Real next1; Real next2; Real next_twist; Real change1; Real ch
 PC_FN Friction pc_no_friction(Twist v) {
   Real zero = PC_REAL(0.0); Friction r; r.next1 = zero; r.next2 = zero; r.next_twist = zero; r.change1 = zero; r.change2 = zero; r.change_twist = zero; r.after = v; return r;
 }
-PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real mass_scale, Real f1, Real f2, Real ft) { return pc_no_friction(v); }
+PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real f1, Real f2, Real ft) { return pc_no_friction(v); }
 #else
 // f1, f2, ft: the impulses that act already.
-PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real mass_scale, Real f1, Real f2, Real ft) {
+PC_FN Friction pc_coulomb(PC_IO Slot m, Twist v, Real load, Real f1, Real f2, Real ft) {
   precise Real static_limit = load * PC_LD(contact_rows, m, ROW_MU_STATIC); precise Real kinetic_limit = load * PC_LD(contact_rows, m, ROW_MU_KINETIC);
   precise Real twist_limit = kinetic_limit * PC_LD(contact_rows, m, ROW_RADIUS);
   Real t12 = PC_LD(contact_rows, m, ROW_TT + 1u);
-  precise Real g1 = f1 - mass_scale * (PC_LD(contact_rows, m, ROW_TT) * v.v1 + t12 * v.v2); precise Real g2 = f2 - mass_scale * (t12 * v.v1 + PC_LD(contact_rows, m, ROW_TT + 2u) * v.v2);
+  precise Real g1 = f1 - (PC_LD(contact_rows, m, ROW_TT) * v.v1 + t12 * v.v2); precise Real g2 = f2 - (t12 * v.v1 + PC_LD(contact_rows, m, ROW_TT + 2u) * v.v2);
   precise Real gg = g1 * g1 + g2 * g2; precise Real limit_squared = static_limit * static_limit;
   Mask slides = gg > limit_squared;
   Real scale = pc_select(slides, pc_div(kinetic_limit, pc_sqrt(pc_select(slides, gg, PC_REAL(1.0)))), PC_REAL(1.0));

@@ -43,7 +43,6 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   Real aim = pc_select(open, falls, pc_max(falls, zero));
   Closing r; r.t = t; r.u_aim = aim; r.closes = pc_select(now, PC_REAL(1.0), zero); return r;
 }
-PC_FN Real pc_until(PC_IO Closing c) { return pc_select(c.closes > PC_REAL(0.0), c.t, PC_INFO(h)); }
 // What a row asks for, as a change of its impulse.
 PC_FN Real pc_impact_row(Real u, Closing c, Real mass) { precise Real change = mass * (c.u_aim - u) * c.closes; return change; }
 
@@ -139,7 +138,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
 
   Vec3 relative = pc_sub(b.v, a.v); Vec3 come = pc_sub(moved_b.v, moved_a.v);
   Vec3 path = pc_impact_path(PC_PASS m, n, relative, come);
-  Mask both_move = pc_and(a.inverse_mass > zero, b.inverse_mass > zero); Mask both_fly = pc_and(always, both_move);
+  Mask both_move = pc_and(a.inverse_mass > zero, b.inverse_mass > zero);
   Arms arms = pc_arms(PC_PASS m, pc_zero3(), path);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
 
@@ -161,11 +160,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   Closing c0 = pc_closing(PC_PASS u0, s0, g0, m0, e, always); Closing c1 = pc_closing(PC_PASS u1, s1, g1, m1, e, always);
   Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always); Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
   precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
-  // two that fly and were sent elsewhere on their way do not meet as was found
-  Real until = pc_min(pc_min(pc_until(PC_PASS c0), pc_until(PC_PASS c1)), pc_min(pc_until(PC_PASS c2), pc_until(PC_PASS c3)));
-  Vec3 astray = pc_sub(pc_madd(come, relative, until), pc_ld3_rows(PC_PASS m, ROW_PATH)); Vec3 found_a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 found_b = pc_ld3_rows(PC_PASS m, ROW_ARM_B); precise Real size = pc_dot(found_a, found_a) + pc_dot(found_b, found_b);
-  Mask there = pc_dot(astray, astray) < size; precise Real here = pc_select(both_fly, pc_select(there, closing, zero), closing);
-  Mask hits = pc_and(mine, here > zero);
+  Mask hits = pc_and(mine, closing > zero);
   if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
 
   // effective masses at the arms of the impact
@@ -194,7 +189,7 @@ PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
   j0 = pc_select(hits, j0, zero); j1 = pc_select(hits, j1, zero); j2 = pc_select(hits, j2, zero); j3 = pc_select(hits, j3, zero);
 
   Push push = pc_push(PC_PASS m, j0, j1, j2, j3);
-  Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), push.n, PC_REAL(1.0), zero, zero, zero);
+  Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), push.n, zero, zero, zero);
   precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t; precise Real mean = late * pc_inverse_or_zero(push.n);
   // none comes before one that a body of it had already
   Quad hit_a = PC_GATHER(delta, ia, 2u); Quad hit_b = PC_GATHER(delta, ib, 2u); Real t = pc_max(mean, pc_max(hit_a.v.x, hit_b.v.x));

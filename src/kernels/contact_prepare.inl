@@ -39,24 +39,10 @@ PC_FN void pc_keep_approach(PC_IO Slot m, uint i, Mask these, Mask of_step, Real
   pc_st_new(PC_PASS m, these, ROW_APPROACH + i, pc_select(before > PC_REAL(0.0), before, fastest));
 }
 
-// Before the relax visit: rows of shapes that were sent together and did not meet let go of what they have pushed with, as if they were far
-// apart. It is not told of, either (contact_touch).
-PC_FN void pc_open_rows(PC_IO Slot m, Mask missed) {
-  for (uint i = 0u; i < 4u; i++) {
-    pc_st_new(PC_PASS m, missed, ROW_S + i, PC_FAR);
-    pc_st_pushes(PC_PASS m, missed, IMPULSE_LARGEST + i, pc_min(PC_LD(contact_impulses, m, IMPULSE_LARGEST + i), PC_LD(contact_impulses, m, IMPULSE_BEFORE)));
-  }
-  pc_st_new(PC_PASS m, missed, ROW_E, PC_REAL(0.0));
-}
-
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u); Index record = PC_ORDER(contact_order, m);
   Quad seen = PC_GATHER(contact, record, 8u); Mask of_step = PC_INFO(begins) > PC_REAL(0.5); Mask these = pc_or(of_step, seen.s > PC_REAL(0.5));
   if (!PC_ANY(these)) return;  // lint: allow (rows stand)
-  if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) {  // lint: allow (the same for all lanes)
-    pc_open_rows(PC_PASS m, these);
-    return;
-  }
   Quad head = PC_GATHER(contact, record, 0u);
   Quad p0 = PC_GATHER(contact, record, 1u); Quad p1 = PC_GATHER(contact, record, 2u); Quad p2 = PC_GATHER(contact, record, 3u); Quad p3 = PC_GATHER(contact, record, 4u);
   Quad pushes = PC_GATHER(contact, record, 5u); Quad material = PC_GATHER(contact, record, 7u);
@@ -133,7 +119,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_st_new(PC_PASS m, these, ROW_MU_STATIC, material.v.x); pc_st_new(PC_PASS m, these, ROW_MU_KINETIC, material.v.y); pc_st_new(PC_PASS m, these, ROW_RADIUS, radius);
 #endif
   pc_st_new(PC_PASS m, these, ROW_E, material.v.z); pc_st_new(PC_PASS m, all, ROW_IMPACT, pc_select(pc_and(over, unjointed), PC_REAL(-2.0), material.s));
-  pc_st_new(PC_PASS m, these, ROW_SCALE, pc_select(flight > zero, zero, pc_select(of_step, one, zero)));  // 0 as ROW_MET: they have not met
+  precise Real sent = PC_INFO(sent) * PC_REAL(2.0);
+  pc_st_new(PC_PASS m, these, ROW_ACTS, pc_select(flight > zero, zero, pc_select(of_step, one, sent)));  // 0 as ROW_MET: they have not met
   pc_keep_approach(PC_PASS m, 0u, these, of_step, approach0); pc_keep_approach(PC_PASS m, 1u, these, of_step, approach1); pc_keep_approach(PC_PASS m, 2u, these, of_step, approach2); pc_keep_approach(PC_PASS m, 3u, these, of_step, approach3);
 
   // impulses: of the step before, which scale with the sub-step; or those that the rows hold

@@ -34,9 +34,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_drop(PC_PASS m, i, pc_and(far, s > zero));
   }
   Mask relax = PC_INFO(load_ahead) > zero;
-  PC_ST(contact_rows, m, ROW_SCALE, pc_select(far, pc_select(pc_or(relax, flight), zero, PC_REAL(1.0)), PC_LD(contact_rows, m, ROW_SCALE)));  // of a flight ROW_MET
+  PC_ST(contact_rows, m, ROW_ACTS, pc_select(far, pc_select(pc_or(relax, flight), zero, PC_REAL(1.0)), PC_LD(contact_rows, m, ROW_ACTS)));  // of a flight ROW_MET
 #ifndef PC_FRICTIONLESS
-  PC_ST(contact_rows, m, ROW_TWIST, pc_select(pc_and(far, relax), zero, PC_LD(contact_rows, m, ROW_TWIST)));
   pc_drop(PC_PASS m, IMPULSE_T, far); pc_drop(PC_PASS m, IMPULSE_T + 1u, far); pc_drop(PC_PASS m, IMPULSE_T + 2u, far);
 #endif
 }

@@ -29,20 +29,20 @@ PC_FN void pc_note_bounce(PC_IO Slot m, uint i, Real bounce) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Mask some = pc_or(pc_or(pc_bounces(PC_PASS m, 0u), pc_bounces(PC_PASS m, 1u)), pc_or(pc_bounces(PC_PASS m, 2u), pc_bounces(PC_PASS m, 3u)));
   Real impact = PC_LD(contact_rows, m, ROW_IMPACT); some = pc_and(some, pc_and(impact < PC_REAL(-0.5), impact > PC_REAL(-2.0)));  // of bodies on joints: contact_impact has seen to the others
-  some = pc_and(some, PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0));
+  some = pc_and(some, pc_and(PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_ACTS) > PC_REAL(0.0)));
   if (!PC_ANY(some)) return;  // lint: allow (others change nothing)
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
-  Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v); Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
+  Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
   Real e = PC_LD(contact_rows, m, ROW_E);
   Real vn = v.vn; Real w1 = v.w1; Real w2 = v.w2;
-  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real v0 = vn + b0 * w1 - a0 * w2; precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
-  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real v1 = vn + b1 * w1 - a1 * w2; precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
-  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real v2 = vn + b2 * w1 - a2 * w2; precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
-  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real v3 = vn + b3 * w1 - a3 * w2; precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real v0 = vn + b0 * w1 - a0 * w2; precise Real m0 = PC_LD(contact_rows, m, ROW_MASS);
+  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real v1 = vn + b1 * w1 - a1 * w2; precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u);
+  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real v2 = vn + b2 * w1 - a2 * w2; precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u);
+  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real v3 = vn + b3 * w1 - a3 * w2; precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real r0 = pc_restitution_row(PC_PASS v0, PC_LD(contact_rows, m, ROW_APPROACH), PC_LD(contact_impulses, m, IMPULSE_LARGEST), e, m0);
   Real l1 = PC_LD(contact_impulses, m, 1u); Real r1 = pc_restitution_row(PC_PASS v1, PC_LD(contact_rows, m, ROW_APPROACH + 1u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), e, m1);
   Real l2 = PC_LD(contact_impulses, m, 2u); Real r2 = pc_restitution_row(PC_PASS v2, PC_LD(contact_rows, m, ROW_APPROACH + 2u), PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), e, m2);
@@ -56,7 +56,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
   Mask bounced = push.n > PC_REAL(0.0);
   precise Real load = k0 + k1 + k2 + k3;
-  Friction f = pc_friction(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), load, mass_scale);
+  Friction f = pc_friction(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), load);
   Real zero = PC_REAL(0.0);
   Real c1 = pc_select(bounced, f.change1, zero); Real c2 = pc_select(bounced, f.change2, zero); Real ct = pc_select(bounced, f.change_twist, zero);
   // a bounce is an impact: the velocity it leaves is the one to be read, whole (see synchronise)

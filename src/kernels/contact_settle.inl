@@ -28,7 +28,7 @@ PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, 
 }
 
 // `v`: the twist before the visit; `r`: impulses after the visit's one round.
-PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real loose, Mask unsettled, PC_INOUT(Rows) r) {
+PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real loose, Mask unsettled, PC_INOUT(Rows) r) {
   Real a0 = PC_LD(contact_rows, m, ROW_A); Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
   Real b0 = PC_LD(contact_rows, m, ROW_B); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
   Real m0 = PC_LD(contact_rows, m, ROW_MASS); Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u); Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u); Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
@@ -37,7 +37,6 @@ PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real loos
   precise Real d02 = PC_LD(contact_rows, m, ROW_D + 1u) * w2; precise Real d03 = PC_LD(contact_rows, m, ROW_D + 2u) * w3; precise Real d12 = PC_LD(contact_rows, m, ROW_D + 3u) * w2;
   precise Real d13 = PC_LD(contact_rows, m, ROW_D + 4u) * w3; precise Real d23 = PC_LD(contact_rows, m, ROW_D + 5u) * w3; Real d01 = PC_LD(contact_rows, m, ROW_D);
   Real p0 = pc_pace(o0, d01, d02, d03); Real p1 = pc_pace(o1, d01, d12, d13); Real p2 = pc_pace(o2, d02, d12, d23); Real p3 = pc_pace(o3, d03, d13, d23);
-  precise Real c0 = m0 * mass_scale; precise Real c1 = m1 * mass_scale; precise Real c2 = m2 * mass_scale; precise Real c3 = m3 * mass_scale;
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
   Real k0 = l0; Real k1 = l1; Real k2 = l2; Real k3 = l3; Friction f = r.f;
   for (uint k = 0u; k < SETTLE_ROUNDS; k++) {
@@ -45,12 +44,12 @@ PC_FN void pc_settle(PC_IO Slot m, Twist v, Gaps gap, Real mass_scale, Real loos
     precise Real e0 = k0 - l0; precise Real e1 = k1 - l1; precise Real e2 = k2 - l2; precise Real e3 = k3 - l3;
     precise Real v0 = vn + b0 * w1 - a0 * w2 + (o0 * e0 + d01 * e1 + d02 * e2 + d03 * e3); precise Real v1 = vn + b1 * w1 - a1 * w2 + (o1 * e1 + d01 * e0 + d12 * e2 + d13 * e3);
     precise Real v2 = vn + b2 * w1 - a2 * w2 + (o2 * e2 + d02 * e0 + d12 * e1 + d23 * e3); precise Real v3 = vn + b3 * w1 - a3 * w2 + (o3 * e3 + d03 * e0 + d13 * e1 + d23 * e2);
-    k0 = pc_settled_row(PC_PASS v0, gap.s0, c0, k0, p0, loose); k1 = pc_settled_row(PC_PASS v1, gap.s1, c1, k1, p1, loose);
-    k2 = pc_settled_row(PC_PASS v2, gap.s2, c2, k2, p2, loose); k3 = pc_settled_row(PC_PASS v3, gap.s3, c3, k3, p3, loose);
+    k0 = pc_settled_row(PC_PASS v0, gap.s0, m0, k0, p0, loose); k1 = pc_settled_row(PC_PASS v1, gap.s1, m1, k1, p1, loose);
+    k2 = pc_settled_row(PC_PASS v2, gap.s2, m2, k2, p2, loose); k3 = pc_settled_row(PC_PASS v3, gap.s3, m3, k3, p3, loose);
 
     precise Real n0 = k0 - l0; precise Real n1 = k1 - l1; precise Real n2 = k2 - l2; precise Real n3 = k3 - l3;
     Push push = pc_push(PC_PASS m, n0, n1, n2, n3);
-    precise Real load = k0 + k1 + k2 + k3; f = pc_friction(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), load, mass_scale);
+    precise Real load = k0 + k1 + k2 + k3; f = pc_friction(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), load);
   }
   r.k0 = pc_select(unsettled, k0, r.k0); r.k1 = pc_select(unsettled, k1, r.k1); r.k2 = pc_select(unsettled, k2, r.k2); r.k3 = pc_select(unsettled, k3, r.k3);
   r.f.next1 = pc_select(unsettled, f.next1, r.f.next1); r.f.next2 = pc_select(unsettled, f.next2, r.f.next2); r.f.next_twist = pc_select(unsettled, f.next_twist, r.f.next_twist);

@@ -6,10 +6,9 @@
 #include "contact_visit.inl"
 #include "contact_carried.inl"
 #include "contact_blow.inl"
-#include "contact_calming.inl"
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask pushes = pc_pushes(PC_PASS m);
+  Mask pushes = pc_and(pc_pushes(PC_PASS m), PC_LD(contact_rows, m, ROW_ACTS) > PC_REAL(0.0));
   if (!PC_ANY(pushes)) return;  // lint: allow (others change nothing)
   Index ia = PC_ENDS(contact_ends, m, 0u); Index ib = PC_ENDS(contact_ends, m, 1u);
 #ifdef PC_PLACED
@@ -32,12 +31,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // a fixed body's row stays as it is: slots beside each other may share it, and GL does not store it
   a.phase = pc_select(a.inverse_mass > PC_REAL(0.0), pc_max(a.phase, r.touch), a.phase); b.phase = pc_select(b.inverse_mass > PC_REAL(0.0), pc_max(b.phase, r.touch), b.phase);
   BodyState before_a = a; BodyState before_b = b;
-  if (PC_ANY(blow)) {  // lint: allow (a share of one changes nothing)
-    // (its arms may be those of another pose by now: it acts by no more than takes most energy out)
-    Real calming = pc_clamp(pc_calming_share(a, b, arms, r.impulse, r.couple), PC_REAL(0.0), PC_REAL(1.0));
-    Real part = pc_select(blow, calming, PC_REAL(1.0));
-    r.impulse = pc_scale(r.impulse, part); r.couple = pc_scale(r.couple, part);
-  }
   pc_apply(PC_PASS ia, ib, a, b, arms, r.impulse, r.couple);
   if (PC_ANY(blow)) {  // lint: allow (the same in lanes that are not)
     pc_count_blow(PC_PASS ia, pc_and(blow, a.inverse_mass > PC_REAL(0.0)), pc_sub(a.v, before_a.v), pc_sub(a.l, before_a.l));

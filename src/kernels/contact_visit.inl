@@ -13,7 +13,7 @@
 PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real bounce = mass * (back - vn); return pc_select(back > PC_REAL(0.0), bounce, change); }
 // It was of an instant: nothing of it is remembered.
 PC_FN Real pc_lasts(Real impulse, Real back) { return pc_select(back > PC_REAL(0.0), PC_REAL(0.0), impulse); }
-#define PC_BACK , Mask both_move, FourRows back
+#define PC_BACK , FourRows back
 #else
 #define pc_thrown(change, vn, mass, back) change
 #define pc_lasts(impulse, back) impulse
@@ -65,17 +65,6 @@ PC_FN Real pc_normal_row(PC_IO Real vn, Real s, Real mass, Real impulse, Real lo
   return pc_row_after(impulse, pc_row_change(PC_PASS vn, s, mass, impulse, loose), PC_REAL(1.0));
 }
 
-#ifdef PC_TREES
-// Share of its friction that a contact between bodies that move has, unless one tree joins them, by its overlap: all up to a quarter of the shorter arm, none from half of it on.
-// What a blow has driven in between two bodies that push it against each other would be held there by friction for good (docs/joint-trees.md).
-PC_FN Real pc_grip(PC_IO Slot m, Real apart) {
-  Vec3 a = pc_ld3_rows(PC_PASS m, ROW_ARM_A); Vec3 b = pc_ld3_rows(PC_PASS m, ROW_ARM_B); Real depth = pc_max(-apart, PC_REAL(0.0));
-  precise Real quarter = pc_quarter(pc_quarter(pc_min(pc_dot(a, a), pc_dot(b, b)))); precise Real square = depth * depth; Mask deep = square > quarter;
-  if (!PC_ANY(deep)) return PC_REAL(1.0);  // lint: allow (the same in lanes that are not)
-  precise Real left = pc_four_times(PC_REAL(1.0)) - pc_div(square, pc_max(quarter, PC_TINY)); precise Real share = left * PC_THIRD;
-  return pc_select(deep, pc_clamp(share, PC_REAL(0.0), PC_REAL(1.0)), PC_REAL(1.0));
-}
-#endif
 PC_FN void pc_keep_largest(PC_IO Slot m, uint i, Mask acts, Real impulse) {
   Real before = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i);
   PC_ST(contact_impulses, m, IMPULSE_LARGEST + i, pc_select(acts, pc_max(before, impulse), before));
@@ -101,7 +90,6 @@ struct Visit { Vec3 impulse; Vec3 couple; Real touch; };
 #endif
 // Where it does not act all stays as it is.
 PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t2, Real preload, Mask acts PC_BACK) {
-  Real mass_scale = PC_LD(contact_rows, m, ROW_SCALE);
   Real l0 = PC_LD(contact_impulses, m, 0u); Real l1 = PC_LD(contact_impulses, m, 1u); Real l2 = PC_LD(contact_impulses, m, 2u); Real l3 = PC_LD(contact_impulses, m, 3u);
 
   // where no manifold of the block has a second point, the rows of the others are zeros
@@ -119,13 +107,13 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   // friction goes by the load that the normal rows, visited after it, are about to leave, were they rigid: what the soft
   // rows let go of in the biased visit they take up again in the relax visit. (What comes together later in the sub-step
   // does so elsewhere: its friction is the relax visit's.)
-  precise Real gap_rate = pc_max(apart, PC_REAL(0.0)) * PC_INFO(inverse_h); Real mass = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K)); precise Real stops = mass * mass_scale;
+  precise Real gap_rate = pc_max(apart, PC_REAL(0.0)) * PC_INFO(inverse_h); Real mass = pc_inverse_or_zero(PC_LD(contact_rows, m, ROW_K));
 #ifdef PC_TREES
   Real thrown = pc_max(pc_max(back.r0, back.r1), pc_max(back.r2, back.r3));
 #else
   Real thrown = PC_REAL(0.0);
 #endif
-  precise Real coming = load - (v.vn + gap_rate - thrown) * stops;
+  precise Real coming = load - (v.vn + gap_rate - thrown) * mass;
   precise Real kept = mass * preload;
   precise Real beyond = PC_REAL(1.0) - kept * pc_inverse_or_zero(coming);
   Mask rests = pc_and(coming > PC_REAL(0.0), kept > coming);
@@ -133,23 +121,20 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   Real not_yet = pc_max(pc_beyond_rounding(PC_PASS gap_rate), PC_INFO(load_ahead));
   Mask waits = pc_and(load < PC_TINY, not_yet > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
-#ifdef PC_TREES
-  precise Real gripped = ahead * pc_select(both_move, pc_grip(PC_PASS m, apart), PC_REAL(1.0)); ahead = gripped;
-#endif
-  Friction f = pc_friction(PC_PASS m, v, ahead, mass_scale);
+  Friction f = pc_friction(PC_PASS m, v, ahead);
   Real vn = f.after.vn; Real w1 = f.after.w1; Real w2 = f.after.w2;
 
   // normal rows
-  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real m0 = PC_LD(contact_rows, m, ROW_MASS) * mass_scale;
+  Real a0 = PC_LD(contact_rows, m, ROW_A); Real b0 = PC_LD(contact_rows, m, ROW_B); precise Real m0 = PC_LD(contact_rows, m, ROW_MASS);
   precise Real v0 = vn + b0 * w1 - a0 * w2; Real e0 = pc_thrown(pc_row_change(PC_PASS v0, gap.s0, m0, l0, loose), v0, m0, back.r0);
 #ifdef PC_TREES
   FourRows room = pc_four(pc_row_room(PC_PASS v0, gap.s0, m0, l0, loose), PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0));
 #endif
   Rows now; now.k1 = l1; now.k2 = l2; now.k3 = l3; now.f = f; Real share_of_all = PC_REAL(1.0);
   if (more) {  // lint: allow (as said)
-    Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u) * mass_scale;
-    Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u) * mass_scale;
-    Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u) * mass_scale;
+    Real a1 = PC_LD(contact_rows, m, ROW_A + 1u); Real b1 = PC_LD(contact_rows, m, ROW_B + 1u); precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u);
+    Real a2 = PC_LD(contact_rows, m, ROW_A + 2u); Real b2 = PC_LD(contact_rows, m, ROW_B + 2u); precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u);
+    Real a3 = PC_LD(contact_rows, m, ROW_A + 3u); Real b3 = PC_LD(contact_rows, m, ROW_B + 3u); precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
     precise Real v1 = vn + b1 * w1 - a1 * w2; Real e1 = pc_thrown(pc_row_change(PC_PASS v1, gap.s1, m1, l1, loose), v1, m1, back.r1);
     precise Real v2 = vn + b2 * w1 - a2 * w2; Real e2 = pc_thrown(pc_row_change(PC_PASS v2, gap.s2, m2, l2, loose), v2, m2, back.r2);
     precise Real v3 = vn + b3 * w1 - a3 * w2; Real e3 = pc_thrown(pc_row_change(PC_PASS v3, gap.s3, m3, l3, loose), v3, m3, back.r3);
@@ -162,17 +147,17 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   }
   now.k0 = pc_row_after(l0, e0, share_of_all);
 #ifndef PC_TREES
-  precise Real arriving = load - (v.vn + gap_rate) * stops;
+  precise Real arriving = load - (v.vn + gap_rate) * mass;
   Mask unsettled = pc_unsettled(PC_PASS m, load, arriving, ahead, mass, f);
   if (PC_ANY(unsettled)) {  // lint: allow (others keep what they have)
-    pc_settle(PC_PASS m, v, gap, mass_scale, loose, unsettled, now);
+    pc_settle(PC_PASS m, v, gap, loose, unsettled, now);
   }
 #ifndef PC_FRICTIONLESS
   // what slides goes by the load that was found in place of the one that was foreseen: where loads change, or are those of
   // roundings, the two differ in each sub-step, and what slides would take up the sum
   if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) {  // lint: allow (the same for all lanes)
     precise Real found = now.k0 + now.k1 + now.k2 + now.k3;
-    Friction by_load = pc_friction(PC_PASS m, v, found, mass_scale);
+    Friction by_load = pc_friction(PC_PASS m, v, found);
     now.f.next1 = pc_select(unsettled, now.f.next1, by_load.next1);
     now.f.next2 = pc_select(unsettled, now.f.next2, by_load.next2);
     now.f.next_twist = pc_select(unsettled, now.f.next_twist, by_load.next_twist);

@@ -8,19 +8,6 @@
 #include "contact_low.inl"
 #include "contact_recalled.inl"
 
-// Where an arm has grown since the start of the step, the frozen effective masses are too large, by up to
-// (K + dK) / K with dK <= growth of arm^2 times trace I^-1; fast bodies would overshoot and gain energy.
-PC_FN Real pc_arm_growth(Vec3 arm, Vec3 frozen, BodyState b) {
-  precise Real longer = pc_dot(arm, arm) - pc_dot(frozen, frozen);
-  precise Real growth = pc_max(longer, PC_REAL(0.0)) * (b.inertia.xx + b.inertia.yy + b.inertia.zz) * b.response; return growth;
-}
-PC_FN Real pc_mass_scale(PC_IO Slot m, Arms arms, BodyState a, BodyState b) {
-  Real k = PC_LD(contact_rows, m, ROW_K);
-  precise Real now = k + pc_arm_growth(arms.a, pc_ld3_rows(PC_PASS m, ROW_ARM_A), a) + pc_arm_growth(arms.b, pc_ld3_rows(PC_PASS m, ROW_ARM_B), b);
-  precise Real scale = k * pc_inverse_or_zero(now);
-  return scale;
-}
-
 // A row remembers its impulse, and each of its two visits in a sub-step adds to it: of a slow motion of many bodies it is a spring of
 // 2 m / h^2. At rest it is one of rate / leak, which is more, and what is stiffer at rest than in motion makes energy: piles bounced for
 // good. So where one body stands on another that moves, what the last sub-step changed in a row's impulse goes on by a share (heavy ball:
@@ -47,8 +34,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad moved_a = PC_GATHER(delta, ia, 0u); Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
-  Real scale = pc_mass_scale(PC_PASS m, arms, a, b);
-  PC_ST(contact_rows, m, ROW_SCALE, pc_select(pushes, pc_select(far, PC_REAL(1.0), scale), PC_LD(contact_rows, m, ROW_SCALE)));
+  PC_ST(contact_rows, m, ROW_ACTS, pc_select(pushes, PC_REAL(1.0), PC_LD(contact_rows, m, ROW_ACTS)));
   precise Real both_move = a.inverse_mass * b.inverse_mass;
   pc_go_on(PC_PASS m, both_move, pushes);
   pc_keep_recalled(PC_PASS m, ia, ib, pushes);

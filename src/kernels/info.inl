@@ -21,6 +21,7 @@ PC_INFO_FIELD(load_ahead, "1 in the relax phase: friction goes by the load that 
 PC_INFO_FIELD(push_speed, "largest speed at which an overlap is undone [m/s]")
 PC_INFO_FIELD(tree_push_speed, "the same of what stands in trees, by velocities: what gravity gives in a step; what is more moves poses alone [m/s]")
 PC_INFO_FIELD(joint_push_speed, "[m/s] for pins, [rad/s] for angles")
+PC_INFO_FIELD(sent, "1 in the sent phase: contacts of what joints have sent together in this sub-step; else 0")
 PC_INFO_FIELD(push, "1 in the push phase: what contacts have changed moves poses alone; else 0")
 PC_INFO_FIELD(rounds, "Newton steps of a net of springs, and most search directions in each")
 PC_INFO_FIELD(net_made, "share of its energy that a net may make in a sub-step and owe")

@@ -2,15 +2,19 @@
 // but for what is pending. Needs contact_meeting.inl, tree_reach.inl.
 PC_FN Real pc_free_mass(Mask in_tree, BodyState b) { return pc_select(in_tree, PC_REAL(0.0), b.inverse_mass); }
 
-PC_FN void pc_keep_meeting(PC_IO Way w, Slot m, Meeting now) {
-  Slot s = PC_NODE(m, w.reach); Slot q = PC_NODE(m, w.reach + 1u); Twist v = now.twist;
-  pc_st3_reach(PC_PASS s, 0u, Vec3(v.v1, v.v2, v.vn)); pc_st3_reach(PC_PASS s, 3u, Vec3(v.w1, v.w2, v.wn)); pc_st3_reach(PC_PASS s, 6u, Vec3(now.shift.n, now.shift.turn1, now.shift.turn2));
-  PC_ST(contact_reach, s, 9u, pc_max(pc_free_mass(pc_in_tree(PC_PASS w, m, 0u), now.a), pc_free_mass(pc_in_tree(PC_PASS w, m, 1u), now.b)));
-  PC_ST(contact_reach, s, 10u, pc_select(pc_some(PC_WAY_EACH(m, pc_entry(w, PATH_COMMON))), PC_REAL(0.0), pc_min(now.a.inverse_mass, now.b.inverse_mass)));
-  pc_st3_reach(PC_PASS q, 0u, now.arms.a); pc_st3_reach(PC_PASS q, 3u, now.arms.b);
+PC_FN void pc_keep3_reach(PC_IO Slot s, uint f, Vec3 v, Mask these) { pc_st3_reach(PC_PASS s, f, pc_select3(these, v, pc_ld3_reach(PC_PASS s, f))); }
+PC_FN void pc_keep_meeting(PC_IO Way w, Slot m, Meeting now, Mask these) {
+  Slot s = PC_NODE(m, w.reach);
+  Slot q = PC_NODE(m, w.reach + 1u);
+  Twist v = now.twist;
+  pc_keep3_reach(PC_PASS s, 0u, Vec3(v.v1, v.v2, v.vn), these);
+  pc_keep3_reach(PC_PASS s, 3u, Vec3(v.w1, v.w2, v.wn), these);
+  pc_keep3_reach(PC_PASS s, 6u, Vec3(now.shift.n, now.shift.turn1, now.shift.turn2), these);
+  Real free = pc_max(pc_free_mass(pc_in_tree(PC_PASS w, m, 0u), now.a), pc_free_mass(pc_in_tree(PC_PASS w, m, 1u), now.b));
+  PC_ST(contact_reach, s, 9u, pc_select(these, free, PC_LD(contact_reach, s, 9u)));
+  pc_keep3_reach(PC_PASS q, 0u, now.arms.a, these);
+  pc_keep3_reach(PC_PASS q, 3u, now.arms.b, these);
 }
-// Whether both sides move, and not in one tree.
-PC_FN Mask pc_both_move(PC_IO Way w, Slot m) { return PC_LD(contact_reach, PC_NODE(m, w.reach), 10u) > PC_REAL(0.0); }
 PC_FN BodyState pc_unmoved() {
   Real zero = PC_REAL(0.0); BodyState b; b.v = pc_zero3(); b.l = b.v; b.inverse_mass = zero; b.phase = zero; b.response = zero; b.unlike = zero; b.inertia = pc_diagonal(zero); return b;
 }

@@ -152,7 +152,7 @@ PC_PROPERTY(contact, contact, 29, real, contact_kinetic_friction, derived, 0, "1
 PC_PROPERTY(contact, contact, 30, real, contact_restitution, derived, 0, "1", "")
 PC_PROPERTY(contact, contact, 31, real, impact_time, derived, 0, "s", "after the step's start, of shapes that meet in flight; 0: they are close; -1: a body hangs on joints")
 PC_PROPERTY(contact, contact, 32, vec3, apart, scratch, 0, "m", "from a's centre of mass to b's, when the manifold was found")
-PC_PROPERTY(contact, contact, 35, real, found_anew, scratch, 0, "1", "in this sub-step 0: the rows stand; 1: the manifold was found anew, and hands on what the rows hold; 2: it acts no longer; 3, before the relax visit: its shapes did not meet")
+PC_PROPERTY(contact, contact, 35, real, found_anew, scratch, 0, "1", "in this sub-step 0: the rows stand; 1: the manifold was found anew, and hands on what the rows hold; 2: it acts no longer")
 PC_PROPERTY(contact, contact, 36, quat, from_point, scratch, 0, "1", "which point of the manifold before each one was, from 1; 0: none")
 
 PC_TABLE(touch, "what a step did to each contact: rows are those of the table of contacts; only where StepSettings asks for events (docs/events.md)")

@@ -1,4 +1,4 @@
-// Once a sub-step, after tree_respond: how far the rows of a manifold with a body of a tree reach (tree_reach.inl), and their effective masses, from
+// Once a sub-step, after tree_respond, and once more of what joints have sent together: how far the rows of a manifold with a body of a tree reach (tree_reach.inl), and their effective masses, from
 // how whole trees answer.
 #define PC_SOME_ROWS
 #include "tree_math.inl"
@@ -61,25 +61,32 @@ PC_FN Responses pc_outside_responses(PC_IO Way w, Slot m, Meeting now, Vec3 n, V
 }
 // The approach that is told of a row (contact_touch) is that of the sub-step in which it first pushes: on its way there a limb is turned by blows
 // elsewhere.
-PC_FN void pc_see_approach(PC_IO Slot m, uint i, Twist v) {
+PC_FN void pc_see_approach(PC_IO Slot m, uint i, Twist v, Mask these) {
   Real u = pc_row_approach(PC_PASS m, i, v);
-  Mask waits = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) < PC_TINY;
+  Mask waits = pc_and(these, PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) < PC_TINY);
   PC_ST(contact_rows, m, ROW_APPROACH + i, pc_select(waits, pc_min(u, PC_REAL(0.0)), PC_LD(contact_rows, m, ROW_APPROACH + i)));
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Way w = pc_way(PC_PASS m); Real one = PC_REAL(1.0); Real none = PC_REAL(0.0);
+  Real one = PC_REAL(1.0); Real none = PC_REAL(0.0);
+  Real acted = PC_LD(contact_rows, m, ROW_ACTS);
+  Mask these = pc_or(PC_INFO(sent) < PC_REAL(0.5), acted > one);
+  if (!PC_ANY(these)) return;  // lint: allow (others keep what they have)
+  Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1); Meeting now = pc_meeting(PC_PASS m, ia, ib, n, t1, t2);
-  for (uint i = 0u; i < 4u; i++) pc_see_approach(PC_PASS m, i, now.twist);
-  Mask idle = pc_idles(PC_PASS m, now); Real scale = pc_select(idle, none, one); PC_ST(contact_rows, m, ROW_SCALE, scale);
-  if (!PC_ANY(scale > none)) return;  // lint: allow (rows without mass use none of what follows)
-  pc_keep_meeting(PC_PASS w, m, now);
+  for (uint i = 0u; i < 4u; i++) pc_see_approach(PC_PASS m, i, now.twist, these);
+  precise Real acts = PC_INFO(sent) + one;
+  Real acting = pc_select(pc_idles(PC_PASS m, now), none, acts);
+  PC_ST(contact_rows, m, ROW_ACTS, pc_select(these, acting, acted));
+  these = pc_and(these, acting > none);
+  if (!PC_ANY(these)) return;  // lint: allow (rows that are left alone use none of what follows)
+  pc_keep_meeting(PC_PASS w, m, now, these);
   bool turns = PC_ANY(pc_turns_matter(PC_PASS m));
   pc_fill_reach(PC_PASS w, m, turns, now.arms, n, t1, t2);
   Responses r = pc_tree_responses(PC_PASS w, m, turns, pc_outside_responses(PC_PASS w, m, now, n, t1, t2));
   Real w0 = pc_select(PC_LD(contact_rows, m, ROW_MASS) > none, one, none); Real w1 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 1u) > none, one, none);
   Real w2 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 2u) > none, one, none); Real w3 = pc_select(PC_LD(contact_rows, m, ROW_MASS + 3u) > none, one, none);
-  r.these = scale > none; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
+  r.these = these; pc_store_masses(PC_PASS m, r, w0, w1, w2, w3);
 }
 #undef PC_SOME_ROWS

@@ -23,7 +23,7 @@ PC_FN Real pc_row_push(PC_IO Way w, Slot m, uint i, Twist v, Real light) {
   precise Real most = pc_sqrt(least) * PC_INFO(push_speed);
   Real room = pc_max(PC_LD(contact_reach, PC_NODE(m, w.reach + 1u), REACH_ROOM + i), -most);
   precise Real asked = -(mass * vn) - room;
-  return pc_select(PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0), pc_max(asked, PC_REAL(0.0)), PC_REAL(0.0));
+  return pc_select(PC_LD(contact_rows, m, ROW_ACTS) > PC_REAL(0.0), pc_max(asked, PC_REAL(0.0)), PC_REAL(0.0));
 }
 // How a body in no tree has been pushed so far; others have what is pending.
 PC_FN BodyState pc_push_state(PC_IO Index i, Mask free, BodyState b) {
@@ -48,8 +48,8 @@ PC_FN void pc_note_free(PC_IO Index i, Mask moves, Vec3 impulse, Vec3 torque) {
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask acts = PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0);
-  if (!PC_ANY(acts)) return;  // lint: allow (without mass they do nothing)
+  Mask acts = PC_LD(contact_rows, m, ROW_ACTS) > PC_REAL(0.0);
+  if (!PC_ANY(acts)) return;  // lint: allow (others do nothing)
   Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY));
   Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));

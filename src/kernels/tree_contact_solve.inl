@@ -41,9 +41,8 @@ PC_FN Mask pc_goes_by_rows(PC_IO Meeting now) {
 }
 
 // For tree_contact_push, which comes after the biased visit.
-PC_FN void pc_keep_room(PC_IO Way w, Slot m, FourRows room) {
+PC_FN void pc_keep_room(PC_IO Way w, Slot m, FourRows room, Mask acts) {
   if (PC_ANY(PC_INFO(load_ahead) > PC_REAL(0.5))) return;  // lint: allow (the same for all lanes)
-  Mask acts = PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0);
   Slot s = PC_NODE(m, w.reach + 1u);
   PC_ST(contact_reach, s, REACH_ROOM, pc_select(acts, room.r0, PC_LD(contact_reach, s, REACH_ROOM)));
   PC_ST(contact_reach, s, REACH_ROOM + 1u, pc_select(acts, room.r1, PC_LD(contact_reach, s, REACH_ROOM + 1u)));
@@ -52,20 +51,21 @@ PC_FN void pc_keep_room(PC_IO Way w, Slot m, FourRows room) {
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  if (!PC_ANY(PC_LD(contact_rows, m, ROW_SCALE) > PC_REAL(0.0))) return;  // lint: allow (without mass they do nothing)
+  Mask acts = PC_LD(contact_rows, m, ROW_ACTS) > PC_INFO(sent);
+  if (!PC_ANY(acts)) return;  // lint: allow (others do nothing)
   Way w = pc_way(PC_PASS m);
   Index ia = PC_WAY_EACH(m, pc_entry(w, PATH_BODY)); Index ib = PC_WAY_EACH(m, pc_entry(w, PATH_BODY + 1u));
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N); Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T); Vec3 t2 = pc_cross(n, t1);
   Meeting now = pc_meeting_now(PC_PASS w, m, ia, ib, n, t1, t2); Twist v = now.twist;
-  Mask acts = pc_goes_by_rows(PC_PASS now);
+  acts = pc_and(acts, pc_goes_by_rows(PC_PASS now));
   uint turning = pc_turning(PC_PASS w, m);
   Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
   v.v1 = rate.l.x; v.v2 = rate.l.y; v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y; v.wn = rate.a.z;
-  Mask both_move = pc_both_move(PC_PASS w, m);
-  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, PC_INFO(contact_preload), acts, both_move, pc_bounce(PC_PASS w, m));
-  pc_keep_room(PC_PASS w, m, r.room);
+  Visit r = pc_visit(PC_PASS m, v, now.shift, n, t1, t2, PC_INFO(contact_preload), acts, pc_bounce(PC_PASS w, m));
+  pc_keep_room(PC_PASS w, m, r.room, acts);
   r.impulse = pc_select3(acts, r.impulse, pc_zero3());
   r.couple = pc_select3(acts, r.couple, pc_zero3());
+  r.touch = pc_select(acts, r.touch, PC_REAL(0.0));
 
   Real changes = pc_max(r.touch, pc_max(pc_largest(r.impulse), pc_largest(r.couple)));
   Mask some = changes > PC_REAL(0.0);

@@ -43,6 +43,12 @@ PC_FN void pc_pass_blow(PC_IO Slot n) {
   PC_SCATTER_IF(blown, velocity_parts, body, 1u, pc_quad(pc_add(angular.v, turned), angular.s));
 }
 
+// TREE_X, by which limits are entered: of all that contacts have changed in the sub-step.
+PC_FN void pc_add_turn(PC_IO Slot n, Mask some) {
+  Vec3 before = pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN);
+  Vec3 all = pc_add(pc_ld3_tree(PC_PASS n, TREE_X + 3u), before);
+  pc_st3_tree(PC_PASS n, TREE_X + 3u, pc_select3(some, all, before));
+}
 // What undoes overlaps moves poses alone, later (tree_again.inl). TREE_X: of that and of what contacts have changed before.
 PC_FN void pc_keep_push(PC_IO Slot n) {
   Vec3 turned_before = pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN);
@@ -54,14 +60,17 @@ PC_FN void pc_keep_push(PC_IO Slot n) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m); Slot root = PC_NODE(m, t.first); Vec3 push = pc_zero3(); Vec3 turn = pc_zero3();
   bool moves_poses = PC_ANY(PC_INFO(push) > PC_REAL(0.5));
-  if (moves_poses) {
+  bool again = moves_poses || PC_ANY(PC_INFO(sent) > PC_REAL(0.5));
+  Real touched = PC_REAL(0.0);
+  if (again) {
     PC_NODES(k, 0u, t) { Slot n = PC_NODE(m, t.first + k); pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_ld3_tree(PC_PASS n, TREE_X + 3u)); }
     PC_MEET;
   }
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k); Index row = PC_ORDER(tree_order, n); Quad impulse = PC_GATHER(node_pending, row, 2u); Quad torque = PC_GATHER(node_pending, row, 3u);
     Real touch = impulse.s;
-    if (moves_poses) touch = pc_max(touch, PC_LD(tree_rows, n, TREE_TOUCH));
+    touched = pc_max(touched, touch);
+    if (again) touch = pc_max(touch, PC_LD(tree_rows, n, TREE_TOUCH));
     push = pc_add(push, impulse.v); PC_ONE PC_ST(tree_rows, n, TREE_TOUCH, touch);
     precise Vec3 moment = turn + torque.v + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), impulse.v); turn = moment;
     PC_THEN(PC_DOWN(k, 0u, t)) pc_flush_node(PC_PASS m, t, k);
@@ -75,6 +84,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     PC_ONE pc_st6_tree(PC_PASS root, TREE_PUSHED, pc_six(push, turn));
     return;
   }
-  pc_tree_add_changes(PC_PASS m, t, push, turn);
-  PC_NODES(k, 0u, t) pc_pass_blow(PC_PASS PC_NODE(m, t.first + k));
+  PC_MOST(touched);
+  Mask some = pc_or(PC_INFO(sent) < PC_REAL(0.5), touched > PC_REAL(0.0));
+  pc_tree_add_changes_of(PC_PASS m, t, some, push, turn);
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_pass_blow(PC_PASS n);
+    if (again) pc_add_turn(PC_PASS n, some);
+  }
 }

@@ -82,6 +82,8 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   infos[unsigned(Phase::first)].begins = 1;
   change(Phase::last, h, from.h);
 
+  infos[unsigned(Phase::sent)] = biased;
+  infos[unsigned(Phase::sent)].sent = 1;
   infos[unsigned(Phase::push)] = biased;
   infos[unsigned(Phase::push)].push = 1;
 

@@ -15,11 +15,6 @@ namespace {
 /// Of Detector::meet.
 constexpr Access collide_accesses[] = {
     {Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, false}, {Buffer::contact, true}};
-/// Of Detector::find_missed.
-constexpr Access missed_accesses[] = {{Buffer::pose, false}, {Buffer::contact, true}};
-std::span<const Access> collide_accesses_of(Phase phase) {
-  return phase == Phase::relax ? std::span<const Access>(missed_accesses) : collide_accesses;
-}
 
 /// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
 class Builder {
@@ -47,12 +42,11 @@ class Builder {
     add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses, k.domain);
   }
 
-  /// The narrow phase of a sub-step, on the host: Detector::meet; in the relax phase Detector::find_missed.
+  /// The narrow phase of a sub-step, on the host: Detector::meet.
   void collide(Phase phase, std::uint32_t substep) {
-    const auto accesses = collide_accesses_of(phase);
-    for (const Access& a : accesses) bring(a.buffer, Place::cpu, substep);
+    for (const Access& a : collide_accesses) bring(a.buffer, Place::cpu, substep);
     plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, phase, false, substep, octave_, nullptr, 0});
-    for (const Access& a : accesses) {
+    for (const Access& a : collide_accesses) {
       if (!a.write) continue;
       overwrite(a.buffer);
       at(a.buffer).current = {true, false};
@@ -217,7 +211,7 @@ void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 void look_at_inertia(Builder& b, const PlanSignature& s, std::uint32_t substep) {
   if (s.joints() || s.solves_trees() || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
 }
-/// Before the impulses, which act and where; before the relax visit, which of trees have pushed for nothing.
+/// Which act in the sub-step, and where; in the sent phase, which of limbs that contacts and joints have sent elsewhere.
 void look_at_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (!s.contacts()) return;
   b.collide(phase, substep);
@@ -280,6 +274,12 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
   b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
+  if (s.tree_contacts) {
+    look_at_contacts(b, s, Phase::sent, k);
+    b.kernel(Kernel::tree_contact_prepare, Phase::sent, k);
+    b.kernel(Kernel::tree_contact_solve, Phase::sent, k);
+    b.kernel(Kernel::tree_flush, Phase::sent, k);
+  }
   if (s.nets && s.contacts()) b.kernel(Kernel::net_solve, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_push, Phase::push, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_flush, Phase::push, k);
@@ -289,7 +289,6 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
   if (s.nets) b.kernel(Kernel::net_settle, Phase::biased, k);
-  if (s.tree_contacts) look_at_contacts(b, s, Phase::relax, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_relax, Phase::relax, k);
   if (s.tree_contacts) b.kernel(Kernel::push_back, Phase::relax, k);
   solve_free_joints(b, s, Phase::relax, k);
@@ -364,7 +363,7 @@ void label_islands(Builder& b, const StepPlan& plan) {
 }  // namespace
 
 std::span<const Access> accesses(const PlanEntry& entry) {
-  if (entry.kind == PlanEntry::Kind::collide) return collide_accesses_of(entry.phase);
+  if (entry.kind == PlanEntry::Kind::collide) return collide_accesses;
   return entry.own ? std::span<const Access>(entry.own->accesses) : schema(entry.kernel).accesses;
 }
 Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : schema(entry.kernel).stage; }

@@ -31,7 +31,7 @@ std::string_view stage_name(const PlanEntry& entry) {
   return entry.kind == PlanEntry::Kind::kernel ? name(stage(entry)) : std::string_view("transfer");
 }
 std::string_view phase_name(const PlanEntry& entry) {
-  constexpr std::string_view names[phase_count] = {"first", "biased", "push", "relax", "last"};
+  constexpr std::string_view names[phase_count] = {"first", "biased", "sent", "push", "relax", "last"};
   return names[std::size_t(entry.phase)];
 }
 

@@ -27,9 +27,9 @@ class ContactLooks final : public Collider {
     detector_.meet(s, {level.rows, level.places}, octave, first, h, options_);
     list_blocks(level);
   }
-  void find_missed(WorldState& s, unsigned octave, double h) override {
+  void collide_sent(WorldState& s, unsigned octave, double h) override {
     const Level& level = listed(octave);
-    detector_.find_missed(s, {level.rows, level.places}, octave, h, options_);
+    detector_.meet_sent(s, {level.rows, level.places}, octave, h, options_);
     list_blocks(level);
   }
   bool waits() const override { return detector_.waits(); }

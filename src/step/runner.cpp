@@ -228,6 +228,12 @@ Status Runner::kernels(const Call& call, WorldState& state, const void* infos) {
   return {};
 }
 
+std::span<const Range> Runner::narrowed_to(const Narrowed& n) const {
+  if (n.to == Narrowed::To::struck) return collider_->struck_blocks();
+  const std::span<const Range> renewed = collider_->renewed_blocks();
+  return n.to == Narrowed::To::renewed || renewed.empty() ? renewed : n.all;
+}
+
 /// What impacts have sent elsewhere may meet others there: contacts that act from now on have their rows made.
 Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos, const KernelRun& impacts) {
   Backend& backend = *at(entry.place).backend;
@@ -247,7 +253,7 @@ Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& stat
   prepare.info = std::uint32_t(info_index(biased));
   if (entry.place == Place::cpu) prepare.ranges = collider_->renewed_blocks();
   for (const Narrowed& n : narrowed_)  // other ones than those of the sweep before
-    if (n.struck && &runs_[n.run] == &impacts) runs_[n.run].ranges = collider_->struck_blocks();
+    if (n.to == Narrowed::To::struck && &runs_[n.run] == &impacts) runs_[n.run].ranges = collider_->struck_blocks();
   return backend.run(std::span(&prepare, 1));
 }
 
@@ -277,13 +283,13 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
   if (entry.kind == PlanEntry::Kind::collide) {
     if (!collider_) return {};  // the table holds what was found
     const double h = substep_of(entry, infos, state.tables.precision());
-    if (entry.phase == Phase::relax)
-      collider_->find_missed(state, entry.octave, h);
+    if (entry.phase == Phase::sent)
+      collider_->collide_sent(state, entry.octave, h);
     else
       collider_->collide(state, entry.octave, entry.substep == 0, h);
     if (gl_) state.tables.touch(Buffer::contact);
     for (const Narrowed& n : std::span(narrowed_).subspan(call.narrowed, call.narrowed_count))
-      runs_[n.run].ranges = n.struck ? collider_->struck_blocks() : collider_->renewed_blocks();
+      runs_[n.run].ranges = narrowed_to(n);
     return {};
   }
   if (entry.kind == PlanEntry::Kind::kernel) return kernels(call, state, infos);

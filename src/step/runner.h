@@ -25,9 +25,9 @@ class Collider {
   /// Once more, where impacts have sent bodies elsewhere since, or waited for others; `last`: for the last time in the
   /// sub-step.
   virtual void collide_again(WorldState& state, unsigned octave, bool last, double h) = 0;
-  /// After the bodies have moved: whose rows pushed for nothing.
-  virtual void find_missed(WorldState& state, unsigned octave, double h) = 0;
   virtual bool waits() const = 0;
+  /// Once more, where contacts and joints have sent limbs elsewhere.
+  virtual void collide_sent(WorldState& state, unsigned octave, double h) = 0;
   /// Blocks of contacts, whose rows it has made other than they were in the sub-step before; and blocks with impacts.
   virtual std::span<const Range> renewed_blocks() const = 0;
   virtual std::span<const Range> struck_blocks() const = 0;
@@ -126,9 +126,12 @@ class Runner final : Keeper {
     std::uint32_t narrowed = 0, narrowed_count = 0;  // of a collide entry: runs that go over some blocks alone
   };
   struct Narrowed {
+    enum class To : std::uint8_t { renewed, struck, all_or_none };  // blocks; all where some are renewed
     std::uint32_t run;
-    bool struck;  // over blocks with impacts; else over renewed ones
+    To to;
+    std::span<const Range> all;
   };
+  std::span<const Range> narrowed_to(const Narrowed& run) const;
 
   void fetch(Buffer buffer) override;
   void lose() override { holds_of_ = nullptr; }

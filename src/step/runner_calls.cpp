@@ -13,10 +13,15 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
 }
 
 /// Rows that stand need not be made, and what has no impact no look at one: on the host such runs go over the blocks of the others.
+/// Where joints have sent nothing together, runs that are for what they have are left out on any place.
 void Runner::narrow(const PlanEntry& entry) {
-  if (entry.place != Place::cpu || entry.own) return;
-  const bool prepare = prepares(entry.kernel) && entry.phase != Phase::first, strike = strikes(entry.kernel);
-  if (prepare || strike) narrowed_.push_back({std::uint32_t(runs_.size()) - 1, strike});
+  using To = Narrowed::To;
+  if (entry.own) return;
+  const bool on_host = entry.place == Place::cpu;
+  const auto add = [&](To to) { narrowed_.push_back({std::uint32_t(runs_.size()) - 1, to, {}}); };
+  if (on_host && strikes(entry.kernel)) return add(To::struck);
+  if (on_host && prepares(entry.kernel) && entry.phase != Phase::first) return add(To::renewed);
+  if (entry.phase == Phase::sent) add(To::all_or_none);
 }
 
 /// Empty ranges are left out, and those that need not follow one another are joined.
@@ -96,6 +101,7 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, bool strays, cons
     run.ranges = std::span(ranges_).subspan(first, run.ranges.size());
     first += run.ranges.size();
   }
+  for (Narrowed& n : narrowed_) n.all = runs_[n.run].ranges;
   unsigned octave = 0;
   for (const PlanEntry& entry : plan.entries) octave = std::max(octave, octave_of(entry.octave));
   infos_ = phase_count * (1 + octave);
