@@ -105,7 +105,6 @@ struct SceneRun {
     CHECK(end.separation.max <= 0.0001);
     CHECK(peak <= 0.010);
     CHECK(end.penetration.max <= deepest);
-    CHECK(end.penetration.mean() <= 0.0002);
     CHECK(last_limit <= 6 * degree);
   }
 };
@@ -135,12 +134,17 @@ TEST_CASE("scenes: 1,000 balls overlap little") {
 
 TEST_CASE("scenes: ragdolls") {
   for (const Mode& mode : precisions()) {
-    const SceneRun r(mode, "ragdolls", 8);
-    r.tell(mode);
     CAPTURE(mode.name());
-    r.check_sound();
-    r.check_energy();
-    r.check_heap();
+    double overlap = 0;
+    for (const std::optional<std::uint64_t> seed : {std::optional<std::uint64_t>(), {1}, {2}, {3}}) {
+      const SceneRun r(mode, "ragdolls", 8, 600, 100, seed);
+      r.tell(mode);
+      r.check_sound();
+      r.check_energy();
+      r.check_heap();
+      overlap += r.end.penetration.mean() / 4;
+    }
+    CHECK(overlap <= 0.00015);
   }
 }
 
@@ -157,14 +161,17 @@ TEST_CASE("scenes: 100 ragdolls") {
 
 TEST_CASE("scenes: of nine heaps of 100 ragdolls the median overlaps by no more than 5 mm anywhere") {
   std::vector<double> deepest;
+  double overlap = 0;
   for (std::uint64_t seed = 1; seed <= 9; seed++) {
     const SceneRun r({Precision::f32}, "ragdolls", 100, 600, 100, seed);
     r.check_sound();
     deepest.push_back(r.end.penetration.max);
+    overlap += r.end.penetration.mean() / 9;
   }
   std::sort(deepest.begin(), deepest.end());
   CHECK(deepest[4] <= 0.005);  // median of 48: 4.2 mm; 4.0 without limits after the contacts
   CHECK(deepest.back() <= 0.0105);
+  CHECK(overlap <= 0.0002);
 }
 
 TEST_CASE("scenes: a stack and a pyramid stand") {
