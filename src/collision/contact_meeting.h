@@ -167,9 +167,8 @@ template <class Scalar> struct Detector::Meeting {
       fastest = std::max(fastest, double(passing(ta, tb, m.normal, m.points[i].p, apart).closing));
     return fastest;
   }
-  /// Whether what meets at `t` would be within the other by half of its thickness at the end of the sub-step: it might come
-  /// out on the other side.
-  bool sinks(const Manifold<Scalar>& m, double t) const { return closing(m) * (h - t) > thick; }
+  /// Whether what meets at `t` would be within the other by a quarter of its thickness at the end of the sub-step.
+  bool sinks(const Manifold<Scalar>& m, double t) const { return closing(m) * (h - t) > thick / 2; }
 
   /// Whether they come together, and no faster than by what gravity gives in two sub-steps. What else holds them takes
   /// that back, which rows that are solved together know and an impact does not. (What bounces does so however slowly it
