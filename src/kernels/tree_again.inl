@@ -1,5 +1,5 @@
 // After the contacts: the pins at the new prediction, with the same factor (Newton's second step, and what the contacts
-// have undone), again where a gap is left, a limit is crossed or one throws back; then the push that closes the gaps left over, which the relax
+// have undone), again where a gap is left or a limit is crossed; what limits throw back; then the push that closes the gaps left over, which the relax
 // phase takes back once the bodies have moved by it. All are rounds of one loop, so that compilers translate what they share once.
 #include "body_state.inl"
 #include "tree_rows.inl"
@@ -13,11 +13,6 @@
 #include "tree_trust.inl"
 #include "tree_rebound.inl"
 
-// Of a limit that is met and throws back, how far its rate lacks of that at which it is to be left; else 0.
-PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
-  Real away = PC_LD(tree_rows, n, TREE_REBOUND + i); Mask rebounds = pc_and(pc_throws_back(PC_PASS n), pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), away > PC_REAL(0.0)));
-  precise Real lack = rate - away; return pc_select(rebounds, pc_min(lack, PC_REAL(0.0)), PC_REAL(0.0));
-}
 // How fast a limit that acts is crossed by the end of the sub-step, below 0; `rate`: that of its slack. What is beyond it already is not asked back
 // here: velocities of that would meet the contacts of the relax phase.
 PC_FN Real pc_crosses(PC_IO Slot n, uint i, Real rate) {
@@ -25,14 +20,13 @@ PC_FN Real pc_crosses(PC_IO Slot n, uint i, Real rate) {
   precise Real over = rate + pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
   return pc_select(acts, pc_min(over, PC_REAL(0.0)), PC_REAL(0.0));
 }
-// Limits are not crossed and else keep what they carry, unless they throw back; locked rows are corrected like pins.
+// Limits are not crossed and else keep what they carry; locked rows are corrected like pins.
 PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted, Real most) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     Real now = pc_row_rate(PC_PASS n, up, i, turn, most);
     Real over = pc_crosses(PC_PASS n, i, now);
-    if (PC_ANY(pc_throws_back(PC_PASS n))) over = pc_min(over, pc_lacks_rebound(PC_PASS n, i, now));  // lint: allow (zero otherwise)
     precise Real rate = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.0), now, over) * wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
   }
@@ -42,9 +36,7 @@ PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
   precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_share_within(size, most); return pc_scale(v, share);
 }
-// A limit that throws back is left too slowly where this share of the rate lacks.
-#define PC_LACKS_REBOUND PC_REAL(1e-5)
-// 1 where a limit is crossed by more than rounding, or one that throws back is left too slowly, by more than 1e-5 of its rate.
+// 1 where a limit is crossed by more than rounding.
 PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   Real lacks = PC_REAL(0.0);
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return lacks;  // lint: allow (zero otherwise)
@@ -52,18 +44,12 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   for (uint i = 0u; i < 3u; i++) {
     Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
     lacks = pc_select(pc_is_crossed(pc_crosses(PC_PASS n, i, now)), PC_REAL(1.0), lacks);
-    if (PC_ANY(pc_throws_back(PC_PASS n))) {  // lint: allow (none otherwise)
-      precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * -PC_LACKS_REBOUND;
-      Mask much_lacks = pc_and(pc_throws_back(PC_PASS n), pc_lacks_rebound(PC_PASS n, i, now) < much);
-      lacks = pc_select(much_lacks, PC_REAL(1.0), lacks);
-    }
   }
   return lacks;
 }
 // A gap is wide beyond 4e-5 of the arm: its square.
 #define PC_WIDE_OPEN PC_REAL(2e-9)
-// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit
-// has not thrown back yet.
+// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit is crossed.
 struct Left { Real some; Real much; };
 // Run after pc_tree_residual.
 PC_FN Left pc_left(PC_IO Slot m, Tree t) {
@@ -217,9 +203,14 @@ PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted, Real most) {
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
   }
 }
-// A sweep from TREE_C and TREE_RATE: what it changes goes to the bodies, its impulses to the joints, or its velocities to the push.
-PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool pushes) {
+// A sweep from TREE_C and TREE_RATE: what it changes goes to the bodies, its impulses to the joints, or its velocities to the push; or all of
+// it to what limits throw back.
+PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool throws, bool pushes) {
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
+  if (throws) {
+    pc_add_to_throw(PC_PASS m, t);
+    return;
+  }
   if (!pushes) {
     PC_NODES(k, 1u, t) {
       Slot n = PC_NODE(m, t.first + k);
@@ -232,24 +223,19 @@ PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool pushes) {
     PC_NODES(k, 0u, t) pc_add_to_push(PC_PASS PC_NODE(m, t.first + k));
   }
 }
-// After Newton's steps where `steps` is 1: 1 where they have not found their way, or have thrown back more than there was; what is too much is
-// taken back. `thrown`: 1 where a limit threw back.
-PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps, Real thrown) {
+// After Newton's steps where `steps` is 1: 1 where they have not found their way, and are taken back.
+PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps) {
   Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
   if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
-  // (of what is thrown back the energy before the solve tells, not what a stop has left of it)
-  strayed = pc_select(thrown > PC_REAL(0.5), PC_REAL(0.0), strayed);
-  Real kept = pc_select(strayed > PC_REAL(0.5), PC_REAL(0.0), PC_REAL(1.0));
-  if (PC_ANY(thrown > PC_REAL(0.5))) kept = pc_select(thrown > PC_REAL(0.5), pc_rebound_share(PC_PASS m, t), kept);  // lint: allow (nothing changes otherwise)
-  Real again = pc_select(kept < PC_REAL(1.0), steps, PC_REAL(0.0));
-  if (PC_ANY(again > PC_REAL(0.5))) pc_take_back(PC_PASS m, t, kept, again > PC_REAL(0.5));  // lint: allow (as above)
-  return again;
+  if (PC_ANY(strayed > PC_REAL(0.5))) pc_take_back(PC_PASS m, t, strayed > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
+  return strayed;
 }
 
-// Rounds 0 to 3 are Newton's steps; two more follow where they were taken back, and the push.
+// Rounds 0 to 3 are Newton's steps; two more follow where they were taken back, then what limits throw back, and the push.
 const uint ROUND_AGAIN = 4u;
-const uint ROUND_PUSH = 6u;
-const uint ROUND_END = 10u;
+const uint ROUND_THROW = 6u;
+const uint ROUND_PUSH = 10u;
+const uint ROUND_END = 14u;
 
 // What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
 // 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
@@ -262,21 +248,23 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real thrown = PC_REAL(0.0);
   Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0); push.most = PC_REAL(0.0);
   for (uint round = 0u; round < ROUND_END; round++) {
+    bool throws = round >= ROUND_THROW && round < ROUND_PUSH;
     if (round == ROUND_AGAIN) {
       wanted = PC_REAL(0.0);
-      if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
-        thrown = pc_min(pc_tree_is_thrown(PC_PASS m, t), steps);
-        wanted = pc_judge_steps(PC_PASS m, t, steps, thrown);
-      }
+      if (PC_ANY(steps > PC_REAL(0.5))) wanted = pc_judge_steps(PC_PASS m, t, steps);  // lint: allow (nothing changes otherwise)
+    }
+    if (round == ROUND_THROW) {
+      thrown = pc_tree_is_thrown(PC_PASS m, t);
+      wanted = thrown;
     }
     if (round == ROUND_PUSH) {
-      if (PC_ANY(thrown > PC_REAL(0.5))) pc_tell_blow(PC_PASS m, t, thrown > PC_REAL(0.5));  // lint: allow (as above)
+      if (PC_ANY(thrown > PC_REAL(0.5))) pc_end_throw(PC_PASS m, t, thrown > PC_REAL(0.5));  // lint: allow (as above)
       PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
       wanted = pc_move_by_push(PC_PASS m, t);
     }
     if (round > ROUND_PUSH) wanted = pc_min(wanted, push.turned);
     Real most = PC_REAL(1.0);
-    if (PC_ANY(wanted > PC_REAL(0.5))) {  // lint: allow (rounds of nothing change nothing)
+    if (PC_ANY(wanted > PC_REAL(0.5)) && !(throws && round > ROUND_THROW)) {  // lint: allow (rounds of nothing change nothing)
       if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(stale_share);
       pc_tree_residual_to(PC_PASS m, t, wanted, most);
     }
@@ -293,14 +281,16 @@ PC_FN void pc_kernel(PC_IO Slot m) {
       if (!PC_ANY(steps > PC_REAL(0.5))) continue;  // lint: allow (as above)
       pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));
     }
-    if (round < ROUND_PUSH) pc_newton_rates(PC_PASS m, t, wanted, most);
+    if (round < ROUND_THROW) pc_newton_rates(PC_PASS m, t, wanted, most);
+    if (throws) left.much = pc_throw_rates(PC_PASS m, t, round == ROUND_THROW);
     if (round > ROUND_PUSH) {
       Rest rest = pc_continue_push(PC_PASS m, t, noise, wanted, push.most);
       left.much = rest.much;
       if (round == ROUND_PUSH + 1u) push.most = rest.most;
     }
-    pc_solve_round(PC_PASS m, t, round >= ROUND_PUSH);
+    pc_solve_round(PC_PASS m, t, throws, round >= ROUND_PUSH);
     wanted = pc_min(wanted, left.much);
   }
+  if (PC_ANY(thrown > PC_REAL(0.5))) pc_push_against_throw(PC_PASS m, t, thrown > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
   pc_end_push(PC_PASS m, t);
 }

@@ -77,7 +77,7 @@ PC_FN Sym3 pc_with_drives(PC_IO Slot n, Slot up, Sym3 bare, Sym3 loose) {
 
 // After a sweep: a motor that would need more than its torque gets that; in the first round one that is past its speed holds it. 1
 // where any changed.
-PC_FN Real pc_drive_revise(PC_IO Slot n, Slot up, Real may_hold) {
+PC_FN Real pc_drive_revise(PC_IO Slot n, Slot up, bool may_hold) {
   Real zero = PC_REAL(0.0); Real one = PC_REAL(1.0); Mask driven = pc_drive_moves(PC_PASS n);
   if (!PC_ANY(driven)) return zero;  // lint: allow (nothing changes otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
@@ -86,7 +86,7 @@ PC_FN Real pc_drive_revise(PC_IO Slot n, Slot up, Real may_hold) {
   precise Real impulse = -PC_LD(tree_drive_rows, n, MOTOR_STIFFNESS) * beyond; precise Real past = beyond * on;
   Mask has = pc_and(driven, most > zero);
   Mask yields = pc_and(has, pc_and(pc_abs(on) < PC_REAL(0.5), pc_abs(impulse) > most));
-  Mask holds = pc_and(pc_and(has, may_hold > PC_REAL(0.5)), past > zero);
+  Mask holds = pc_and(pc_and(has, PC_IS(may_hold ? 1u : 0u)), past > zero);
   PC_ST(tree_drive_rows, n, MOTOR_ON, pc_select(yields, pc_select(impulse > zero, one, -one), pc_select(holds, zero, on)));
   return pc_select(pc_or(yields, holds), one, zero);
 }

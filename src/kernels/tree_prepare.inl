@@ -67,8 +67,8 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, uint pivot, Quaternion qc, Quate
   pc_st3_tree(PC_PASS n, TREE_CONE + 3u, pc_select3(is_cone, pc_select3(flipped, a.x_of_b, a.x_of_a), pc_zero3()));
   if (pivot == 1u) pc_keep_for_the_turn(PC_PASS n, is_angles);
   if (!PC_ANY(throws)) return;  // lint: allow (not read otherwise)
-  // what leans on a limit already does not meet it
-  for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_REAL(0.0), upper.s));
+  // what leans on a limit already does not meet it, but may meet the other one
+  for (uint i = 0u; i < 3u; i++) PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), -upper.s, upper.s));
 }
 
 // A pin that stands open between two bodies that move acts at one point, midway: impulses at two would turn the pair. No further from

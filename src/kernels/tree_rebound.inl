@@ -1,7 +1,9 @@
 // What a tree's limits throw back makes no energy. Newton's law leaves each row at a share of its own approach; where
 // several are met at once, with shares of their own, or what one throws drives another that leans on its limit, that
 // may be more than there was. No more comes back than the solve took, which stops all of them; what exceeds it is left
-// out of the whole throw, and pins close in a step of their own.
+// out of the whole throw. Bodies have it once they have moved: the sub-step ends at the limits, and what is thrown crosses no other limit within it.
+
+const uint TREE_THROW = TREE_INERTIA;  // change of velocity and of angular momentum; tree_trust.inl is done with it
 
 // Of the energy of a throw, in units of PC_INFO(rounding), what rounding leaves.
 #define PC_LIMIT_NOISE PC_REAL(16.0)
@@ -25,23 +27,62 @@ PC_FN Real pc_tree_is_thrown(PC_IO Slot m, Tree t) {
   PC_MOST(most);
   return most;
 }
-// What a limit throws back is a blow to its whole tree, and no acceleration (half_changes.inl): but for gravity it counts as if it had been there
-// before.
-PC_FN void pc_tell_blow(PC_IO Slot m, Tree t, Mask these) {
-  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
-  Vec3 fall = pc_scale(gravity, PC_INFO(h));
+// Of a limit that is met and throws back, how far `rate` lacks of that at which it is to be left; else 0.
+PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
+  Real away = PC_LD(tree_rows, n, TREE_REBOUND + i);
+  Mask acts = pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(0.5));
+  Mask rebounds = pc_and(pc_throws_back(PC_PASS n), pc_and(acts, away > PC_REAL(0.0)));
+  precise Real lack = rate - away;
+  return pc_select(rebounds, pc_min(lack, PC_REAL(0.0)), PC_REAL(0.0));
+}
+// A limit that throws back is left too slowly where this share of the rate lacks.
+#define PC_LACKS_REBOUND PC_REAL(1e-5)
+// Rates that the throw has to make up for: first of the limits that throw back, which lack all of it, then what a sweep has left, of the others that
+// act too. 1 where a limit is left too slowly by much.
+PC_FN Real pc_throw_rates_of(PC_IO Slot n, Slot up, bool first) {
+  Real lacks = PC_REAL(0.0);
+  pc_st3_tree(PC_PASS n, TREE_C, pc_zero3());
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return lacks;  // lint: allow (zero otherwise)
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  for (uint i = 0u; i < 3u; i++) {
+    Real away = PC_LD(tree_rows, n, TREE_REBOUND + i);
+    Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    Real rate = pc_rate_after(PC_PASS n, i, turn);
+    if (first) rate = pc_lacks_rebound(PC_PASS n, i, now);
+    precise Real little = away * -PC_LACKS_REBOUND;
+    Mask throws = pc_lacks_rebound(PC_PASS n, i, PC_REAL(0.0)) < PC_REAL(0.0);
+    lacks = pc_select(pc_and(throws, rate < little), PC_REAL(1.0), lacks);
+    PC_ST(tree_rows, n, TREE_RATE + i, rate);
+  }
+  return lacks;
+}
+PC_FN Real pc_throw_rates(PC_IO Slot m, Tree t, bool first) {
+  Real lacks = PC_REAL(0.0);
+  PC_NODES(k, 1u, t) {
+    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    lacks = pc_max(lacks, pc_throw_rates_of(PC_PASS PC_NODE(m, t.first + k), up, first));
+  }
+  PC_MOST(lacks);
+  if (first) {
+    PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_THROW, pc_six(pc_zero3(), pc_zero3()));
+  }
+  return lacks;
+}
+// After a sweep.
+PC_FN void pc_add_to_throw(PC_IO Slot m, Tree t) {
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    Index body = PC_ENDS(tree_ends, n, 0u);
-    BodyState b = pc_body_state(PC_PASS body);
-    Quad linear = PC_GATHER(velocity_parts, body, 0u);
-    Quad angular = PC_GATHER(velocity_parts, body, 1u);
-    Mask moves = pc_and(these, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
-    PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(pc_sub(b.v, fall), linear.s));
-    PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(b.l, angular.s));
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
+  }
+  pc_tree_conserve(PC_PASS m, t, pc_zero3(), pc_zero3());
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    pc_st3_tree(PC_PASS n, TREE_THROW, pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW), pc_ld3_tree(PC_PASS n, TREE_X)));
+    Vec3 turned = pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), pc_ld3_tree(PC_PASS n, TREE_CHANGE));
+    pc_st3_tree(PC_PASS n, TREE_THROW + 3u, turned);
   }
 }
-// The share of what came since pc_keep_motion that may stay, where a limit has thrown back.
+// The share of the throw that may stay.
 PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   PC_MEET;
   Real zero = PC_REAL(0.0);
@@ -51,19 +92,17 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
-    Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
-    Vec3 dv = pc_sub(b.v, kept.l);
-    Vec3 dl = pc_sub(b.l, kept.a);
-    Vec3 dw = pc_sym_mul(b.inertia, dl);
-    Vec3 w = pc_sym_mul(b.inertia, kept.a);
+    Six thrown = pc_ld6_tree(PC_PASS n, TREE_THROW);
+    Vec3 dw = pc_sym_mul(b.inertia, pc_scale(thrown.a, PC_LD(tree_rows, n, TREE_TOTAL)));
+    Vec3 w = pc_angular_velocity(b);
     Real turned = pc_dot(w, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), dw));
-    precise Real one = pc_dot(kept.l, dv) * PC_LD(tree_rows, n, TREE_MASS) + turned;
+    precise Real one = pc_dot(b.v, thrown.l) * PC_LD(tree_rows, n, TREE_MASS) + turned;
     Mask moves = PC_LD(tree_rows, n, TREE_MASS) > zero;
     precise Real all_first = first + pc_select(moves, one, zero);
-    precise Real all_second = second + pc_select(moves, pc_node_energy(PC_PASS n, dv, dw), zero);
+    precise Real all_second = second + pc_select(moves, pc_node_energy(PC_PASS n, thrown.l, dw), zero);
     first = all_first;
     second = all_second;
-    precise Real all = kept_energy + pc_select(moves, pc_node_energy(PC_PASS n, kept.l, w), zero);
+    precise Real all = kept_energy + pc_select(moves, pc_node_energy(PC_PASS n, b.v, w), zero);
     kept_energy = all;
   }
   PC_MEET;
@@ -85,29 +124,45 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   precise Real most = back + slightly;
   return pc_select(made > most, share, PC_REAL(1.0));
 }
-// (a share of none is what was, whatever there is now)
-PC_FN Vec3 pc_share_since(Vec3 before, Vec3 now, Real share) {
-  return pc_select3(share > PC_REAL(0.0), pc_madd(before, pc_sub(now, before), share), before);
+// What a limit throws back is a blow to its whole tree, and no acceleration (half_changes.inl): but for gravity it counts as if it had been there
+// before.
+PC_FN void pc_tell_blow(PC_IO Slot n, Mask these) {
+  Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
+  Vec3 fall = pc_scale(gravity, PC_INFO(h));
+  Index body = PC_ENDS(tree_ends, n, 0u);
+  BodyState b = pc_body_state(PC_PASS body);
+  Quad linear = PC_GATHER(velocity_parts, body, 0u);
+  Quad angular = PC_GATHER(velocity_parts, body, 1u);
+  Mask moves = pc_and(these, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
+  Vec3 v = pc_add(b.v, pc_ld3_tree(PC_PASS n, TREE_THROW));
+  Vec3 l = pc_madd(b.l, pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), PC_LD(tree_rows, n, TREE_TOTAL));
+  PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(pc_sub(v, fall), linear.s));
+  PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(l, angular.s));
 }
-// Of what came since pc_keep_motion a share stays, and no limit throws back any more.
-PC_FN void pc_take_back(PC_IO Slot m, Tree t, Real share, Mask these) {
+// Before the push. A body that turns about its pin has it at once: pivot_turn moves it, and takes nothing back.
+PC_FN void pc_end_throw(PC_IO Slot m, Tree t, Mask thrown) {
+  Real share = pc_rebound_share(PC_PASS m, t);
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    Index body = PC_ENDS(tree_ends, n, 0u);
-    Quad linear = PC_GATHER(motion, body, 0u);
-    Quad angular = PC_GATHER(motion, body, 1u);
-    Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
-    Mask moves = pc_and(these, linear.s > PC_REAL(0.0));
-    PC_SCATTER_IF(moves, motion, body, 0u, pc_quad(pc_share_since(kept.l, linear.v, share), linear.s));
-    PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(pc_share_since(kept.a, angular.v, share), angular.s));
-    if (k > 0u) {
-      Six pushes = pc_six(pc_ld3_tree(PC_PASS n, TREE_KEPT_PIN), pc_ld3_tree(PC_PASS n, TREE_KEPT_LIMIT));
-      Vec3 pin = pc_ld3_tree(PC_PASS n, TREE_PIN);
-      Vec3 limit = pc_ld3_tree(PC_PASS n, TREE_LIMIT);
-      pc_st3_tree(PC_PASS n, TREE_PIN, pc_select3(these, pc_share_since(pushes.l, pin, share), pin));
-      pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_select3(these, pc_share_since(pushes.a, limit, share), limit));
-      Vec3 rebound = pc_ld3_tree(PC_PASS n, TREE_REBOUND);
-      pc_st3_tree(PC_PASS n, TREE_REBOUND, pc_select3(these, pc_zero3(), rebound));
+    Vec3 v = pc_scale(pc_ld3_tree(PC_PASS n, TREE_THROW), share);
+    Vec3 l = pc_scale(pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), share);
+    pc_st6_tree(PC_PASS n, TREE_THROW, pc_six(v, l));
+    pc_tell_blow(PC_PASS n, thrown);
+    if (pc_is_pivot(PC_PASS t) == 1u) {
+      pc_st3_tree(PC_PASS n, TREE_X, v);
+      pc_st3_tree(PC_PASS n, TREE_CHANGE, l);
     }
+  }
+  if (pc_is_pivot(PC_PASS t) == 1u) pc_tree_move(PC_PASS m, t, thrown);
+}
+// After the push: the relax phase takes back less, or gives, once the bodies have moved.
+PC_FN void pc_push_against_throw(PC_IO Slot m, Tree t, Mask thrown) {
+  if (pc_is_pivot(PC_PASS t) == 1u) return;
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Vec3 v = pc_select3(thrown, pc_ld3_tree(PC_PASS n, TREE_THROW), pc_zero3());
+    Vec3 l = pc_select3(thrown, pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), pc_zero3());
+    pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_sub(pc_ld3_tree(PC_PASS n, TREE_PUSH_SPEED), v));
+    pc_st3_tree(PC_PASS n, TREE_PUSH_TURN, pc_sub(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), l));
   }
 }

@@ -38,7 +38,7 @@ const uint TREE_TOUCH = 154u;   // largest load of a contact on the body in this
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
 const uint TREE_PIVOT = 155u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
-const uint TREE_REBOUND = 165u; // where limits throw back, of the three rows: restitution, then the rate at which the row is to be left; 0 none
+const uint TREE_REBOUND = 165u; // where limits throw back, of the three rows: restitution (below 0 where the joint leans on the limit), then the rate at which the row is to be left; 0 none
 // of a free root, whose joint has no rows: the tree as one rigid body (tree_whole.inl)
 const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
@@ -80,12 +80,15 @@ PC_FN Real pc_rate_after(PC_IO Slot n, uint i, Vec3 turn) {
 #define PC_CROSSING_RATE PC_REAL(0.05)
 // Whether a limit is crossed at more than rounding.
 PC_FN Mask pc_is_crossed(Real rate) { return rate < -PC_CROSSING_RATE; }
-// The same of a limit that does not act, once the joint turns by `turn` faster.
-PC_FN Mask pc_enters(PC_IO Slot n, uint i, Vec3 turn) {
+// Whether it is a limit that does not act.
+PC_FN Mask pc_waits(PC_IO Slot n, uint i) {
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
   Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));
-  Mask waits = pc_and(is_limit, PC_LD(tree_rows, n, TREE_ON + i) < PC_REAL(0.5));
-  return pc_and(waits, pc_is_crossed(pc_rate_after(PC_PASS n, i, turn)));
+  return pc_and(is_limit, PC_LD(tree_rows, n, TREE_ON + i) < PC_REAL(0.5));
+}
+// Whether it waits and is crossed, once the joint turns by `turn` faster.
+PC_FN Mask pc_enters(PC_IO Slot n, uint i, Vec3 turn) {
+  return pc_and(pc_waits(PC_PASS n, i), pc_is_crossed(pc_rate_after(PC_PASS n, i, turn)));
 }
 // Whether any lane's joint has limits with a restitution: TREE_REBOUND holds something there alone.
 PC_FN Mask pc_throws_back(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_HAS_ROWS) > PC_REAL(1.0); }

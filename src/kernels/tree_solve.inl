@@ -36,6 +36,9 @@ PC_FN void pc_choose_limit(PC_IO Slot n, uint i, Vec3 turn) {
   PC_ST(tree_rows, n, TREE_SLACK + i, pc_select(other, left, slack));
   PC_ST(tree_rows, n, TREE_SIGN + i, pc_select(other, other_sign, sign));
   PC_ST(tree_rows, n, TREE_ON + i, pc_select(other, PC_REAL(0.0), on));
+  if (!PC_ANY(pc_throws_back(PC_PASS n))) return;  // lint: allow (not read otherwise)
+  Real back = PC_LD(tree_rows, n, TREE_REBOUND + i);
+  PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(other, pc_abs(back), back));
 }
 // Of an angle row its limit, the axis of halfway, and the rate at which the limit is come to; of its slack the rate over the sub-step.
 PC_FN Real pc_begin_row(PC_IO Slot n, Slot up, uint i, Vec3 turn) {
@@ -68,18 +71,18 @@ PC_FN void pc_tree_rebounds(PC_IO Slot n, Slot up) {
   for (uint i = 0u; i < 3u; i++) {
     precise Real approach = -pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn); precise Real away = approach * PC_LD(tree_rows, n, TREE_REBOUND + i);
     Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Mask meets = pc_and(approach > PC_INFO(restitution_threshold), kind < PC_REAL(2.0));
-    Real rate = pc_select(meets, away, PC_REAL(0.0)); PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(kind < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_REBOUND + i), rate));  // (pivot_turn's)
+    Real rate = pc_select(meets, pc_max(away, PC_REAL(0.0)), PC_REAL(0.0)); PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(kind < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_REBOUND + i), rate));  // (pivot_turn's)
   }
 }
-// After a sweep: rows that pull leave, and in the first round those enter that it violates. 1 where any did.
-PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up, Real may_enter) {
+// After a sweep: rows that pull leave, and those enter that it violates. 1 where any did.
+PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return PC_REAL(0.0);  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real changed = PC_REAL(0.0); Real one = PC_REAL(1.0);
   for (uint i = 0u; i < 3u; i++) {
     Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Real on = PC_LD(tree_rows, n, TREE_ON + i); Real impulse = pc_row_impulse(PC_PASS n, i, turn);
     Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));
     Mask leaves = pc_and(is_limit, pc_and(on > PC_REAL(0.5), impulse < PC_REAL(0.0)));
-    Mask enters = pc_and(may_enter > PC_REAL(0.5), pc_enters(PC_PASS n, i, turn));
+    Mask enters = pc_enters(PC_PASS n, i, turn);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(leaves, PC_REAL(0.0), pc_select(enters, one, on)));
     changed = pc_select(pc_or(leaves, enters), one, changed);
   }
@@ -155,11 +158,11 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_factor(PC_PASS m, t, round == 0u);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
     if (round == 3u) break;  // what acts is what the factor knows of
-    Real changed = PC_REAL(0.0); Real may_enter = pc_select(PC_IS(round), PC_REAL(0.0), one); PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
+    Real changed = PC_REAL(0.0); PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
     PC_NODES(k, 1u, t) {
-      Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Real here = pc_tree_revise(PC_PASS n, up, may_enter);
+      Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Real here = pc_tree_revise(PC_PASS n, up);
 #ifdef PC_DRIVES
-      here = pc_max(here, pc_drive_revise(PC_PASS n, up, may_enter));
+      here = pc_max(here, pc_drive_revise(PC_PASS n, up, round == 0u));
 #endif
       PC_ST(tree_rows, n, TREE_STALE, here); changed = pc_max(changed, here);
     }

@@ -43,3 +43,18 @@ PC_FN Real pc_strayed(PC_IO Slot m, Tree t) {
   precise Real most = before + before;
   return pc_select(after > most, PC_REAL(1.0), PC_REAL(0.0));
 }
+// All is as it was before the steps.
+PC_FN void pc_take_back(PC_IO Slot m, Tree t, Mask these) {
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Index body = PC_ENDS(tree_ends, n, 0u);
+    Quad linear = PC_GATHER(motion, body, 0u);
+    Quad angular = PC_GATHER(motion, body, 1u);
+    Six kept = pc_ld6_tree(PC_PASS n, TREE_KEPT_MOTION);
+    Mask moves = pc_and(these, linear.s > PC_REAL(0.0));
+    PC_SCATTER_IF(moves, motion, body, 0u, pc_quad(kept.l, linear.s));
+    PC_SCATTER_IF(moves, motion, body, 1u, pc_quad(kept.a, angular.s));
+    if (k > 0u) pc_keep(PC_PASS n, these, TREE_PIN, pc_ld3_tree(PC_PASS n, TREE_KEPT_PIN));
+    if (k > 0u) pc_keep(PC_PASS n, these, TREE_LIMIT, pc_ld3_tree(PC_PASS n, TREE_KEPT_LIMIT));
+  }
+}
