@@ -1,6 +1,7 @@
 // After the contacts: the pins at the new prediction, with the same factor (Newton's second step, and what the contacts
-// have undone), again where a gap is left or a limit is crossed; what limits throw back; then the push that closes the gaps left over, which the relax
-// phase takes back once the bodies have moved by it. All are rounds of one loop, so that compilers translate what they share once.
+// have undone), again where a gap is left, a limit is crossed or one throws back; then the push that closes the gaps left over, which the relax
+// phase takes back once the bodies have moved by it. All are rounds of one loop, so that compilers translate what they share once
+// (with a second look ahead in it NVIDIA's makes other bits of it in double precision, where a work group shares a tree).
 #include "body_state.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
@@ -20,13 +21,14 @@ PC_FN Real pc_crosses(PC_IO Slot n, uint i, Real rate) {
   precise Real over = rate + pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
   return pc_select(acts, pc_min(over, PC_REAL(0.0)), PC_REAL(0.0));
 }
-// Limits are not crossed and else keep what they carry; locked rows are corrected like pins.
-PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted, Real most) {
+// Limits are not crossed and else keep what they carry, unless they throw back (where `rebounds`); locked rows are corrected like pins.
+PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted, Real most, bool rebounds) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     Real now = pc_row_rate(PC_PASS n, up, i, turn, most);
     Real over = pc_crosses(PC_PASS n, i, now);
+    if (rebounds) over = pc_min(over, pc_lacks_rebound(PC_PASS n, i, now));
     precise Real rate = pc_select(PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(1.0), now, over) * wanted;
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
   }
@@ -36,7 +38,7 @@ PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
   precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
   Real share = pc_share_within(size, most); return pc_scale(v, share);
 }
-// 1 where a limit is crossed by more than rounding.
+// 1 where a limit is crossed by more than rounding, or one that throws back is left too slowly.
 PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   Real lacks = PC_REAL(0.0);
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return lacks;  // lint: allow (zero otherwise)
@@ -44,6 +46,7 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
   for (uint i = 0u; i < 3u; i++) {
     Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
     lacks = pc_select(pc_is_crossed(pc_crosses(PC_PASS n, i, now)), PC_REAL(1.0), lacks);
+    lacks = pc_select(pc_lacks_much(PC_PASS n, i, pc_lacks_rebound(PC_PASS n, i, now)), PC_REAL(1.0), lacks);
   }
   return lacks;
 }
@@ -196,10 +199,10 @@ PC_FN void pc_end_push(PC_IO Slot m, Tree t) {
 }
 
 // Rates of the angle rows, and pins where `wanted` is 1; nothing elsewhere.
-PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted, Real most) {
+PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted, Real most, bool rebounds) {
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
-    pc_again_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), wanted, most);
+    pc_again_rates(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), wanted, most, rebounds);
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
   }
 }
@@ -207,35 +210,41 @@ PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted, Real most) {
 // it to what limits throw back.
 PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool throws, bool pushes) {
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
-  if (throws) {
-    pc_add_to_throw(PC_PASS m, t);
-    return;
-  }
-  if (!pushes) {
-    PC_NODES(k, 1u, t) {
-      Slot n = PC_NODE(m, t.first + k);
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    if (k > 0u && !throws && !pushes) {
       pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
       pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k)));
     }
+    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
   }
-  pc_tree_apply(PC_PASS m, t, pc_zero3(), pc_zero3());
-  if (pushes) {
-    PC_NODES(k, 0u, t) pc_add_to_push(PC_PASS PC_NODE(m, t.first + k));
+  pc_tree_conserve(PC_PASS m, t, pc_zero3(), pc_zero3());
+  if (!throws) pc_tree_move(PC_PASS m, t, PC_IS(1u));
+  if (throws || pushes) {
+    PC_NODES(k, 0u, t) {
+      Slot n = PC_NODE(m, t.first + k);
+      if (throws) pc_add_to_throw(PC_PASS n);
+      if (pushes) pc_add_to_push(PC_PASS n);
+    }
   }
 }
-// After Newton's steps where `steps` is 1: 1 where they have not found their way, and are taken back.
-PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps) {
+// After Newton's steps where `steps` is 1: 1 where they have not found their way, or where what they throw back is `late`; these are taken back.
+PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps, Real thrown, Real late) {
   Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
   if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
-  if (PC_ANY(strayed > PC_REAL(0.5))) pc_take_back(PC_PASS m, t, strayed > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
-  return strayed;
+  // (of what is thrown back the energy before the solve tells, not what a stop has left of it)
+  Real again = pc_select(thrown > PC_REAL(0.5), late, strayed);
+  if (PC_ANY(again > PC_REAL(0.5))) pc_take_back(PC_PASS m, t, again > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
+  return again;
 }
 
-// Rounds 0 to 3 are Newton's steps; two more follow where they were taken back, then what limits throw back, and the push.
-const uint ROUND_AGAIN = 4u;
-const uint ROUND_THROW = 6u;
-const uint ROUND_PUSH = 10u;
-const uint ROUND_END = 14u;
+// Rounds 0 to 3 are Newton's steps; then it is seen what limits throw back, two more steps follow where those were taken back, what is thrown
+// late, and the push.
+const uint ROUND_JUDGE = 4u;
+const uint ROUND_AGAIN = 5u;
+const uint ROUND_THROW = 7u;
+const uint ROUND_PUSH = 11u;
+const uint ROUND_END = 15u;
 
 // What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
 // 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
@@ -246,19 +255,22 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real wanted = PC_REAL(1.0);
   Real steps = PC_REAL(0.0);
   Real thrown = PC_REAL(0.0);
+  Real late = PC_REAL(0.0);
   Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0); push.most = PC_REAL(0.0);
   for (uint round = 0u; round < ROUND_END; round++) {
     bool throws = round >= ROUND_THROW && round < ROUND_PUSH;
-    if (round == ROUND_AGAIN) {
-      wanted = PC_REAL(0.0);
-      if (PC_ANY(steps > PC_REAL(0.5))) wanted = pc_judge_steps(PC_PASS m, t, steps);  // lint: allow (nothing changes otherwise)
-    }
-    if (round == ROUND_THROW) {
-      thrown = pc_tree_is_thrown(PC_PASS m, t);
+    if (round == ROUND_JUDGE) {
+      thrown = pc_min(pc_tree_is_thrown(PC_PASS m, t), steps);
       wanted = thrown;
     }
+    if (round == ROUND_AGAIN) {
+      wanted = PC_REAL(0.0);
+      if (PC_ANY(steps > PC_REAL(0.5))) wanted = pc_judge_steps(PC_PASS m, t, steps, thrown, late);  // lint: allow (nothing changes otherwise)
+    }
+    if (round == ROUND_THROW) wanted = late;
     if (round == ROUND_PUSH) {
-      if (PC_ANY(thrown > PC_REAL(0.5))) pc_end_throw(PC_PASS m, t, thrown > PC_REAL(0.5));  // lint: allow (as above)
+      if (PC_ANY(late > PC_REAL(0.5))) pc_end_throw(PC_PASS m, t, late > PC_REAL(0.5));  // lint: allow (as above)
+      if (PC_ANY(thrown > PC_REAL(0.5))) pc_tell_blow(PC_PASS m, t, thrown > PC_REAL(0.5), late > PC_REAL(0.5));  // lint: allow (as above)
       PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
       wanted = pc_move_by_push(PC_PASS m, t);
     }
@@ -273,15 +285,19 @@ PC_FN void pc_kernel(PC_IO Slot m) {
       wanted = push.open;
     }
     if (!PC_ANY(wanted > PC_REAL(0.5))) continue;  // lint: allow (as above)
+    if (round == ROUND_JUDGE) {
+      late = pc_min(pc_throws_too_far(PC_PASS m, t), thrown);
+      continue;
+    }
     Left left; left.some = PC_REAL(1.0); left.much = PC_REAL(1.0);
-    if (round < ROUND_AGAIN) left = pc_left(PC_PASS m, t);
+    if (round < ROUND_JUDGE) left = pc_left(PC_PASS m, t);
     if (round == 0u) {
       wanted = pc_max(pc_always_again(PC_PASS m, t), left.some);
       steps = wanted;
       if (!PC_ANY(steps > PC_REAL(0.5))) continue;  // lint: allow (as above)
       pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));
     }
-    if (round < ROUND_THROW) pc_newton_rates(PC_PASS m, t, wanted, most);
+    if (round < ROUND_THROW) pc_newton_rates(PC_PASS m, t, wanted, most, round < ROUND_JUDGE);
     if (throws) left.much = pc_throw_rates(PC_PASS m, t, round == ROUND_THROW);
     if (round > ROUND_PUSH) {
       Rest rest = pc_continue_push(PC_PASS m, t, noise, wanted, push.most);
@@ -291,6 +307,6 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_solve_round(PC_PASS m, t, throws, round >= ROUND_PUSH);
     wanted = pc_min(wanted, left.much);
   }
-  if (PC_ANY(thrown > PC_REAL(0.5))) pc_push_against_throw(PC_PASS m, t, thrown > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
+  if (PC_ANY(late > PC_REAL(0.5))) pc_push_against_throw(PC_PASS m, t, late > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
   pc_end_push(PC_PASS m, t);
 }

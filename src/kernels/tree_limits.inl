@@ -1,7 +1,6 @@
-// After contacts and loops: limits that a joint is foreseen to cross act as well, and the tree is factored anew with them, for tree_again. Without,
-// a joint that is struck goes beyond its limit by all of the sub-step's turn. Contacts of the relax phase see the tree as it was: rows whose masses
+// After the contacts: limits over which they turn a joint act as well, and the tree is factored anew with them, for tree_again. Without, a joint
+// that is struck goes beyond its limit by all of the sub-step's turn. Contacts of the relax phase see the tree as it was: rows whose masses
 // are those of another factor do not take back all that they pushed, and bridges under heavy ragdolls gained energy by it.
-#include "body_state.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
 #ifdef PC_DRIVES
@@ -10,23 +9,14 @@
 #define PC_SEEN  // contacts have looked at the factor
 #include "tree_factor.inl"
 #undef PC_SEEN
-#include "tree_predict.inl"
 
-// How fast the push of overlaps turns a body: poses move by it too.
-PC_FN Vec3 pc_push_turn(PC_IO Slot n) {
-  BodyState b = pc_body_state(PC_PASS PC_ENDS(tree_ends, n, 0u));
-  return pc_sym_mul(b.inertia, pc_scale(pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN), PC_LD(tree_rows, n, TREE_TOTAL)));
-}
-// 1 where limits are entered. Run after pc_tree_residual.
+// 1 where there are any. TREE_X: what contacts have changed (tree_flush); TREE_RATE: what tree_solve left.
 PC_FN Real pc_enter_limits(PC_IO Slot n, Slot up) {
   Real any = PC_REAL(0.0);
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return any;  // lint: allow (zero otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-  Vec3 pushed = pc_sub(pc_push_turn(PC_PASS n), pc_push_turn(PC_PASS up));
   for (uint i = 0u; i < 3u; i++) {
-    Ahead ahead = pc_row_ahead(PC_PASS n, up, i, turn, PC_REAL(1.0));
-    precise Real over = ahead.rate + pc_dot(ahead.axis, pushed) + pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
-    Mask enters = pc_and(pc_waits(PC_PASS n, i), pc_is_crossed(over));
+    Mask enters = pc_enters(PC_PASS n, i, turn);
     PC_ST(tree_rows, n, TREE_ON + i, pc_select(enters, PC_REAL(1.0), PC_LD(tree_rows, n, TREE_ON + i)));
     any = pc_select(enters, PC_REAL(1.0), any);
   }
@@ -36,8 +26,6 @@ PC_FN Real pc_enter_limits(PC_IO Slot n, Slot up) {
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
   Real entered = PC_REAL(0.0);
-  pc_tree_residual(PC_PASS m, t, PC_REAL(1.0));
-  PC_MEET;
   PC_NODES(k, 1u, t) {
     Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     entered = pc_max(entered, pc_enter_limits(PC_PASS PC_NODE(m, t.first + k), up));

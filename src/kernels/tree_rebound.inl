@@ -1,7 +1,8 @@
 // What a tree's limits throw back makes no energy. Newton's law leaves each row at a share of its own approach; where
 // several are met at once, with shares of their own, or what one throws drives another that leans on its limit, that
-// may be more than there was. No more comes back than the solve took, which stops all of them; what exceeds it is left
-// out of the whole throw. Bodies have it once they have moved: the sub-step ends at the limits, and what is thrown crosses no other limit within it.
+// may be more than there was. Such a throw, and one that would cross a limit within the sub-step (the other one of its joint, or that of
+// another), is late: the sub-step ends at the limits, and bodies have the throw once they have moved. Of it no more comes back than the solve took,
+// which stops all of them; what exceeds it is left out of the whole throw.
 
 const uint TREE_THROW = TREE_INERTIA;  // change of velocity and of angular momentum; tree_trust.inl is done with it
 
@@ -37,6 +38,41 @@ PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
 }
 // A limit that throws back is left too slowly where this share of the rate lacks.
 #define PC_LACKS_REBOUND PC_REAL(1e-5)
+PC_FN Mask pc_lacks_much(PC_IO Slot n, uint i, Real lack) {
+  precise Real much = PC_LD(tree_rows, n, TREE_REBOUND + i) * -PC_LACKS_REBOUND;
+  return pc_and(lack < PC_REAL(0.0), lack < much);
+}
+// 1 where a limit is foreseen to be crossed, whether it acts or not, and on either side. Run after pc_tree_residual.
+PC_FN Real pc_crosses_any(PC_IO Slot n, Slot up) {
+  Real any = PC_REAL(0.0);
+  if (!PC_ANY(pc_has_rows(PC_PASS n))) return any;  // lint: allow (zero otherwise)
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  for (uint i = 0u; i < 3u; i++) {
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
+    Real rate = pc_row_ahead(PC_PASS n, up, i, turn, PC_REAL(1.0)).rate;
+    precise Real near = rate + pc_max(slack, PC_REAL(0.0)) * PC_INFO(inverse_h);
+    precise Real far = (PC_LD(tree_rows, n, TREE_SPAN + i) - slack) * PC_INFO(inverse_h) - rate;
+    Mask crossed = pc_and(pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0)), pc_is_crossed(pc_min(near, far)));
+    any = pc_select(crossed, PC_REAL(1.0), any);
+  }
+  return any;
+}
+// 1 where the throw is late.
+PC_FN Real pc_throws_too_far(PC_IO Slot m, Tree t) {
+  Real far = PC_REAL(0.0);
+  PC_NODES(k, 1u, t) {
+    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    far = pc_max(far, pc_crosses_any(PC_PASS PC_NODE(m, t.first + k), up));
+  }
+  PC_MOST(far);
+  Real now = pc_tree_energy(PC_PASS m, t);
+  Real energy = PC_LD(tree_rows, PC_NODE(m, t.first), TREE_ENERGY);
+  // (Newton's steps end before rounding in double precision)
+  precise Real noise = PC_INFO(rounding) * PC_LIMIT_NOISE;
+  precise Real most = energy + energy * pc_max(noise, PC_SLIGHT);
+  return pc_select(now > most, PC_REAL(1.0), far);
+}
 // Rates that the throw has to make up for: first of the limits that throw back, which lack all of it, then what a sweep has left, of the others that
 // act too. 1 where a limit is left too slowly by much.
 PC_FN Real pc_throw_rates_of(PC_IO Slot n, Slot up, bool first) {
@@ -45,19 +81,18 @@ PC_FN Real pc_throw_rates_of(PC_IO Slot n, Slot up, bool first) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return lacks;  // lint: allow (zero otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    Real away = PC_LD(tree_rows, n, TREE_REBOUND + i);
     Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
     Real rate = pc_rate_after(PC_PASS n, i, turn);
     if (first) rate = pc_lacks_rebound(PC_PASS n, i, now);
-    precise Real little = away * -PC_LACKS_REBOUND;
     Mask throws = pc_lacks_rebound(PC_PASS n, i, PC_REAL(0.0)) < PC_REAL(0.0);
-    lacks = pc_select(pc_and(throws, rate < little), PC_REAL(1.0), lacks);
+    lacks = pc_select(pc_and(throws, pc_lacks_much(PC_PASS n, i, rate)), PC_REAL(1.0), lacks);
     PC_ST(tree_rows, n, TREE_RATE + i, rate);
   }
   return lacks;
 }
 PC_FN Real pc_throw_rates(PC_IO Slot m, Tree t, bool first) {
   Real lacks = PC_REAL(0.0);
+  PC_MEET;
   PC_NODES(k, 1u, t) {
     Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     lacks = pc_max(lacks, pc_throw_rates_of(PC_PASS PC_NODE(m, t.first + k), up, first));
@@ -69,18 +104,9 @@ PC_FN Real pc_throw_rates(PC_IO Slot m, Tree t, bool first) {
   return lacks;
 }
 // After a sweep.
-PC_FN void pc_add_to_throw(PC_IO Slot m, Tree t) {
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
-  }
-  pc_tree_conserve(PC_PASS m, t, pc_zero3(), pc_zero3());
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    pc_st3_tree(PC_PASS n, TREE_THROW, pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW), pc_ld3_tree(PC_PASS n, TREE_X)));
-    Vec3 turned = pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), pc_ld3_tree(PC_PASS n, TREE_CHANGE));
-    pc_st3_tree(PC_PASS n, TREE_THROW + 3u, turned);
-  }
+PC_FN void pc_add_to_throw(PC_IO Slot n) {
+  pc_st3_tree(PC_PASS n, TREE_THROW, pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW), pc_ld3_tree(PC_PASS n, TREE_X)));
+  pc_st3_tree(PC_PASS n, TREE_THROW + 3u, pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
 }
 // The share of the throw that may stay.
 PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
@@ -126,18 +152,22 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
 }
 // What a limit throws back is a blow to its whole tree, and no acceleration (half_changes.inl): but for gravity it counts as if it had been there
 // before.
-PC_FN void pc_tell_blow(PC_IO Slot n, Mask these) {
+PC_FN void pc_tell_blow(PC_IO Slot m, Tree t, Mask these, Mask late) {
   Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
   Vec3 fall = pc_scale(gravity, PC_INFO(h));
-  Index body = PC_ENDS(tree_ends, n, 0u);
-  BodyState b = pc_body_state(PC_PASS body);
-  Quad linear = PC_GATHER(velocity_parts, body, 0u);
-  Quad angular = PC_GATHER(velocity_parts, body, 1u);
-  Mask moves = pc_and(these, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
-  Vec3 v = pc_add(b.v, pc_ld3_tree(PC_PASS n, TREE_THROW));
-  Vec3 l = pc_madd(b.l, pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), PC_LD(tree_rows, n, TREE_TOTAL));
-  PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(pc_sub(v, fall), linear.s));
-  PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(l, angular.s));
+  if (pc_is_pivot(PC_PASS t) == 1u) late = PC_IS(0u);  // it has it already
+  PC_NODES(k, 0u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Index body = PC_ENDS(tree_ends, n, 0u);
+    BodyState b = pc_body_state(PC_PASS body);
+    Quad linear = PC_GATHER(velocity_parts, body, 0u);
+    Quad angular = PC_GATHER(velocity_parts, body, 1u);
+    Mask moves = pc_and(these, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
+    Vec3 v = pc_select3(late, pc_add(b.v, pc_ld3_tree(PC_PASS n, TREE_THROW)), b.v);
+    Vec3 l = pc_select3(late, pc_madd(b.l, pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), PC_LD(tree_rows, n, TREE_TOTAL)), b.l);
+    PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(pc_sub(v, fall), linear.s));
+    PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(l, angular.s));
+  }
 }
 // Before the push. A body that turns about its pin has it at once: pivot_turn moves it, and takes nothing back.
 PC_FN void pc_end_throw(PC_IO Slot m, Tree t, Mask thrown) {
@@ -147,7 +177,6 @@ PC_FN void pc_end_throw(PC_IO Slot m, Tree t, Mask thrown) {
     Vec3 v = pc_scale(pc_ld3_tree(PC_PASS n, TREE_THROW), share);
     Vec3 l = pc_scale(pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), share);
     pc_st6_tree(PC_PASS n, TREE_THROW, pc_six(v, l));
-    pc_tell_blow(PC_PASS n, thrown);
     if (pc_is_pivot(PC_PASS t) == 1u) {
       pc_st3_tree(PC_PASS n, TREE_X, v);
       pc_st3_tree(PC_PASS n, TREE_CHANGE, l);

@@ -27,7 +27,8 @@ void leave_out(const PlanSignature& s, OwnKernels::Ordered own, StepPlan& plan) 
   if ((s.joints() || s.trees) && !s.nets && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
   if (s.trees && !s.solves_trees()) out("tree solve", "every joint is a pin that one body turns about");
-  if (s.trees && s.solves_trees() && !s.tree_limits) out("limits of angles", "no joint of a tree has any");
+  if (s.trees && s.solves_trees() && !s.limits_after_contacts())
+    out("limits after contacts", s.tree_limits ? "nothing touches what they hold" : "no joint of a tree has any");
   if (s.pivots_alone) out("free motion", "every body that moves turns about a pin");
   if (s.order == 4 && !s.trees) out("fourth order of joint trees", "the world has none");
   for (unsigned why = 0; why < unsigned(SecondOrder::count); why++)

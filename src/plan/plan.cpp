@@ -283,7 +283,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.nets && s.contacts()) b.kernel(Kernel::net_solve, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_push, Phase::push, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_flush, Phase::push, k);
-  if (s.solves_trees() && s.tree_limits) b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
+  if (s.limits_after_contacts()) b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);

@@ -54,6 +54,8 @@ struct PlanSignature {
   bool frictionless() const { return free_contacts && !tree_contacts && !friction; }
   /// Pins of pivots that nothing else acts on have nothing to solve.
   bool solves_trees() const { return trees && (!pivots_bare || tree_contacts || tree_joints); }
+  /// Contacts and loops may turn joints of trees over their limits.
+  bool limits_after_contacts() const { return tree_limits && (tree_contacts || tree_joints); }
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 
