@@ -52,7 +52,8 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
 }
 // A gap is wide beyond 4e-5 of the arm: its square.
 #define PC_WIDE_OPEN PC_REAL(2e-9)
-// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit is crossed.
+// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit is crossed
+// or has not thrown back yet.
 struct Left { Real some; Real much; };
 // Run after pc_tree_residual.
 PC_FN Left pc_left(PC_IO Slot m, Tree t) {

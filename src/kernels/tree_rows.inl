@@ -38,7 +38,9 @@ const uint TREE_TOUCH = 154u;   // largest load of a contact on the body in this
 const uint TREE_PLACE = 156u;   // centre of mass, seen from the root's
 const uint TREE_OUTSIDE = 159u; // impulses that are not the joints': of contacts, and what damps
 const uint TREE_PIVOT = 155u;   // 1 where the body alone hangs on a fixed one and turns about its pin (pivot_turn.inl)
-const uint TREE_REBOUND = 165u; // where limits throw back, of the three rows: restitution (below 0 where the joint leans on the limit), then the rate at which the row is to be left; 0 none
+// where limits throw back, of the three rows: restitution (below 0 where the joint leans on the limit), then the rate at which the row is to be left;
+// 0 none
+const uint TREE_REBOUND = 165u;
 // of a free root, whose joint has no rows: the tree as one rigid body (tree_whole.inl)
 const uint TREE_CENTRE = TREE_AXIS;    // centre of mass, seen from the root's
 const uint TREE_ALL = TREE_AXIS + 3u;  // inverse mass
