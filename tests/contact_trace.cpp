@@ -1,6 +1,7 @@
 // Pins: what a trace tells of contacts is what they did. A ball's momentum changes by gravity and by the traced
 // impulses alone, in every precision and number of lanes, with rows and with impacts; friction of what slides is its
-// share of the load; and where a stage stands on a device nothing is told, and nothing breaks.
+// share of the load; each sub-step is told once, whatever the octaves; and where a stage stands on a device nothing is
+// told, and nothing breaks.
 #include "step/contact_trace.h"
 
 #include <cmath>
@@ -114,6 +115,32 @@ TEST_CASE("contact trace: friction of what slides is its share of the load") {
   for (int i = 0; i < 20; i++) REQUIRE(stepper.step(world, 1.0 / 60));
   CHECK(sum.load > 0);
   CHECK(sum.dragged == doctest::Approx(0.3 * sum.load).epsilon(1e-9));
+}
+
+TEST_CASE("contact trace: islands of other octaves are told each of their sub-steps once") {
+  World world({Precision::f32, {0, -10, 0}});
+  REQUIRE(world.create_body(plane({})));
+  BodyDef box;
+  for (const double mass : {1.0, 1000.0}) {  // the heavy one on the light one asks for more sub-steps
+    box.shapes = {ShapeDef::box({0.5, 0.5, 0.5})};
+    box.mass = mass;
+    box.pose.position.y = mass > 1 ? 1.5 : 0.5;
+    REQUIRE(world.create_body(box));
+  }
+  box.pose.position = {20, 0.5, 0};
+  REQUIRE(world.create_body(box));
+  Stepper stepper;
+  Sum sum;
+  stepper.set_trace(&sum);
+  int refined = 0;
+  for (int i = 0; i < 10; i++) {
+    const StepReport& report = stepper.step(world, 1.0 / 60);
+    REQUIRE(report);
+    if (report.substeps == 4) continue;
+    refined++;
+    CHECK(sum.substeps == 4 + int(report.substeps));
+  }
+  CHECK(refined > 0);
 }
 
 TEST_CASE("contact trace: on a device nothing is told, and taken back nobody is") {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "wild/balance.h"
+#include "wild/closings.h"
 #include "wild/distance.h"
 #include "wild/play.h"
 #include "wild/scene.h"
@@ -94,6 +95,48 @@ TEST_CASE("balance: a fall makes nothing, a kick does, and what the host or a dr
   host.changed(one_body(0, 5), one_body(8, 5));
   host.stepped(one_body(8, 5), 0, dt);
   CHECK(host.rise() < 1e-12);
+}
+
+namespace {
+
+/// A body at `place` along x, which a pin draws to the origin and a spring of 100 N/m to 2 m, where it began; and another
+/// one at 5 m on a spring of its own.
+Observation drawn_to_pin(double place, double other) {
+  Observation seen = one_body(0, 0);
+  seen.bodies.push_back(seen.bodies[0]);
+  seen.bodies[0].pose.position = {place, 0, 0};
+  seen.bodies[1].pose.position = {other, 0, 0};
+  SeenJoint pin;
+  pin.there = true;
+  pin.a = 0;
+  seen.joints = {pin};
+  SeenSpring spring;
+  spring.there = true;
+  spring.a = 0;
+  spring.def.anchor_b = {2, 0, 0};
+  spring.def.stiffness = 100;
+  seen.springs = {spring, spring};
+  seen.springs[1].a = 1;
+  seen.springs[1].def.anchor_b = {5, 0, 0};
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE("closings: a pin that the host opened may stretch springs of what it draws, by as much as it closes, once") {
+  const Observation open = drawn_to_pin(2, 5), half = drawn_to_pin(1, 5), closed = drawn_to_pin(0, 5);
+  Closings none, closings;
+  CHECK(none.work(open, half, 50) == 0);
+  closings.opened(0, 2);
+  CHECK(closings.work(open, half, 50) == doctest::Approx(50));
+  CHECK(closings.work(open, half, 20) == doctest::Approx(20));  // no more than energy rose, and that was the last metre
+  CHECK(closings.work(half, closed, 150) == 0);
+  // Springs of others gain nothing by it, whatever they do.
+  closings.opened(0, 2);
+  CHECK(closings.work(open, drawn_to_pin(1, 9), 850) == doctest::Approx(50));
+  // What springs gain beyond the way that the pin went is not its.
+  closings.opened(0, 0.5);
+  CHECK(closings.work(open, half, 50) == doctest::Approx(12.5));
 }
 
 TEST_CASE("a family and a seed are one scene, and the library takes its calls") {

@@ -185,8 +185,9 @@ void Judge::stepped(const Observation& before, const Observation& after, const S
   since_ += facts.dt;
   for (const SeenBody& b : after.bodies) verdict_.body_steps += b.there && b.kind == BodyKind::dynamic;
   const bool alone = scene_.rules.single_encounter && after.bodies.size() == 2;
-  const double work = alone ? encounter_work(before, after, facts.dt)
-                            : facts.contact_work + driven_work(before, after, facts.contact_impulses, facts.dt);
+  double work = alone ? encounter_work(before, after, facts.dt)
+                      : facts.contact_work + driven_work(before, after, facts.contact_impulses, facts.dt);
+  work += closings_.work(before, after, energy(after) - energy(before) - work);
   balance_.stepped(after, work, facts.dt);
   raise(Measure::energy, balance_.rise(), energy_bound());
   judge_momentum(after, facts.dt);

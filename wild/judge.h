@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "wild/balance.h"
+#include "wild/closings.h"
 #include "wild/verdict.h"
 
 namespace pcphys::wild {
@@ -29,6 +30,8 @@ class Judge {
   void ended(const Observation& seen, double overlap);
   /// What undoing that the host made shapes overlap, or a joint stand open, may add [J].
   void allow(double energy) { balance_.allow(energy); }
+  /// The host has left a joint open by `gap` [m]: as it closes it may stretch springs.
+  void opened(int joint, double gap) { closings_.opened(std::size_t(joint), gap); }
 
   Verdict& verdict() { return verdict_; }
 
@@ -45,6 +48,7 @@ class Judge {
   double rounding_;  // of a number about 1
   Verdict verdict_;
   Balance balance_;
+  Closings closings_;
   Observation start_;    // before the first step, or since the host last changed something
   double since_ = 0;     // then [s]
   bool closed_ = false;  // nothing acts from outside: momentum is conserved

@@ -80,6 +80,7 @@ class LibraryWatcher final : public Watcher {
       before_ = eye_.look(player);
       judge.begin(before_);
       for (std::size_t i = 0; i < before_.bodies.size(); i++) allow_overlaps(player, int(i), false);
+      for (std::size_t i = 0; i < before_.joints.size(); i++) allow_gap(int(i));
       return;
     }
     if (!begun_ || !status) return;
@@ -88,10 +89,10 @@ class LibraryWatcher final : public Watcher {
     before_ = after;
     if (const SetPose* moved = std::get_if<SetPose>(&call)) {
       allow_overlaps(player, moved->body, true);
-      for (const SeenJoint& joint : after.joints)
-        if (joint.a == moved->body || joint.b == moved->body) allow_gap(joint);
+      for (std::size_t i = 0; i < after.joints.size(); i++)
+        if (after.joints[i].a == moved->body || after.joints[i].b == moved->body) allow_gap(int(i));
     }
-    if (const MakeJoint* made = std::get_if<MakeJoint>(&call)) allow_gap(after.joints[std::size_t(made->joint)]);
+    if (const MakeJoint* made = std::get_if<MakeJoint>(&call)) allow_gap(made->joint);
     if (const MakeBody* made = std::get_if<MakeBody>(&call)) allow_overlaps(player, made->body, true);
     if (std::holds_alternative<Destroy>(call) || std::holds_alternative<SetFilter>(call) ||
         std::holds_alternative<SetCollide>(call))
@@ -147,13 +148,16 @@ class LibraryWatcher final : public Watcher {
     judge.allow(body.mass.mass * (length(eye_.seen().gravity) * deepest + 0.5 * push * push));
   }
   /// Bodies of a joint that the host has opened may be lifted by its gap: it is closed by places alone.
-  void allow_gap(const SeenJoint& joint) {
-    if (!joint.there) return;
+  void allow_gap(int number) {
     const Observation& seen = eye_.seen();
+    const SeenJoint& joint = seen.joints[std::size_t(number)];
+    if (!joint.there) return;
     const SeenBody &a = seen.body(joint.a), &b = seen.body(joint.b);
     double mass = 0;
     for (const SeenBody* body : {&a, &b}) mass += body->kind == BodyKind::dynamic ? body->mass.mass : 0;
-    judge.allow(mass * length(seen.gravity) * gap(seen, joint));
+    const double open = gap(seen, joint);
+    judge.allow(mass * length(seen.gravity) * open);
+    judge.opened(number, open);
   }
   /// Of the contacts of the last step.
   double deepest_share(const Player& player) const {

@@ -39,11 +39,6 @@ double energy_of(const Observation& seen, const SeenJoint& joint) {
   const double turn = away(seen, joint);
   return 0.5 * stiffness * turn * turn;
 }
-double energy_of(const Observation& seen, const SeenSpring& spring) {
-  if (!spring.there) return 0;
-  const double longer = away(seen, spring);
-  return 0.5 * spring.def.stiffness * longer * longer;
-}
 /// By how much a step of `step` from where a spring is changes its energy.
 double energy_of_step(double stiffness, double away, double step) {
   return stiffness * step * (std::fabs(away) + 0.5 * step);
@@ -80,10 +75,20 @@ double potential_energy(const Observation& seen) {
   return sum;
 }
 
+double spring_energy(const Observation& seen, const SeenSpring& spring) {
+  if (!spring.there) return 0;
+  const double longer = away(seen, spring);
+  return 0.5 * spring.def.stiffness * longer * longer;
+}
+
+double spring_energy_of_way(const Observation& seen, const SeenSpring& spring, double way) {
+  return spring.there ? energy_of_step(spring.def.stiffness, away(seen, spring), way) : 0;
+}
+
 double spring_energy(const Observation& seen) {
   double sum = 0;
   for (const SeenJoint& joint : seen.joints) sum += energy_of(seen, joint);
-  for (const SeenSpring& spring : seen.springs) sum += energy_of(seen, spring);
+  for (const SeenSpring& spring : seen.springs) sum += spring_energy(seen, spring);
   return sum;
 }
 

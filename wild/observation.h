@@ -51,6 +51,9 @@ double spread(const MassProperties& mass);
 double kinetic_energy(const Observation& seen);
 double potential_energy(const Observation& seen);
 double spring_energy(const Observation& seen);
+double spring_energy(const Observation& seen, const SeenSpring& spring);
+/// What a spring gains that is made longer by `way`, or pressed by it, whichever is more [J].
+double spring_energy_of_way(const Observation& seen, const SeenSpring& spring, double way);
 inline double energy(const Observation& seen) {
   return kinetic_energy(seen) + potential_energy(seen) + spring_energy(seen);
 }

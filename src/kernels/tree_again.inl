@@ -79,7 +79,7 @@ PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
     for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
   PC_MOST(kind); return pc_select(kind > PC_REAL(1.0), PC_REAL(1.0), PC_REAL(0.0));
 }
-// What the push undoes of a joint's angles, as rates of its rows. 1 where there is any. Where contacts have begun it
+// What the push undoes of a joint's angles, as rates of its rows: as gaps, within the sub-step. 1 where there is any. Where contacts have begun it
 // (`begun`), what that turns over limits as well.
 PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
   Real any = PC_REAL(0.0);
@@ -93,7 +93,8 @@ PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(2.0));
     precise Real beyond = slack - pc_little_beyond(PC_PASS slack, kind);
     Real undone = pc_select(pc_or(open, pc_abs(beyond) < PC_INFO(rounding)), PC_REAL(0.0), beyond);
-    Real rate = pc_select(acts, pc_soft_bias(PC_PASS undone), PC_REAL(0.0));
+    precise Real whole = undone * PC_INFO(inverse_h);
+    Real rate = pc_select(acts, pc_clamp(whole, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)), PC_REAL(0.0));
     if (PC_ANY(begun)) {  // lint: allow (selected)
       Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
       Real turned = pc_select(kind > PC_REAL(1.0), now, pc_crosses(PC_PASS n, i, now));

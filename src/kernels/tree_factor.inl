@@ -4,8 +4,8 @@
 // while tree_solve and tree_limits last, in places that are free by then
 const uint TREE_REST = TREE_PUSH;         // the angular part of TREE_A, 6
 const uint TREE_STALE = TREE_KEPT_PIN;  // 1 where the factor must be made anew
-// Of a joint's inertia, in units of PC_INFO(rounding), what is lost in it of a light body's spin; and where stiffness is not known.
-#define PC_SPIN_LOST PC_REAL(8.0)
+// Of a joint's inertia, in units of PC_INFO(rounding), what is lost in it of a light body's turning; and where stiffness is not known.
+#define PC_SPIN_LOST PC_REAL(16.0)
 #define PC_SPIN_UNKNOWN PC_REAL(256.0)
 
 PC_FN Mask pc_is_stale(PC_IO Slot n) { return PC_LD(tree_rows, n, TREE_STALE) > PC_REAL(0.5); }
@@ -29,6 +29,43 @@ PC_FN Sym3 pc_with_springs(PC_IO Slot n, Sym3 loose) {
 PC_FN Real pc_least_moment(PC_IO Slot n) {
   Vec3 inverse = pc_ld3_tree(PC_PASS n, TREE_MOMENTS); precise Real light = pc_max(inverse.x, pc_max(inverse.y, inverse.z)) * PC_LD(tree_rows, n, TREE_TOTAL);
   return pc_inverse_or_zero(light);
+}
+// A light body's turning between heavy ones is lost in the rounding of their inertia. What its own inertia about its pin lacks of `lost` is added along
+// each of its principal axes: where it lacks nothing it would be inertia that nothing has, and energy goes into that.
+PC_FN Sym3 pc_add_about(PC_IO Slot n, Sym3 m, Vec3 axis, Real inverse, Vec3 arm, Real lost) {
+  precise Real light = inverse * PC_LD(tree_rows, n, TREE_TOTAL);
+  Vec3 across = pc_cross(axis, arm);
+  precise Real own = pc_inverse_or_zero(light) + pc_dot(across, across) * PC_LD(tree_rows, n, TREE_MASS);
+  precise Real lacks = lost - own;
+  return pc_sym_outer(m, axis, pc_max(lacks, PC_REAL(0.0)));
+}
+PC_FN Sym3 pc_with_what_is_lost(PC_IO Slot n, Sym3 m, Vec3 arm, Real lost) {
+  Vec3 inverse = pc_ld3_tree(PC_PASS n, TREE_MOMENTS);
+  Real one = PC_REAL(1.0);
+  Real none = PC_REAL(0.0);
+  Quaternion q = pc_quaternion(pc_ld3_tree(PC_PASS n, TREE_FACING), PC_LD(tree_rows, n, TREE_FACING + 3u));
+  m = pc_add_about(PC_PASS n, m, pc_rotate(q, Vec3(one, none, none)), inverse.x, arm, lost);
+  m = pc_add_about(PC_PASS n, m, pc_rotate(q, Vec3(none, one, none)), inverse.y, arm, lost);
+  return pc_add_about(PC_PASS n, m, pc_rotate(q, Vec3(none, none, one)), inverse.z, arm, lost);
+}
+// The inertia m of a joint's freedom with floors under it: stiff pins turn no joint faster than the sub-step follows (`fast`, TREE_FAST).
+PC_FN Sym3 pc_with_floor(PC_IO Slot n, Sym3 m, Vec3 arm, Real fast) {
+  precise Real all = m.xx + m.yy + m.zz;
+  precise Real known = all * PC_INFO(rounding) * PC_SPIN_LOST;
+  precise Real unknown = all * PC_INFO(rounding) * PC_SPIN_UNKNOWN;  // pins that remember no impulse may be of any stiffness
+#ifdef PC_DRIVES
+  precise Real driven = all * PC_INFO(rounding);
+  unknown = pc_select(pc_drive_lasts(PC_PASS n), driven, unknown);
+#endif
+  Real lost = pc_select(fast > PC_REAL(0.0), known, unknown);
+  precise Real stiff = all * fast * PC_INFO(spin_floor);
+  precise Real least = all * PC_EPSILON;
+  // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
+  Mask pivot = PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5);
+  Sym3 held = pc_sym_add(m, pc_diagonal(pc_select(pivot, least, stiff)));
+  Mask lacks = pc_and(lost > pc_least_moment(PC_PASS n), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
+  if (!PC_ANY(lacks)) return held;  // lint: allow (others lack nothing)
+  return pc_sym_select(lacks, pc_with_what_is_lost(PC_PASS n, held, arm, lost), held);
 }
 #ifdef PC_SEEN
 // Where W is made anew after the contacts they go on seeing it as it was.
@@ -56,19 +93,8 @@ PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
   // S^T U
   precise Real xx = u3.x + u1.x * rc.z - u2.x * rc.y; precise Real xy = u3.y + u1.y * rc.z - u2.y * rc.y; precise Real xz = u3.z + u1.z * rc.z - u2.z * rc.y;
   precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z; precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z; precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
-  // a light body's spin between heavy ones is lost in the rounding of their inertia: what its own lacks is added (docs/joint-trees.md)
-  // (pins that remember no impulse may be of any stiffness)
-  precise Real rounding = PC_INFO(rounding) * PC_SPIN_LOST; precise Real unknown = PC_INFO(rounding) * PC_SPIN_UNKNOWN;
-#ifdef PC_DRIVES
-  unknown = pc_select(pc_drive_lasts(PC_PASS n), PC_INFO(rounding), unknown);
-#endif
-  // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
-  Mask known = fast > PC_REAL(0.0); Real share = pc_select(known, rounding, unknown); Real times = pc_select(known, PC_SPIN_LOST, PC_REAL(1.0));
-  precise Real all = xx + yy + zz; precise Real lacks = all * share - pc_least_moment(PC_PASS n);
-  precise Real held = pc_max(lacks, PC_REAL(0.0)) * times + all * fast * PC_INFO(spin_floor);
-  precise Real least = all * PC_EPSILON;
-  Real floor = pc_select(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5), least, held); precise Real fx = xx + floor; precise Real fy = yy + floor; precise Real fz = zz + floor;
-  Sym3 freedom = pc_sym3(fx, xy, xz, fy, yz, fz); Sym3 factor = pc_inverse_factor(freedom);
+  Sym3 freedom = pc_with_floor(PC_PASS n, pc_sym3(xx, xy, xz, yy, yz, zz), rc, fast);
+  Sym3 factor = pc_inverse_factor(freedom);
 #ifdef PC_DRIVES
   if (PC_ANY(pc_has_drive(PC_PASS n))) {  // lint: allow (others keep what they have)
     freedom = pc_with_drives(PC_PASS n, up, freedom, pc_of_factor(factor)); factor = pc_sym_select(pc_has_drive(PC_PASS n), pc_inverse_factor(freedom), factor);

@@ -31,8 +31,9 @@ template <class Scalar> class Rows {
 bool ends_substep(const PlanEntry& before, const PlanEntry& next) {
   const auto is_kernel = [](const PlanEntry& e) { return e.kind == PlanEntry::Kind::kernel && !e.own; };
   if (!is_kernel(before) || !is_kernel(next)) return false;
-  if (stores(before.kernel)) return false;
-  return stores(next.kernel) || before.octave != next.octave || before.substep != next.substep;
+  // (the last one of an octave is followed by contact_store, and that by others of its substep)
+  if (stores(next.kernel)) return true;
+  return !stores(before.kernel) && before.octave == next.octave && before.substep < next.substep;
 }
 
 template <class Scalar> void Tracer::substep_of(const TracedRun& run, const void* infos, std::size_t block) {
