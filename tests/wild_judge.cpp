@@ -99,8 +99,8 @@ TEST_CASE("balance: a fall makes nothing, a kick does, and what the host or a dr
 
 namespace {
 
-/// A body at `place` along x, which a pin draws to the origin and a spring of 100 N/m to 2 m, where it began; and another
-/// one at 5 m on a spring of its own.
+/// A body at `place` along x, which a pin draws to the origin and a spring of 100 N/m to 2 m, where it began; and
+/// another one at 5 m on a spring of its own.
 Observation drawn_to_pin(double place, double other) {
   Observation seen = one_body(0, 0);
   seen.bodies.push_back(seen.bodies[0]);
