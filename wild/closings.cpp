@@ -1,28 +1,21 @@
 #include "wild/closings.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cstdint>
+
+#include "world/union_find.h"
 
 namespace pcphys::wild {
 namespace {
 
-/// Bodies that move and that joints join, as the lowest of their numbers.
-class Joined {
- public:
-  explicit Joined(const Observation& seen) : lowest_(seen.bodies.size()) {
-    std::iota(lowest_.begin(), lowest_.end(), 0);
-    for (const SeenJoint& joint : seen.joints)
-      if (joint.there && seen.moves(joint.a) && seen.moves(joint.b)) join(of(joint.a), of(joint.b));
-  }
-  int of(int body) const {
-    while (lowest_[std::size_t(body)] != body) body = lowest_[std::size_t(body)];
-    return body;
-  }
-
- private:
-  void join(int a, int b) { lowest_[std::size_t(std::max(a, b))] = std::min(a, b); }
-  std::vector<int> lowest_;
-};
+/// Bodies that move and that joints join.
+UnionFind joined(const Observation& seen) {
+  UnionFind trees(seen.bodies.size());
+  for (const SeenJoint& joint : seen.joints)
+    if (joint.there && seen.moves(joint.a) && seen.moves(joint.b))
+      trees.join(std::uint32_t(joint.a), std::uint32_t(joint.b));
+  return trees;
+}
 
 }  // namespace
 
@@ -33,17 +26,17 @@ void Closings::opened(std::size_t joint, double gap) {
 
 double Closings::work(const Observation& before, const Observation& after, double rise) {
   if (left_.empty()) return 0;
-  const Joined joined(after);
-  std::vector<double> closed(after.bodies.size(), 0);  // by the lowest of those that are joined [m]
+  const UnionFind trees = joined(after);
+  std::vector<double> closed(after.bodies.size(), 0);  // by the root of what is joined [m]
   for (std::size_t i = 0; i < left_.size() && i < before.joints.size(); i++) {
     const SeenJoint& joint = after.joints[i];
     if (!joint.there || !before.joints[i].there || left_[i] <= 0) continue;
     const double way = std::clamp(gap(before, joint) - gap(after, joint), 0.0, left_[i]);
     left_[i] -= way;
     const int mover = after.moves(joint.a) ? joint.a : joint.b;
-    if (after.moves(mover)) closed[std::size_t(joined.of(mover))] += way;
+    if (after.moves(mover)) closed[trees.root(std::uint32_t(mover))] += way;
   }
-  const auto closed_at = [&](int body) { return after.moves(body) ? closed[std::size_t(joined.of(body))] : 0; };
+  const auto closed_at = [&](int body) { return after.moves(body) ? closed[trees.root(std::uint32_t(body))] : 0; };
   double gained = 0, most = 0;
   for (std::size_t i = 0; i < after.springs.size() && i < before.springs.size(); i++) {
     const SeenSpring &then = before.springs[i], &now = after.springs[i];

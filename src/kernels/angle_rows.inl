@@ -9,7 +9,8 @@ PC_FN NearerLimit pc_nearer_limit(PC_IO Real angle, Real lower, Real upper, Mask
 }
 // An angle beyond its limit is undone as a soft constraint; an open row stops what would close its slack within the
 // sub-step.
-PC_FN Real pc_soft_bias(PC_IO Real slack) { precise Real rate = slack * PC_INFO(soft_rate); return pc_clamp(rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)); }
+PC_FN Real pc_within_push_speed(PC_IO Real rate) { return pc_clamp(rate, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)); }
+PC_FN Real pc_soft_bias(PC_IO Real slack) { precise Real rate = slack * PC_INFO(soft_rate); return pc_within_push_speed(PC_PASS rate); }
 PC_FN Real pc_angle_bias(PC_IO Real slack, Mask open) { precise Real gap_rate = slack * PC_INFO(inverse_h); return pc_select(open, gap_rate, pc_soft_bias(PC_PASS slack)); }
 // Of how far an angle is beyond its limit in a tree, what the velocity undoes. What is beyond that is a push, which moves poses alone
 // (tree_again.inl): by velocities a limb that the host turned far out of its limits would leave them with up to joint_push_speed. Of a locked

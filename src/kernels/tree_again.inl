@@ -94,7 +94,7 @@ PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
     precise Real beyond = slack - pc_little_beyond(PC_PASS slack, kind);
     Real undone = pc_select(pc_or(open, pc_abs(beyond) < PC_INFO(rounding)), PC_REAL(0.0), beyond);
     precise Real whole = undone * PC_INFO(inverse_h);
-    Real rate = pc_select(acts, pc_clamp(whole, -PC_INFO(joint_push_speed), PC_INFO(joint_push_speed)), PC_REAL(0.0));
+    Real rate = pc_select(acts, pc_within_push_speed(PC_PASS whole), PC_REAL(0.0));
     if (PC_ANY(begun)) {  // lint: allow (selected)
       Real now = pc_row_rate(PC_PASS n, up, i, turn, PC_REAL(1.0));
       Real turned = pc_select(kind > PC_REAL(1.0), now, pc_crosses(PC_PASS n, i, now));

@@ -39,7 +39,7 @@ PC_FN Sym3 pc_add_about(PC_IO Slot n, Sym3 m, Vec3 axis, Real inverse, Vec3 arm,
   precise Real lacks = lost - own;
   return pc_sym_outer(m, axis, pc_max(lacks, PC_REAL(0.0)));
 }
-PC_FN Sym3 pc_with_what_is_lost(PC_IO Slot n, Sym3 m, Vec3 arm, Real lost) {
+PC_FN Sym3 pc_with_lost_inertia(PC_IO Slot n, Sym3 m, Vec3 arm, Real lost) {
   Vec3 inverse = pc_ld3_tree(PC_PASS n, TREE_MOMENTS);
   Real one = PC_REAL(1.0);
   Real none = PC_REAL(0.0);
@@ -48,7 +48,8 @@ PC_FN Sym3 pc_with_what_is_lost(PC_IO Slot n, Sym3 m, Vec3 arm, Real lost) {
   m = pc_add_about(PC_PASS n, m, pc_rotate(q, Vec3(none, one, none)), inverse.y, arm, lost);
   return pc_add_about(PC_PASS n, m, pc_rotate(q, Vec3(none, none, one)), inverse.z, arm, lost);
 }
-// The inertia m of a joint's freedom with floors under it: stiff pins turn no joint faster than the sub-step follows (`fast`, TREE_FAST).
+// The inertia m of a joint's freedom with the floors under it: what rounding loses, and a share of all where pins are stiffer than the sub-step
+// follows (`fast`, TREE_FAST). What turns about its pin alone stands between nothing: a floor would take its share of each kick.
 PC_FN Sym3 pc_with_floor(PC_IO Slot n, Sym3 m, Vec3 arm, Real fast) {
   precise Real all = m.xx + m.yy + m.zz;
   precise Real known = all * PC_INFO(rounding) * PC_SPIN_LOST;
@@ -57,15 +58,14 @@ PC_FN Sym3 pc_with_floor(PC_IO Slot n, Sym3 m, Vec3 arm, Real fast) {
   precise Real driven = all * PC_INFO(rounding);
   unknown = pc_select(pc_drive_lasts(PC_PASS n), driven, unknown);
 #endif
-  Real lost = pc_select(fast > PC_REAL(0.0), known, unknown);
   precise Real stiff = all * fast * PC_INFO(spin_floor);
   precise Real least = all * PC_EPSILON;
-  // (what turns about its pin alone stands between nothing: a floor would take its share of each kick)
   Mask pivot = PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5);
+  Real lost = pc_select(pivot, PC_REAL(0.0), pc_select(fast > PC_REAL(0.0), known, unknown));
   Sym3 held = pc_sym_add(m, pc_diagonal(pc_select(pivot, least, stiff)));
-  Mask lacks = pc_and(lost > pc_least_moment(PC_PASS n), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
+  Mask lacks = lost > pc_least_moment(PC_PASS n);
   if (!PC_ANY(lacks)) return held;  // lint: allow (others lack nothing)
-  return pc_sym_select(lacks, pc_with_what_is_lost(PC_PASS n, held, arm, lost), held);
+  return pc_sym_select(lacks, pc_with_lost_inertia(PC_PASS n, held, arm, lost), held);
 }
 #ifdef PC_SEEN
 // Where W is made anew after the contacts they go on seeing it as it was.
