@@ -80,7 +80,6 @@ class LibraryWatcher final : public Watcher {
       before_ = eye_.look(player);
       judge.begin(before_);
       for (std::size_t i = 0; i < before_.bodies.size(); i++) allow_overlaps(player, int(i), false);
-      for (std::size_t i = 0; i < before_.joints.size(); i++) allow_gap(int(i));
       return;
     }
     if (!begun_ || !status) return;
