@@ -325,6 +325,8 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.contact_preload = Scalar(0.1);
     info.load_ahead = Scalar(relax ? 1 : 0);
     info.push_speed = Scalar(4);
+    info.row_push_speed = Scalar(0.2);
+    info.tree_push_speed = Scalar(0.1);
     info.soft_mass_scale = Scalar(relax ? 1 : 0.95);
     info.joint_push_speed = Scalar(8);
     info.loop_give = Scalar(1e-5);

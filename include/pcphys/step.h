@@ -49,7 +49,7 @@ struct StepSettings {
   double sleep_spin = constants::sleep_spin;    // nor what spins faster [rad/s]
   double sleep_time = constants::sleep_time;    // how long an island is at rest before it sleeps, above 0 [s]
 
-  double push_speed = 3;               // at which an overlap is undone, at most [m/s]
+  double push_speed = 3;               // at which an overlap is undone, at most (docs/limits.md) [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
   double contact_margin = 0;           // contacts are kept up to this gap [m]; 0: up to constants::contact_share of the smaller shape
   std::size_t max_pairs = 1u << 24;    // more is an error that says how many there are

@@ -47,7 +47,7 @@ PC_FN Real pc_row_room(PC_IO Real vn, Real s, Real mass, Real impulse, Real loos
   return pc_select(pc_is_open(PC_PASS gap_rate), gap, pc_min(more, PC_REAL(0.0)));
 }
 #else
-#define PC_MOST_PUSH PC_INFO(push_speed)
+#define PC_MOST_PUSH PC_INFO(row_push_speed)
 #endif
 PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
   precise Real gap_rate = s * PC_INFO(inverse_h);

@@ -19,6 +19,7 @@ PC_INFO_FIELD(settled_load, "rounds where a load grows by this factor, or fricti
 PC_INFO_FIELD(least_load, "rounds are for loads that make more than this change of the velocity [m/s]")
 PC_INFO_FIELD(load_ahead, "1 in the relax phase: friction goes by the load that the normal rows will take up; else 0")
 PC_INFO_FIELD(push_speed, "largest speed at which an overlap is undone [m/s]")
+PC_INFO_FIELD(row_push_speed, "the same of free bodies: what gravity gives in a step, or push_speed in a second [m/s]")
 PC_INFO_FIELD(tree_push_speed, "the same of what stands in trees, by velocities: what gravity gives in a step; what is more moves poses alone [m/s]")
 PC_INFO_FIELD(joint_push_speed, "[m/s] for pins, [rad/s] for angles")
 PC_INFO_FIELD(sent, "1 in the sent phase: contacts of what joints have sent together in this sub-step; else 0")

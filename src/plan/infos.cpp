@@ -47,7 +47,9 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.settled_load = Scalar(constants::settled_load);
   biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
   biased.push_speed = Scalar(from.push_speed);
-  biased.tree_push_speed = Scalar(std::min(from.push_speed, length(from.gravity) * from.h * from.substeps));
+  const double gravity = length(from.gravity), step = from.h * from.substeps;
+  biased.row_push_speed = Scalar(std::min(from.push_speed, std::max(gravity, from.push_speed) * step));
+  biased.tree_push_speed = Scalar(std::min(from.push_speed, gravity * step));
   biased.joint_push_speed = Scalar(constants::joint_push_speed);
   biased.limit_give = Scalar(constants::largest_give);
   biased.loop_give = Scalar(constants::loop_give);

@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "pcphys/step.h"
-#include "plan/solved_joints.h"
+#include "plan/islands.h"
 #include "plan/wanted.h"
 #include "world/memory.h"
 #include "world/state.h"
@@ -17,19 +16,30 @@ class TreeNodes;
 
 class Loads {
  public:
-  /// Follows a change of contacts: finds those in which a free body could carry one much heavier than itself.
-  void find(const WorldState& state, const TreeNodes& trees);
-  void forget_contacts() { uneven_.clear(); }
-  /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could rest on lighter bodies.
-  void want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) const;
-  std::size_t memory_bytes() const { return bytes_of(uneven_); }
+  /// Follows a change of contacts: lists those that could carry something, in islands whose masses differ by more than
+  /// constants::uneven_masses.
+  void find(const WorldState& state, const TreeNodes& trees, Islands& islands);
+  void forget_contacts() { rests_.clear(); }
+  /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could rest on free bodies.
+  void want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted);
+  std::size_t memory_bytes() const { return bytes_of(masses_, rests_, held_, carried_); }
 
  private:
-  struct Uneven {
-    std::uint32_t contact, lighter;
-    double ratio;  // of the masses; below zero where the normal leads from the heavier body to the lighter
+  struct Masses {
+    double lightest = 0, heaviest = 0;  // as inverse masses; 0: none
   };
-  std::vector<Uneven> uneven_;
+  /// A contact whose upper body could rest on the lower one.
+  struct Rest {
+    std::uint32_t contact, lower = 0, upper = 0;
+    double share = 0;   // of the normal that is along gravity
+    double height = 0;  // of the upper one [m]
+  };
+  /// Hands all weights down from body to body, each in shares to what it could rest on.
+  void stack(const WorldState& state);
+
+  std::vector<Masses> masses_;  // by body row, of islands at their roots
+  std::vector<Rest> rests_;     // from the highest on
+  std::vector<double> held_, carried_;  // by body row: shares of its contacts below; mass that could rest on it [kg]
 };
 
 }  // namespace pcphys

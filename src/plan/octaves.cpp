@@ -24,9 +24,9 @@ std::uint8_t highest_loop_octave(const StepSettings& settings) {
 }
 
 void Octaves::update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven) {
-  uneven ? loads_.find(state, trees) : loads_.forget_contacts();
   columns_.forget();
   islands_.forget();
+  uneven ? loads_.find(state, trees, islands_) : loads_.forget_contacts();
 }
 
 bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
