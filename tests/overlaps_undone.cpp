@@ -1,5 +1,6 @@
-// Pins how overlaps are undone, in random scenes: heavy bodies on light ones are not pressed in far, and what lies in each other comes
-// apart without being thrown. Heavy boxes that lay in light ones on the floor were once thrown up by 0.27 m, and a light one under several was pressed flat.
+// Pins how overlaps are undone, in random scenes: heavy bodies on light ones are not pressed in far, and what lies in
+// each other comes apart without being thrown. Heavy boxes that lay in light ones on the floor were once thrown up by
+// 0.27 m, and a light one under several was pressed flat.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -25,8 +26,8 @@ BodyId add_box(World& world, Vec3 centre, double size, double mass) {
 
 double height(const World& world, BodyId body) { return world.pose(body)->position.y; }
 
-/// Boxes that get heavier upwards, at steps of two lengths in turns: by how much of a box the tower has come down at most since the
-/// tenth step.
+/// Boxes that get heavier upwards, at steps of two lengths in turns: by how much of a box the tower has come down at
+/// most, from the tenth step on.
 double deepest(Draws& draws) {
   const int count = 2 + int(draws.between(0, 5));
   const double size = draws.by_ratio(0.2, 1), ratio = draws.by_ratio(200, 1000);
@@ -34,7 +35,10 @@ double deepest(Draws& draws) {
   Stepper stepper;
   (void)must(world.create_body(fixed_box({0, -1, 0}, {20, 1, 20})));
   BodyId top;
-  for (int i = 0; i < count; i++) top = add_box(world, {0, (i + 0.5) * size, 0}, size, std::pow(ratio, double(i) / (count - 1)));
+  for (int i = 0; i < count; i++) {
+    const double mass = std::pow(ratio, double(i) / (count - 1));
+    top = add_box(world, {0, (i + 0.5) * size, 0}, size, mass);
+  }
   double lowest = height(world, top);
   const double start = lowest;
   for (int i = 0; i < 120; i++) {
