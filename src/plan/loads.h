@@ -1,5 +1,5 @@
-// Sub-steps for heavy loads. A contact is as stiff as the lighter of its bodies lets it be (docs/impulses.md), so a load
-// of a thousand times that body presses it in by a thousand times as much; sub-steps undo that with their square.
+// Sub-steps for heavy loads. A contact is as stiff as the lighter of its bodies lets it be (docs/impulses.md), so a
+// load of a thousand times that body presses it in by a thousand times as much; sub-steps undo that with their square.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -20,8 +20,8 @@ class Loads {
   /// constants::uneven_masses.
   void find(const WorldState& state, const TreeNodes& trees, Islands& islands);
   void forget_contacts() { rests_.clear(); }
-  /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could rest
-  /// on free bodies.
+  /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could
+  /// rest on free bodies.
   void want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted);
   std::size_t memory_bytes() const { return bytes_of(masses_, rests_, held_, carried_); }
 
