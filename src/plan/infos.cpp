@@ -26,7 +26,7 @@ double soft_substep_length(double before, double h, double dt) {
 }
 
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
-  const double h = from.h / double(1u << octave);
+  const double h = from.h / double(1u << octave), step = from.h * from.substeps, gravity = length(from.gravity);
   const Soft rows = soft(constants::soft_frequency_times_h * (from.h / from.soft_substep), constants::soft_damping_ratio, h);
 
   InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
@@ -43,11 +43,10 @@ template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (
   biased.soft_mass_scale = Scalar(rows.mass_scale);
   biased.soft_impulse_scale = Scalar(rows.impulse_scale);
   biased.soft_trend = Scalar(std::max(0.0, 1 - 2 * rows.impulse_scale / (rows.rate * h)));
-  biased.contact_preload = Scalar(constants::contact_preload * length(from.gravity) * h);
+  biased.contact_preload = Scalar(constants::contact_preload * gravity * h);
   biased.settled_load = Scalar(constants::settled_load);
-  biased.least_load = Scalar(constants::least_load * length(from.gravity) * h);
+  biased.least_load = Scalar(constants::least_load * gravity * h);
   biased.push_speed = Scalar(from.push_speed);
-  const double gravity = length(from.gravity), step = from.h * from.substeps;
   biased.row_push_speed = Scalar(std::min(from.push_speed, std::max(gravity, from.push_speed) * step));
   biased.tree_push_speed = Scalar(std::min(from.push_speed, gravity * step));
   biased.joint_push_speed = Scalar(constants::joint_push_speed);

@@ -32,7 +32,7 @@ void Loads::find(const WorldState& state, const TreeNodes& trees, Islands& islan
   }
 }
 
-void Loads::stack(const WorldState& state) {
+void Loads::hand_down(const WorldState& state) {
   const Vec3 up = (-1 / length(state.gravity)) * state.gravity;
   held_.assign(state.bodies.size(), 0);
   for (Rest& rest : rests_) {
@@ -56,7 +56,7 @@ void Loads::stack(const WorldState& state) {
 void Loads::want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
   const double g = length(state.gravity), frequency = constants::soft_frequency_times_h / h;
   if (rests_.empty() || g == 0) return;
-  stack(state);
+  hand_down(state);
   const double give = g / (frequency * frequency);  // how far the weight of one body presses in one as heavy [m]
   for (std::uint32_t row = 1; row < carried_.size(); row++) {
     if (!(carried_[row] > 0) || !state.responds(row)) continue;

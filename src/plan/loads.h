@@ -2,7 +2,6 @@
 // load of a thousand times that body presses it in by a thousand times as much; sub-steps undo that with their square.
 #pragma once
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "plan/islands.h"
@@ -36,7 +35,7 @@ class Loads {
     double height = 0;  // of the upper one [m]
   };
   /// Hands all weights down from body to body, each in shares to what it could rest on.
-  void stack(const WorldState& state);
+  void hand_down(const WorldState& state);
 
   std::vector<Masses> masses_;  // by body row, of islands at their roots
   std::vector<Rest> rests_;     // from the highest on
