@@ -7,7 +7,8 @@
 // What one normal row asks for, as a change of its impulse. Open rows (s > 0) are speculative: they stop what would close
 // the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of their impulse.
 // Where one body stands, or one hangs on joints, that is a share of what the manifold's load goes beyond a few weights of
-// what answers it (`loose`), so that what lies alone does not sink, also where one side of it carries more.
+// what answers it (`loose`), so that what lies alone does not sink, also where one side of it carries more; and together of no more
+// than twice the load of the sub-step before: what has just come is a blow, which is stopped.
 #ifdef PC_TREES
 // What a row that bounces asks for: to leave with `back`, above 0.
 PC_FN Real pc_thrown(Real change, Real vn, Real mass, Real back) { precise Real bounce = mass * (back - vn); return pc_select(back > PC_REAL(0.0), bounce, change); }
@@ -117,7 +118,9 @@ PC_FN Visit pc_visit(PC_IO Slot m, Twist v, Shift shift, Vec3 n, Vec3 t1, Vec3 t
   precise Real kept = mass * preload;
   precise Real beyond = PC_REAL(1.0) - kept * pc_inverse_or_zero(coming);
   Mask rests = pc_and(coming > PC_REAL(0.0), kept > coming);
-  Real loose = pc_select(rests, PC_REAL(0.0), beyond);
+  precise Real before = PC_LD(contact_impulses, m, IMPULSE_BEFORE) * pc_inverse_or_zero(coming);
+  precise Real twice = before + before;
+  Real loose = pc_select(rests, PC_REAL(0.0), pc_min(beyond, twice));
   Real not_yet = pc_max(pc_beyond_rounding(PC_PASS gap_rate), PC_INFO(load_ahead));
   Mask waits = pc_and(load < PC_TINY, not_yet > PC_REAL(0.0));
   Real ahead = pc_select(waits, PC_REAL(0.0), pc_max(coming, PC_REAL(0.0)));
