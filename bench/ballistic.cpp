@@ -1,6 +1,8 @@
-// A world in which nothing meets, holds or slows a body, beside what one would write by hand for it: the same arithmetic over the
-// same arrays, in turns with pcphys so that what else happens on the machine hits both. The time is pcphys's median step.
-//   ballistic/BODIES/cpu     beside a loop of one thread (ballistic_hand.cpp); `differs`: bodies whose rows are not the same bits
+// A world in which nothing meets, holds or slows a body, beside what one would write by hand for it: the same
+// arithmetic over the same arrays, in turns with pcphys so that what else happens on the machine hits both. The time is
+// pcphys's median step.
+//   ballistic/BODIES/cpu     beside a loop of one thread (ballistic_hand.cpp); `differs`: bodies whose rows are not the
+//                            same bits
 //   ballistic/BODIES/gl      beside a compute shader over buffers that stay on the device
 //   ballistic/BODIES/create  making the world, a body
 #include <benchmark/benchmark.h>
@@ -81,13 +83,13 @@ std::size_t differences(const ballistic::Arrays& a, const ballistic::Arrays& b) 
   };
   std::size_t count = 0;
   for (std::size_t row = 1; row + 8 <= a.bodies + 1; row++)
-    count +=
-        !(same(a.motion, b.motion, row, 8) && same(a.pose, b.pose, row, 16) && same(a.velocity_parts, b.velocity_parts, row, 16));
+    count += !(same(a.motion, b.motion, row, 8) && same(a.pose, b.pose, row, 16) &&
+               same(a.velocity_parts, b.velocity_parts, row, 16));
   return count;
 }
 
-void report(benchmark::State& state, const std::vector<double>& own, const std::vector<double>& hand, std::size_t bodies,
-            const std::string& device) {
+void report(benchmark::State& state, const std::vector<double>& own, const std::vector<double>& hand,
+            std::size_t bodies, const std::string& device) {
   state.SetIterationTime(median(own) / 1000);
   state.counters["ms"] = median(own);
   state.counters["hand_ms"] = median(hand);
@@ -132,7 +134,8 @@ class Shader {
     glGetProgramiv(program_, GL_LINK_STATUS, &linked);
     ready_ = linked != 0;
     glUseProgram(program_);
-    glUniform4f(glGetUniformLocation(program_, "gravity_h"), arrays.gravity[0], arrays.gravity[1], arrays.gravity[2], arrays.h);
+    glUniform4f(glGetUniformLocation(program_, "gravity_h"), arrays.gravity[0], arrays.gravity[1], arrays.gravity[2],
+                arrays.h);
     glUniform2ui(glGetUniformLocation(program_, "bodies_substeps"), bodies_, unsigned(arrays.substeps));
     glGenBuffers(GLsizei(buffers_.size()), buffers_.data());
     GLuint binding = 0;

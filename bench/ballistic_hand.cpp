@@ -61,7 +61,8 @@ inline void substep(Block& b, float h) {
 void step(Arrays& arrays) {
   for (std::size_t first = 1; first + width <= arrays.bodies + 1; first += width) {
     Block b;
-    float *motion = &arrays.motion[first * 8], *pose = &arrays.pose[first * 16], *parts = &arrays.velocity_parts[first * 16];
+    float *motion = &arrays.motion[first * 8], *pose = &arrays.pose[first * 16],
+          *parts = &arrays.velocity_parts[first * 16];
     const float *mass = &arrays.mass[first * 8], *force = &arrays.force[first * 8];
     for (std::size_t i = 0; i < width; i++) {
       for (std::size_t k = 0; k < 3; k++) {
@@ -99,8 +100,14 @@ uniform vec4 gravity_h;
 uniform uvec2 bodies_substeps;
 vec4 snap(vec4 x) { return mix(x, vec4(0.0), lessThan(abs(x), vec4(1e-18))); }
 void two_sum(inout vec4 a, vec4 b, out vec4 low) {
-  precise vec4 sum = a + b; precise vec4 bb = sum - a; precise vec4 aa = sum - bb; precise vec4 eb = b - bb; precise vec4 ea = a - aa;
-  precise vec4 e = ea + eb; a = sum; low = snap(e);
+  precise vec4 sum = a + b;
+  precise vec4 bb = sum - a;
+  precise vec4 aa = sum - bb;
+  precise vec4 eb = b - bb;
+  precise vec4 ea = a - aa;
+  precise vec4 e = ea + eb;
+  a = sum;
+  low = snap(e);
 }
 void main() {
   uint i = gl_GlobalInvocationID.x + 1u;

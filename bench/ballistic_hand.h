@@ -1,5 +1,5 @@
-// What one would write by hand for a world of balls in free fall: one loop over the tables' own arrays, that knows that nothing
-// else is in them (one sub-step length, equal moments, no drag, turns of less than half a radian a sub-step).
+// What one would write by hand for a world of balls in free fall: one loop over the tables' own arrays, that knows that
+// nothing else is in them (one sub-step length, equal moments, no drag, turns of less than half a radian a sub-step).
 #pragma once
 #include <cstddef>
 #include <string>

@@ -1,5 +1,5 @@
-// What it costs to find who is in which island, from contacts that are there: by union-find on the host, and by label propagation on a
-// device, with the list of edges, the transfers and the waits for each round.
+// What it costs to find who is in which island, from contacts that are there: by union-find on the host, and by label
+// propagation on a device, with the list of edges, the transfers and the waits for each round.
 //   islands/GRAPH/BODIES/PLACE
 #include <benchmark/benchmark.h>
 
@@ -90,8 +90,12 @@ const bool registered = [] {
   for (const std::uint32_t count : {1'000u, 10'000u, 100'000u})
     for (const auto& [name, graph] : {std::pair{"chain", &chain}, std::pair{"pile", &pile}}) {
       const std::string what = std::string("islands/") + name + "/" + std::to_string(count);
-      benchmark::RegisterBenchmark((what + "/cpu").c_str(), on_cpu, count, graph)->Unit(benchmark::kMicrosecond)->UseRealTime();
-      benchmark::RegisterBenchmark((what + "/gl").c_str(), on_gl, count, graph)->Unit(benchmark::kMicrosecond)->UseRealTime();
+      benchmark::RegisterBenchmark((what + "/cpu").c_str(), on_cpu, count, graph)
+          ->Unit(benchmark::kMicrosecond)
+          ->UseRealTime();
+      benchmark::RegisterBenchmark((what + "/gl").c_str(), on_gl, count, graph)
+          ->Unit(benchmark::kMicrosecond)
+          ->UseRealTime();
     }
   return true;
 }();

@@ -1,5 +1,7 @@
-// What a step does not pay for: kinds of scene with all on and with something left out, taking turns; and what planning costs.
-//   leaving_out/KIND                 median step of both [ms], its contacts, kernel runs of a step, memory of its buffers; docs/leaving-out.md
+// What a step does not pay for: kinds of scene with all on and with something left out, taking turns; and what planning
+// costs.
+//   leaving_out/KIND                 median step of both [ms], its contacts, kernel runs of a step, memory of its
+//                                    buffers; docs/leaving-out.md
 //   planning/unchanged/SCENE         the timer `plan` where nothing has changed
 //   planning/joint/SCENE             lists, pairs and plan of a step after a joint was added, beyond an ordinary one's
 //   planning/nothing                 a step of a world in which nothing moves
@@ -124,7 +126,8 @@ struct Run {
     const auto made = world.create_joint(pin);
     if (!made) check(made.error());
   }
-  /// Far away one ball lies on a floor with friction: rows of all contacts are whole, and the heap moves by the same bits.
+  /// Far away one ball lies on a floor with friction: rows of all contacts are whole, and the heap moves by the same
+  /// bits.
   void rough_ball() {
     for (const bool floor : {true, false}) {
       BodyDef def;
@@ -219,7 +222,8 @@ const std::vector<Kind>& kinds() {
                       def.spring = {5, 0.5, {}};
                     }); },
        [](Run& r) { r.make("chain", 200); }},
-      {"ballistic, drag; none", [](Run& r) { r.make("ballistic", many), r.drag(); }, [](Run& r) { r.make("ballistic", many); }},
+      {"ballistic, drag; none", [](Run& r) { r.make("ballistic", many), r.drag(); },
+       [](Run& r) { r.make("ballistic", many); }},
       {"ballistic, unequal moments; equal", [](Run& r) { r.make("ballistic", many), r.unequal_moments(); },
        [](Run& r) { r.make("ballistic", many); }},
       {"ballistic, rotating; not", [](Run& r) { r.make("ballistic", many); },
@@ -231,7 +235,8 @@ const std::vector<Kind>& kinds() {
        [](Run& r) { r.make("ballistic", many); }},
       {"ballistic, a pendulum beside; alone", [](Run& r) { r.make("ballistic", many), r.pendulum(); },
        [](Run& r) { r.make("ballistic", many); }},
-      {"ballistic, own kernel each sub-step; once a step", [](Run& r) { r.make("ballistic", many), r.own_kernel(false); },
+      {"ballistic, own kernel each sub-step; once a step",
+       [](Run& r) { r.make("ballistic", many), r.own_kernel(false); },
        [](Run& r) { r.make("ballistic", many), r.own_kernel(true); }},
       {"pyramid, dynamic; static", [](Run& r) { r.make("pyramid", 30); },
        [](Run& r) {
@@ -285,7 +290,8 @@ void unchanged(benchmark::State& state, const char* scene, int count) {
 
 /// Of a step: what follows a change of objects or contacts, boxes and pairs included.
 double planned(const StepReport& report) {
-  return report.ms[std::size_t(Timer::forces)] + report.ms[std::size_t(Timer::broad)] + report.ms[std::size_t(Timer::plan)];
+  return report.ms[std::size_t(Timer::forces)] + report.ms[std::size_t(Timer::broad)] +
+         report.ms[std::size_t(Timer::plan)];
 }
 
 void add_joint(benchmark::State& state, const char* scene, int count) {
@@ -337,7 +343,8 @@ const bool registered = [] {
     const char* scene;
     int count;
   };
-  for (const Case& c : {Case{"ballistic", 10'000}, {"balls", 10'000}, {"ragdolls", 833}, {"pyramid", 40}, {"chain", 1'000}})
+  for (const Case& c :
+       {Case{"ballistic", 10'000}, {"balls", 10'000}, {"ragdolls", 833}, {"pyramid", 40}, {"chain", 1'000}})
     benchmark::RegisterBenchmark((std::string("planning/unchanged/") + c.scene).c_str(), unchanged, c.scene, c.count)
         ->UseManualTime()
         ->Iterations(1);

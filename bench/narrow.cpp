@@ -58,9 +58,9 @@ template <class S> void run(benchmark::State& state, Case c) {
   };
   std::vector<Pair<S>> pairs;
   for (int i = 0; i < 256; i++)
-    pairs.push_back(
-        {shape<S>(c.a, c.size_a.x, c.size_a.y, c.size_a.z, {}, rotation(small(c.tilt))),
-         shape<S>(c.b, c.size_b.x, c.size_b.y, c.size_b.z, c.offset + small(1e-3), axis_angle({0, 1, 0}, c.turn * one(random)))});
+    pairs.push_back({shape<S>(c.a, c.size_a.x, c.size_a.y, c.size_a.z, {}, rotation(small(c.tilt))),
+                     shape<S>(c.b, c.size_b.x, c.size_b.y, c.size_b.z, c.offset + small(1e-3),
+                              axis_angle({0, 1, 0}, c.turn * one(random)))});
   Manifold<S> m;
   std::size_t points = 0, calls = 0;
   for (auto _ : state) {
@@ -77,8 +77,8 @@ template <class S> void run(benchmark::State& state, Case c) {
 }
 
 const Vec3 unit{0.5, 0.5, 0.5};
-const ShapeKind S = ShapeKind::sphere, K = ShapeKind::capsule, B = ShapeKind::box, C = ShapeKind::cylinder, H = ShapeKind::hull,
-                P = ShapeKind::plane;
+const ShapeKind S = ShapeKind::sphere, K = ShapeKind::capsule, B = ShapeKind::box, C = ShapeKind::cylinder,
+                H = ShapeKind::hull, P = ShapeKind::plane;
 struct Named {
   const char* name;
   Case c;

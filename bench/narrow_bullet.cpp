@@ -21,10 +21,10 @@ std::unique_ptr<btConvexHullShape> hull(int vertices) {
   auto shape = std::make_unique<btConvexHullShape>();
   for (int i = 0; i < vertices; i++) {
     const double y = 1 - 2 * (i + 0.5) / vertices, r = std::sqrt(1 - y * y), t = 2.39996322972865332 * i;
-    shape->addPoint(vertices == 8
-                        ? btVector3(i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f)
-                        : btVector3(btScalar(0.5 * r * std::cos(t)), btScalar(0.5 * y), btScalar(0.5 * r * std::sin(t))),
-                    false);
+    shape->addPoint(
+        vertices == 8 ? btVector3(i & 1 ? 0.5f : -0.5f, i & 2 ? 0.5f : -0.5f, i & 4 ? 0.5f : -0.5f)
+                      : btVector3(btScalar(0.5 * r * std::cos(t)), btScalar(0.5 * y), btScalar(0.5 * r * std::sin(t))),
+        false);
   }
   shape->recalcLocalAabb();
   return shape;
@@ -81,10 +81,12 @@ void run(benchmark::State& state, Case c) {
 }
 
 const bool registered = [] {
-  const Case cases[] = {
-      {"hull_hull_standing", 8, 8, {0.1f, -1, 0}, 0.5, 0.001}, {"hull_hull_edges", 8, 8, {0.9f, -0.9f, 0}, 0.8, 0.8},
-      {"rock_rock_16", 16, 16, {0.1f, -0.84f, 0}, 0.5, 0.5},   {"rock_rock_32", 32, 32, {0.1f, -0.93f, 0}, 0.5, 0.5},
-      {"rock_rock_64", 64, 64, {0.1f, -0.95f, 0}, 0.5, 0.5},   {"rock_rock_32_apart", 32, 32, {0.1f, -1.005f, 0}, 0.5, 0.5}};
+  const Case cases[] = {{"hull_hull_standing", 8, 8, {0.1f, -1, 0}, 0.5, 0.001},
+                        {"hull_hull_edges", 8, 8, {0.9f, -0.9f, 0}, 0.8, 0.8},
+                        {"rock_rock_16", 16, 16, {0.1f, -0.84f, 0}, 0.5, 0.5},
+                        {"rock_rock_32", 32, 32, {0.1f, -0.93f, 0}, 0.5, 0.5},
+                        {"rock_rock_64", 64, 64, {0.1f, -0.95f, 0}, 0.5, 0.5},
+                        {"rock_rock_32_apart", 32, 32, {0.1f, -1.005f, 0}, 0.5, 0.5}};
   for (const Case& c : cases) benchmark::RegisterBenchmark((std::string("narrow/bullet/") + c.name).c_str(), run, c);
   return true;
 }();

@@ -1,5 +1,5 @@
-// What a host pays for objects: to make and destroy bodies that touch, one by one and many at once, with sleep and without, and the
-// memory of a ball. Times and bytes are of one body.
+// What a host pays for objects: to make and destroy bodies that touch, one by one and many at once, with sleep and
+// without, and the memory of a ball. Times and bytes are of one body.
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -108,8 +108,8 @@ double resident() {
   pages >> all >> here;
   return here * double(sysconf(_SC_PAGESIZE));
 }
-/// Balls in a cube that is turned against the axes, so that boxes overlap as in a pile: each touches six, and its box those of five more.
-/// Further from each other they touch nothing. They float.
+/// Balls in a cube that is turned against the axes, so that boxes overlap as in a pile: each touches six, and its box
+/// those of five more. Further from each other they touch nothing. They float.
 World floating_cube(std::int64_t count, double distance) {
   WorldDef def;
   def.gravity = {};
@@ -142,11 +142,28 @@ void memory(benchmark::State& state, double distance) {
 
 constexpr std::int64_t few = 1000, many = 100000;
 BENCHMARK(make)->RangeMultiplier(10)->Range(few, many)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(destroy, one_by_one, one_by_one, false)->RangeMultiplier(10)->Range(few, many)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(destroy, at_random, at_random, false)->RangeMultiplier(10)->Range(few, many)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(destroy, asleep, at_random, true)->RangeMultiplier(10)->Range(few, many)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(destroy, one_by_one, one_by_one, false)
+    ->RangeMultiplier(10)
+    ->Range(few, many)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(destroy, at_random, at_random, false)
+    ->RangeMultiplier(10)
+    ->Range(few, many)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(destroy, asleep, at_random, true)
+    ->RangeMultiplier(10)
+    ->Range(few, many)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(make_beside_sleepers)->RangeMultiplier(10)->Range(few, many)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(memory, touching, 0.9999)->RangeMultiplier(10)->Range(few, many)->Iterations(1)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(memory, apart, 1.2)->RangeMultiplier(10)->Range(few, many)->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(memory, touching, 0.9999)
+    ->RangeMultiplier(10)
+    ->Range(few, many)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(memory, apart, 1.2)
+    ->RangeMultiplier(10)
+    ->Range(few, many)
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

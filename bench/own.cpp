@@ -1,13 +1,19 @@
 // Kernels of the host's own over pairs, over joints with their bodies, and totals:
-//   own/all_pairs/PLACE/PRECISION/BODIES   magnets, each on each: interactions/s, and arithmetic operations/s (a division and a root
-//                                          count as one). With PCPHYS_PEAK_GFLOPS, the device's figure in that precision as its maker
-//                                          gives it (two operations a fused multiply-add, of which pcphys makes none: half of it is
+//   own/all_pairs/PLACE/PRECISION/BODIES   magnets, each on each: interactions/s, and arithmetic operations/s (a
+//                                          division and a root
+//                                          count as one). With PCPHYS_PEAK_GFLOPS, the device's figure in that
+//                                          precision as its maker
+//                                          gives it (two operations a fused multiply-add, of which pcphys makes none:
+//                                          half of it is
 //                                          the limit), `of_limit` is the share that was reached.
-//   own/near/PLACE/PRECISION/BODIES        the same within a cut-off at one density (about 30 neighbours), lists made anew in each
-//                                          step: `ns_per_nlogn` is level where the time grows as n log n; `lists_ms` is theirs alone.
+//   own/near/PLACE/PRECISION/BODIES        the same within a cut-off at one density (about 30 neighbours), lists made
+//                                          anew in each
+//                                          step: `ns_per_nlogn` is level where the time grows as n log n; `lists_ms` is
+//                                          theirs alone.
 //   own/joined/PLACE/PRECISION/BODIES      cords, one from each body to the next
 //   own/total/PLACE/PRECISION/BODIES       the sum of a number of each body
-// One sub-step a step; the time is that of the stage in which the kernel runs, until the device is done; of `near` that of the step.
+// One sub-step a step; the time is that of the stage in which the kernel runs, until the device is done; of `near` that
+// of the step.
 #include <benchmark/benchmark.h>
 
 #include <chrono>
@@ -107,12 +113,14 @@ void run(benchmark::State& state, What what, Variant variant) {
   Stepper stepper(settings);
   if (Status ok = add(stepper, *world, what); !ok) return state.SkipWithError(ok.error().message.c_str());
   const std::string device = stepper.device(variant.place);
-  if (what == What::all_pairs && count > 10'000 && (variant.place == Place::cpu || device.find("llvmpipe") != device.npos))
+  if (what == What::all_pairs && count > 10'000 &&
+      (variant.place == Place::cpu || device.find("llvmpipe") != device.npos))
     return state.SkipWithError("left out: minutes on a processor");
   // a GPU that was idle takes a while to reach its clock
   const auto start = std::chrono::steady_clock::now();
   do {
-    if (const StepReport& made = stepper.step(*world, dt); !made) return state.SkipWithError(made.error.message.c_str());
+    if (const StepReport& made = stepper.step(*world, dt); !made)
+      return state.SkipWithError(made.error.message.c_str());
   } while (variant.place == Place::gl && std::chrono::steady_clock::now() - start < std::chrono::milliseconds(300));
   double near_ms = 0, lists_ms = 0;
   const BodyId far = world->bodies().back();

@@ -1,5 +1,5 @@
-// What a step costs where everything sleeps, all but one body, or nothing: a pyramid of 60 (1,830 boxes) after 5 s of 1/60 s, beside a ball
-// in flight that may not sleep, pcphys and Bullet with its own thresholds.
+// What a step costs where everything sleeps, all but one body, or nothing: a pyramid of 60 (1,830 boxes) after 5 s of
+// 1/60 s, beside a ball in flight that may not sleep, pcphys and Bullet with its own thresholds.
 //   sleep/pyramid_60/STATE/ENGINE
 #include <benchmark/benchmark.h>
 

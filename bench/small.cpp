@@ -91,10 +91,12 @@ const bool registered = [] {
   constexpr struct {
     const char* name;
     void (*build)(scenes::Builder&);
-  } worlds[] = {{"ball", ball}, {"tumble", tumble}, {"drag", drag}, {"pendulum", pendulum}, {"chain_10", chain}, {"rest", rest}};
+  } worlds[] = {{"ball", ball},         {"tumble", tumble},  {"drag", drag},
+                {"pendulum", pendulum}, {"chain_10", chain}, {"rest", rest}};
   for (const auto& world : worlds)
     for (const Variant& variant : variants)
-      benchmark::RegisterBenchmark((std::string("small/") + world.name + "/" + variant.name).c_str(), step, world.build, variant);
+      benchmark::RegisterBenchmark((std::string("small/") + world.name + "/" + variant.name).c_str(), step, world.build,
+                                   variant);
   return true;
 }();
 

@@ -43,7 +43,8 @@ class Bench {
     scenes::SceneOptions options;
     options.count = std::string(scene_name) == "ragdolls" ? std::max(1, bodies / bones) : bodies;
     if (auto scene = scenes::make(scene_name, options, world_); !scene) return scene.error();
-    if (auto status = settle(std::string(scene_name) + std::to_string(bodies) + std::to_string(int(variant.precision))); !status)
+    if (auto status = settle(std::string(scene_name) + std::to_string(bodies) + std::to_string(int(variant.precision)));
+        !status)
       return status;
 
     settings_.set_all(variant.place);
@@ -182,7 +183,9 @@ void device_stage(benchmark::State& state, Stage stage, Variant variant) {
   const FlushSubnormals flush;
   for (auto _ : state)
     if (status) status = bench.run(part);
-  const Domain domain = stage == Stage::joints ? Domain::joint : stage == Stage::impulses ? Domain::contact : Domain::body;
+  const Domain domain = stage == Stage::joints     ? Domain::joint
+                        : stage == Stage::impulses ? Domain::contact
+                                                   : Domain::body;
   finish(state, bench, status, bench.elements(domain), variant.place);
 }
 
@@ -201,7 +204,8 @@ void transfer_stage(benchmark::State& state, PlanEntry::Kind kind, Variant varia
 
 void one_kernel(benchmark::State& state, Kernel kernel, Variant variant) {
   Bench bench;
-  Status status = bench.prepare(schema(kernel).domain == Domain::joint ? "ragdolls" : "balls", int(state.range(0)), variant);
+  Status status =
+      bench.prepare(schema(kernel).domain == Domain::joint ? "ragdolls" : "balls", int(state.range(0)), variant);
   bool taken = false;
   const StepPlan part = part_of(bench.plan(), [&](const PlanEntry& e) {
     const bool first = is_kernel(e) && e.kernel == kernel && !taken;

@@ -1,5 +1,6 @@
-// Joint trees of which no two are alike, so that each stands alone in its block: on the CPU in scalars, on GL with one invocation a tree and with a
-// work group that shares it. Nothing touches; 4 sub-steps of 1/60 s. The time of a benchmark is the median step.
+// Joint trees of which no two are alike, so that each stands alone in its block: on the CPU in scalars, on GL with one
+// invocation a tree and with a work group that shares it. Nothing touches; 4 sub-steps of 1/60 s. The time of a
+// benchmark is the median step.
 //   tree/WORLD/TREES/VARIANT      PCPHYS_BENCH_STEPS=100 for a quick look
 #include <benchmark/benchmark.h>
 
@@ -80,8 +81,9 @@ const bool registered = [] {
       {"cpu", Place::cpu, 1}, {"gl_alone", Place::gl, 1}, {"gl_team_8", Place::gl, 8}, {"gl_team_32", Place::gl, 32}};
   for (const Case& c : cases)
     for (const Variant& variant : variants)
-      benchmark::RegisterBenchmark((std::string("tree/") + c.name + "/" + std::to_string(c.trees) + "/" + variant.name).c_str(),
-                                   step, c, variant)
+      benchmark::RegisterBenchmark(
+          (std::string("tree/") + c.name + "/" + std::to_string(c.trees) + "/" + variant.name).c_str(), step, c,
+          variant)
           ->UseManualTime()
           ->Iterations(1)
           ->Unit(benchmark::kMicrosecond);

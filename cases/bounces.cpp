@@ -81,14 +81,17 @@ void bouncing(Trial& trial, Restitution r) {
     flights.add(double(k) * trial.dt(), trial.dt(), run.pose(1).position.z - radius);
   }
   // one that never came is all of it off
-  const auto apex = [&](std::size_t n) { return n <= flights.apexes.size() ? flights.apexes[n - 1] / apexes[n - 1] - 1 : -1; };
+  const auto apex = [&](std::size_t n) {
+    return n <= flights.apexes.size() ? flights.apexes[n - 1] / apexes[n - 1] - 1 : -1;
+  };
   trial.report("apex 1, relative", std::fabs(apex(1)), trial.at({infinite, infinite, 1e-3, 1e-3}),
                trial.at({1e-10, 1e-10, 1e-10, 1e-10}, 0));
   if (r.bounces < 5) return;
   trial.report("apex 5, relative", std::fabs(apex(5)), trial.at({infinite, infinite, 4e-3, 4e-3}),
                trial.at({1e-10, 1e-10, 1e-10, 1e-10}, 0));
   if (flights.impacts.size() >= 5)
-    trial.report("instant of impact 5 [s]", std::fabs(flights.impacts[4] - fifth), {}, trial.at({1e-10, 1e-10, 1e-10, 1e-10}, 0));
+    trial.report("instant of impact 5 [s]", std::fabs(flights.impacts[4] - fifth), {},
+                 trial.at({1e-10, 1e-10, 1e-10, 1e-10}, 0));
 }
 
 /// After the last of infinitely many bounces the ball is at rest.
@@ -100,7 +103,8 @@ void comes_to_rest(Trial& trial, double e) {
   for (long k = 1, steps = trial.steps(zeno + 1); k <= steps; ++k) {
     run.step(trial.dt());
     landed = landed || run.pose(1).position.z - radius < 1e-3;
-    if (e == 0 && landed && double(k) * trial.dt() > zeno + 2 * trial.dt()) rebound.add(run.pose(1).position.z - radius);
+    if (e == 0 && landed && double(k) * trial.dt() > zeno + 2 * trial.dt())
+      rebound.add(run.pose(1).position.z - radius);
   }
   if (e == 0) trial.report("rebound [m]", rebound, 1e-4);
   trial.report("speed at rest [m/s]", length(run.velocity(1)), trial.at({infinite, infinite, 1e-3, 1e-3}, 3));
@@ -180,8 +184,11 @@ void add_bounces(std::vector<Case>& cases) {
   Case& ball = cases.emplace_back(Case{"A11", "bouncing ball", {}});
   for (const Restitution& r :
        {Restitution{0.25, 3}, Restitution{0.5, 5}, Restitution{0.75, 5}, Restitution{0.9, 5}, Restitution{1, 5}}) {
-    ball.variants.push_back(
-        {.name = "e = " + text(r.e), .run = [r](Trial& t) { bouncing(t, r); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1});
+    ball.variants.push_back({.name = "e = " + text(r.e),
+                             .run = [r](Trial& t) { bouncing(t, r); },
+                             .coarse = true,
+                             .substeps = {1, 4},
+                             .lost_at = 1});
   }
   // the plane's normal is turned into place and is off by a rounding, so a ball at rest on it rolls by as much
   const double tilt = 1e-13;

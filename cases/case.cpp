@@ -33,7 +33,8 @@ Trial::Trial(Engine& engine, const Setting& setting) : engine_(engine), setting_
 
 long Trial::steps(double seconds) const { return std::lround(seconds / dt()); }
 
-Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, const std::function<void(StepSettings&)>& tune) {
+Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build,
+                        const std::function<void(StepSettings&)>& tune) {
   const auto fail = [this](const Error& error) {
     if (meter_.error.code == ErrorCode::none) meter_.error = error;
   };
@@ -50,7 +51,8 @@ Simulated& Trial::start(const std::function<void(scenes::Builder&)>& build, cons
   auto simulated = engine_.start(make(), conditions);
   if (!simulated) fail(simulated.error());
   again_.push_back({{}, conditions});
-  for (int i = 0; i < repeats_; ++i) again_.back().problems.push_back(make());  // now: what `build` refers to may be gone later
+  // now: what `build` refers to may be gone later
+  for (int i = 0; i < repeats_; ++i) again_.back().problems.push_back(make());
   running_.push_back(simulated ? std::move(*simulated) : std::make_unique<Still>(make()));
   running_.back()->attach(meter_);
   return *running_.back();
@@ -76,7 +78,8 @@ void Trial::resolve(SphereContact& contact) {
   if (auto status = engine_.resolve(contact, conditions_.precision); !status && meter_.error.code == ErrorCode::none)
     meter_.error = status.error();
   for (const Vec3& v : {contact.v1, contact.v2, contact.w1, contact.w2})
-    for (double x : {v.x, v.y, v.z}) meter_.hash = (meter_.hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 1099511628211u;
+    for (double x : {v.x, v.y, v.z})
+      meter_.hash = (meter_.hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 1099511628211u;
 }
 
 void Trial::report(std::string metric, double error, std::optional<double> must, std::optional<double> target) {
@@ -91,7 +94,8 @@ void Trial::report_missing(const std::string& why) {
 
 std::optional<double> Trial::at(const Bounds& bounds, std::size_t single) const {
   for (std::size_t i = 0; i < ladder.size(); ++i)
-    if (std::fabs(dt() / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i])) return bounds[i];
+    if (std::fabs(dt() / ladder[i] - 1) < 1e-9 && (is_double() || i < single) && std::isfinite(bounds[i]))
+      return bounds[i];
   return {};
 }
 

@@ -17,7 +17,8 @@ namespace pcphys::cases {
 /// The step lengths that errors are compared at [s].
 inline constexpr std::array<double, 4> ladder{1.0 / 60, 1.0 / 240, 1.0 / 1200, 1e-4};
 
-/// Longer ones, at which nothing has a bound: they show what little work brings, and where methods of high order are of use [s].
+/// Longer ones, at which nothing has a bound: they show what little work brings, and where methods of high order are of
+/// use [s].
 inline constexpr std::array<double, 2> long_steps{1.0 / 15, 1.0 / 30};
 
 /// One bound a step of the ladder.
@@ -54,7 +55,8 @@ class Trial {
 
   /// Builds bodies and joints, and starts their motion. It lives as long as the trial. Restitution has no least speed,
   /// unless `tune` sets one.
-  Simulated& start(const std::function<void(scenes::Builder&)>& build, const std::function<void(StepSettings&)>& tune = {});
+  Simulated& start(const std::function<void(scenes::Builder&)>& build,
+                   const std::function<void(StepSettings&)>& tune = {});
 
   /// The contact's velocities after it; counts as one step, without a clock.
   void resolve(SphereContact& contact);
@@ -64,8 +66,8 @@ class Trial {
   void report_missing(const std::string& why);
   /// A bound that depends on the precision.
   double either(double twice, double single) const { return is_double() ? twice : single; }
-  /// The bound of this step length; none off the ladder, and none where it is infinite. In single precision only the first `single` of them hold:
-  /// below, rounding stands above the error of every method.
+  /// The bound of this step length; none off the ladder, and none where it is infinite. In single precision only the
+  /// first `single` of them hold: below, rounding stands above the error of every method.
   std::optional<double> at(const Bounds& bounds, std::size_t single = 2) const;
 
   const std::vector<Finding>& findings() const { return findings_; }
@@ -78,7 +80,8 @@ class Trial {
   void finish();
   /// How often `time_again` may be called.
   void set_repeats(int repeats) { repeats_ = repeats; }
-  /// What the steps take by themselves [s], from a new start with nothing read in between; none where that cannot be told.
+  /// What the steps take by themselves [s], from a new start with nothing read in between; none where that cannot be
+  /// told.
   std::optional<double> time_again();
 
  private:
@@ -109,11 +112,14 @@ struct Variant {
   bool direct = false;                         // uses `resolve`: in pcphys alone, with steps of its own
   bool own = false;                            // of a setting that pcphys alone has
   std::uint32_t order = 2;                     // of pcphys: StepSettings::order
-  std::string second_order{};                  // the metric whose slope must be 1.9 at least, in double; 3.5 with order 4
-  bool order_is_target = false;                // should, not must
-  std::optional<double> floor{};    // what the measure of the first metric may be off by itself: errors below it are equal
-  std::optional<double> lost_at{};  // the first metric is then as large as the motion itself: the run tells nothing of it
-  std::vector<double> slow{};       // step lengths that only --all runs
+  // the metric whose slope must be 1.9 at least, in double; 3.5 with order 4
+  std::string second_order{};
+  bool order_is_target = false;  // should, not must
+  // what the measure of the first metric may be off by itself: errors below it are equal
+  std::optional<double> floor{};
+  // the first metric is then as large as the motion itself: the run tells nothing of it
+  std::optional<double> lost_at{};
+  std::vector<double> slow{};  // step lengths that only --all runs
 };
 
 struct Case {

@@ -143,7 +143,8 @@ void add_chains(std::vector<Case>& cases) {
            .more_substeps = fewer,
            .floor = links * std::numeric_limits<double>::epsilon(),  // places of the last links are rounded
            .lost_at = 1});
-      const bool quick = links == 10 || (links == 50 && ratio <= 100);  // the others run with the step of their bound alone
+      // the others run with the step of their bound alone
+      const bool quick = links == 10 || (links == 50 && ratio <= 100);
       for (std::uint32_t order : {2, 4}) {
         if (order == 4 && links != 10) continue;
         hanging.variants.push_back({.name = name + std::string(order == 4 ? ", mode, order 4" : ", mode"),
@@ -171,18 +172,18 @@ void add_chains(std::vector<Case>& cases) {
                              Reference{"5 links, 1:100", "B02_swing_N5_r100.csv", 5, 100, {6e-4, 2.6e-6}},
                              Reference{"10 links, 1:1", "B02_swing_N10_r1.csv", 10, 1, {1.2e-4, 3e-8}}})
     for (std::uint32_t order : {2, 4})
-      swing.variants.push_back(
-          {.name = r.name + std::string(order == 4 ? ", order 4" : ""),
-           .run = [=, csv = read_csv(r.file)](Trial& t) { swing_reference(t, r.links, r.ratio, csv, r.must[order / 4]); },
-           // the order is that of the three shortest, in which no whip asks for more sub-steps
-           .steps = {1.0 / 60, 1.0 / 240, 1.0 / 1200, 1.0 / 2400, 1.0 / 4800, 1e-4},
-           .coarse = true,
-           .substeps = {1, 4},
-           .more_substeps = {2},
-           .order = order,
-           .second_order = "position [m]",
-           .order_is_target = order == 4,  // the last steps reach whips, or rounding
-           .lost_at = r.links * link_length});
+      swing.variants.push_back({.name = r.name + std::string(order == 4 ? ", order 4" : ""),
+                                .run = [=, csv = read_csv(r.file)](
+                                           Trial& t) { swing_reference(t, r.links, r.ratio, csv, r.must[order / 4]); },
+                                // the order is that of the three shortest, in which no whip asks for more sub-steps
+                                .steps = {1.0 / 60, 1.0 / 240, 1.0 / 1200, 1.0 / 2400, 1.0 / 4800, 1e-4},
+                                .coarse = true,
+                                .substeps = {1, 4},
+                                .more_substeps = {2},
+                                .order = order,
+                                .second_order = "position [m]",
+                                .order_is_target = order == 4,  // the last steps reach whips, or rounding
+                                .lost_at = r.links * link_length});
   for (int links : {10, 50})
     for (double ratio : {1.0, 100.0, 1e4}) {
       char name[64];

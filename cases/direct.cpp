@@ -85,7 +85,8 @@ Status resolve(SphereContact& c, Precision precision, Place place, std::uint32_t
   settings.substeps = 1;
   settings.timings = false;
   settings.restitution_threshold = 0;
-  if (auto status = run_plan(settings, plan_of_contact(place, c), direct_step(precision), *world); !status) return status;
+  if (auto status = run_plan(settings, plan_of_contact(place, c), direct_step(precision), *world); !status)
+    return status;
   const std::vector<BodyId> ids = world->bodies();
   c.v1 = *world->velocity(ids[0]);
   c.v2 = *world->velocity(ids[1]);

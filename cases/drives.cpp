@@ -60,7 +60,8 @@ void stiff_drag(Trial& trial) {
   for (int k = 0; k < 100; ++k) {
     run.step(trial.dt());
     const Vec3 v1 = run.velocity(0), w1 = run.angular_velocity(0);
-    for (const auto& [now, before] : {std::pair{v1.x, v.x}, {v1.y, v.y}, {v1.z, v.z}, {w1.x, w.x}, {w1.y, w.y}, {w1.z, w.z}})
+    for (const auto& [now, before] :
+         {std::pair{v1.x, v.x}, {v1.y, v.y}, {v1.z, v.z}, {w1.x, w.x}, {w1.y, w.y}, {w1.z, w.z}})
       wrong += !decays(now, before);
     v = v1, w = w1;
   }
@@ -71,7 +72,8 @@ void stiff_drag(Trial& trial) {
 
 constexpr double spring_mass = 1e-3, rest_length = 0.5;
 
-/// A light ball on a stiff spring from the origin along x, drawn out by 1 cm; at rest, or let go with a speed from its rest length.
+/// A light ball on a stiff spring from the origin along x, drawn out by 1 cm; at rest, or let go with a speed from its
+/// rest length.
 Simulated& stiff_spring(Trial& trial, double stiffness, double mass, double damping, double drawn, double speed) {
   return trial.start([=](scenes::Builder& builder) {
     BodyDef def = free_body(mass, {1e-2 * mass, 1e-2 * mass, 1e-2 * mass}, {speed, 0, 0});
@@ -137,27 +139,32 @@ void add_drives(std::vector<Case>& cases) {
   const std::vector<double> fine{1.0 / 240};
   Case& motors = cases.emplace_back(Case{"B8", "motors", {}});
   for (const auto& [name, load] : {std::pair{"reaches 20 rad/s", 0.0}, {"holds under load", 0.4}, {"overloaded", 0.6}})
-    motors.variants.push_back(
-        {.name = name, .run = [load = load](Trial& t) { rotor(t, load); }, .steps = fine, .substeps = {4}, .own = true});
-  motors.variants.push_back({.name = "door of A9b", .run = door_with_motor, .own = true, .second_order = "angle [rad]"});
+    motors.variants.push_back({.name = name,
+                               .run = [load = load](Trial& t) { rotor(t, load); },
+                               .steps = fine,
+                               .substeps = {4},
+                               .own = true});
+  motors.variants.push_back(
+      {.name = "door of A9b", .run = door_with_motor, .own = true, .second_order = "angle [rad]"});
 
   const std::vector<double> coarse{0.01};
   const std::vector<std::uint32_t> both{1, 4};
-  cases.push_back({"B12",
-                   "stiff decay",
-                   {{.name = "drag 1e4 1/s", .run = stiff_drag, .steps = coarse, .substeps = both},
-                    {.name = "spring 1e6 N/m, damped", .run = damped_spring, .steps = coarse, .substeps = both, .own = true},
-                    {.name = "spring 1e6 N/m, drawn out",
-                     .run = [](Trial& t) { free_spring(t, 0.01, 0); },
-                     .steps = coarse,
-                     .substeps = both,
-                     .own = true},
-                    {.name = "spring 1e6 N/m, struck",
-                     .run = [](Trial& t) { free_spring(t, 0, 10); },
-                     .steps = coarse,
-                     .substeps = both,
-                     .own = true},
-                    {.name = "spring at 2 Hz", .run = slow_spring, .own = true, .second_order = "position [m]"}}});
+  cases.push_back(
+      {"B12",
+       "stiff decay",
+       {{.name = "drag 1e4 1/s", .run = stiff_drag, .steps = coarse, .substeps = both},
+        {.name = "spring 1e6 N/m, damped", .run = damped_spring, .steps = coarse, .substeps = both, .own = true},
+        {.name = "spring 1e6 N/m, drawn out",
+         .run = [](Trial& t) { free_spring(t, 0.01, 0); },
+         .steps = coarse,
+         .substeps = both,
+         .own = true},
+        {.name = "spring 1e6 N/m, struck",
+         .run = [](Trial& t) { free_spring(t, 0, 10); },
+         .steps = coarse,
+         .substeps = both,
+         .own = true},
+        {.name = "spring at 2 Hz", .run = slow_spring, .own = true, .second_order = "position [m]"}}});
 }
 
 }  // namespace pcphys::cases

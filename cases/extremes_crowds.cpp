@@ -79,7 +79,8 @@ void overflow(Trial& trial, const Place& place, const std::string& pairs) {
   Crowd crowd(trial, 0.01, many, place, 1e-3);
   const std::uint64_t before = crowd.world.hash();
   const StepReport& report = crowd.stepper.step(crowd.world, trial.dt());
-  const bool named = report.error.code == ErrorCode::buffer_full && report.error.message.find(pairs) != std::string::npos;
+  const bool named =
+      report.error.code == ErrorCode::buffer_full && report.error.message.find(pairs) != std::string::npos;
   trial.report("overflow without the " + pairs + " pairs that are needed", named ? 0 : 1, 0.0);
   trial.report("world changed", crowd.world.hash() == before && crowd.world.body_count() == many ? 0 : 1, 0.0);
   trial.report("step [s]", 1e-3 * report.total_ms, 60.0);
@@ -188,7 +189,9 @@ void spread(Trial& trial) {
         return brute_force(crowd.centres, reach + slack) + std::size_t(low);
       };
       const std::size_t low = expected(-edge), high = expected(edge);
-      wrong = double(report.contacts < low ? low - report.contacts : report.contacts > high ? report.contacts - high : 0);
+      wrong = double(report.contacts < low    ? low - report.contacts
+                     : report.contacts > high ? report.contacts - high
+                                              : 0);
     }
   trial.report("contacts that differ from brute force", wrong, 0.0);
   trial.report("broad phase over that without the large and the far", ms[1] / ms[0], 3.0);

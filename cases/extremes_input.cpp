@@ -29,8 +29,8 @@ std::vector<double> state(const Simulated& run) {
   for (int i = 0; i < neighbours; ++i) {
     const Pose p = run.pose(i);
     const Vec3 v = run.velocity(i), w = run.angular_velocity(i);
-    for (double x : {p.position.x, p.position.y, p.position.z, p.orientation.x, p.orientation.y, p.orientation.z, p.orientation.w,
-                     v.x, v.y, v.z, w.x, w.y, w.z})
+    for (double x : {p.position.x, p.position.y, p.position.z, p.orientation.x, p.orientation.y, p.orientation.z,
+                     p.orientation.w, v.x, v.y, v.z, w.x, w.y, w.z})
       out.push_back(x);
   }
   return out;

@@ -8,8 +8,8 @@ namespace {
 
 // ---- C8 ------------------------------------------------------------------------------------------------
 
-/// Speeds are those of places, since what undoes an overlap is no motion and shows in no velocity. Two that part keep to the limit;
-/// what lies between others is pushed by all of them.
+/// Speeds are those of places, since what undoes an overlap is no motion and shows in no velocity. Two that part keep
+/// to the limit; what lies between others is pushed by all of them.
 class Places {
  public:
   explicit Places(const Simulated& run) : before_(places(run)) {}

@@ -71,7 +71,8 @@ void repeated(Trial& trial, const StepSettings& other) {
   usual.substeps = trial.substeps();
   Error error;
   const std::uint64_t first = hash_after(trial, usual, error), second = hash_after(trial, other, error);
-  if (error.code == ErrorCode::unavailable) return trial.report_missing(error.message.substr(0, error.message.size() - 1));
+  if (error.code == ErrorCode::unavailable)
+    return trial.report_missing(error.message.substr(0, error.message.size() - 1));
   trial.report("hashes that differ", first == second && error.code == ErrorCode::none ? 0 : 1, 0.0);
 }
 
@@ -186,7 +187,8 @@ void symmetry(Trial& trial, bool tower, Image image) {
   for (long k = 0; k < trial.steps(1); ++k) {
     one.step(trial.dt());
     other.step(trial.dt());
-    for (int i = 1; i < one.bodies(); ++i) off.add(length(image_of(image, one.pose(i).position) - other.pose(i).position));
+    for (int i = 1; i < one.bodies(); ++i)
+      off.add(length(image_of(image, one.pose(i).position) - other.pose(i).position));
   }
   trial.report("distance from the image [m]", off, trial.either(1e-9, 1e-3));
 }
@@ -226,11 +228,11 @@ void add_repeats(std::vector<Case>& cases) {
   Case& images = cases.emplace_back(Case{"C19", "mirrored, and turned by 90 degrees", {}});
   for (bool tower : {true, false})
     for (Image image : {Image::mirrored, Image::turned})
-      images.variants.push_back(
-          {.name = std::string(tower ? "tower" : "pile of A15") + (image == Image::mirrored ? ", mirrored" : ", turned"),
-           .run = [=](Trial& t) { symmetry(t, tower, image); },
-           .steps = fine,
-           .substeps = {4}});
+      images.variants.push_back({.name = std::string(tower ? "tower" : "pile of A15") +
+                                         (image == Image::mirrored ? ", mirrored" : ", turned"),
+                                 .run = [=](Trial& t) { symmetry(t, tower, image); },
+                                 .steps = fine,
+                                 .substeps = {4}});
 }
 
 }  // namespace pcphys::cases

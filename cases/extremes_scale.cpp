@@ -153,8 +153,8 @@ void far_scene(scenes::Builder& builder, Far what, Vec3 offset) {
       builder.set_material(0.5, 0);
       add_floor(builder, offset);
       for (int i = 0; i < 5; ++i)
-        builder.add_ragdoll(free_human(),
-                            {offset + Vec3{0.1 * i, 0.05 * i, 0.3 + 0.6 * i}, axis_angle({1, 0, 0}, 0.1 * i)}, {}, i + 1);
+        builder.add_ragdoll(
+            free_human(), {offset + Vec3{0.1 * i, 0.05 * i, 0.3 + 0.6 * i}, axis_angle({1, 0, 0}, 0.1 * i)}, {}, i + 1);
   }
 }
 
@@ -167,9 +167,11 @@ void far_away(Trial& trial, Far what, double distance) {
   const Path path = follow(there, trial.dt(), steps, offset);
   const bool single_must = distance <= 1e4;
   if (what == Far::tower)
-    trial.report("across [m]", moved(there).across, trial.is_double() || single_must ? std::optional(0.05) : std::nullopt);
+    trial.report("across [m]", moved(there).across,
+                 trial.is_double() || single_must ? std::optional(0.05) : std::nullopt);
   if (what == Far::ragdolls) {
-    trial.report("joint gap [m]", joint_gap(there), trial.is_double() || single_must ? std::optional(0.01) : std::nullopt);
+    trial.report("joint gap [m]", joint_gap(there),
+                 trial.is_double() || single_must ? std::optional(0.01) : std::nullopt);
     trial.report("speed at the end [m/s]", largest_speed(there));
   } else {
     // a double pendulum and a tower amplify rounding
@@ -221,8 +223,10 @@ void add_scales(std::vector<Case>& cases) {
   const std::vector<double> fine{1.0 / 240};
   Case& mass = cases.emplace_back(Case{"C1", "masses from 1e-9 to 1e12 kg", {}});
   for (double unit : {1e-9, 1e-6, 1e6, 1e12})
-    mass.variants.push_back(
-        {.name = text("%g kg", unit), .run = [=](Trial& t) { masses(t, unit); }, .steps = {1.0 / 1200}, .substeps = {1, 4}});
+    mass.variants.push_back({.name = text("%g kg", unit),
+                             .run = [=](Trial& t) { masses(t, unit); },
+                             .steps = {1.0 / 1200},
+                             .substeps = {1, 4}});
 
   Case& size = cases.emplace_back(Case{"C2", "sizes from 1 mm to 1 km", {}});
   for (const auto& [kind, name] :

@@ -41,8 +41,8 @@ void fall_with_drag(Trial& trial, double drag) {
   trial.report("speed above start and terminal [m/s]", std::max(0.0, speed - limit), trial.either(1e-11, 1e-4));
 }
 
-/// Seed: d' = f d + a dt^2 with f = 1 - dt F, so that after n steps d = f^n d0 + a dt^2 (1 - f^n) / (1 - f), and p their
-/// sum; f is 0 where dt F is above 1.
+/// Seed: d' = f d + a dt^2 with f = 1 - dt F, so that after n steps d = f^n d0 + a dt^2 (1 - f^n) / (1 - f), and p
+/// their sum; f is 0 where dt F is above 1.
 void fall_by_seed(Trial& trial, double drag) {
   Simulated& run = throw_ball(trial, drag, Integrator::seed);
   const double dt = trial.dt(), f = std::max(0.0, 1 - dt * drag), loss = 1 - f;
@@ -111,23 +111,30 @@ std::vector<double> with_long_step() { return {0.1, ladder[0], ladder[1], ladder
 
 void add_free_motion(std::vector<Case>& cases) {
   Case& drag = cases.emplace_back(Case{"A1", "free fall with linear drag, against the closed form", {}});
-  for (const auto& [name, f] : {std::pair{"F = 0.5 1/s", 0.5}, {"F = 1 1/s", 1.0}, {"F = 5 1/s", 5.0}, {"F = 30 1/s", 30.0}})
+  for (const auto& [name, f] :
+       {std::pair{"F = 0.5 1/s", 0.5}, {"F = 1 1/s", 1.0}, {"F = 5 1/s", 5.0}, {"F = 30 1/s", 30.0}})
     drag.variants.push_back(
         {.name = name, .run = [f = f](Trial& t) { fall_with_drag(t, f); }, .steps = with_long_step(), .coarse = true});
-  for (const auto& [name, f] :
-       {std::pair{"seed, F = 0.5 1/s", 0.5}, {"seed, F = 1 1/s", 1.0}, {"seed, F = 5 1/s", 5.0}, {"seed, F = 30 1/s", 30.0}})
+  for (const auto& [name, f] : {std::pair{"seed, F = 0.5 1/s", 0.5},
+                                {"seed, F = 1 1/s", 1.0},
+                                {"seed, F = 5 1/s", 5.0},
+                                {"seed, F = 30 1/s", 30.0}})
     drag.variants.push_back(
         {.name = name, .run = [f = f](Trial& t) { fall_by_seed(t, f); }, .steps = with_long_step(), .own = true});
-  cases.push_back({"A2", "projectile", {{.name = "thrown", .run = projectile, .steps = with_long_step(), .coarse = true}}});
   cases.push_back(
-      {"A5",
-       "constant torque spins a box up",
-       {{.name = "10 s", .run = [](Trial& t) { spin_up(t, 10); }, .coarse = true, .floor = last_place(250), .lost_at = 1},
-        {.name = "off at 5 s",
-         .run = [](Trial& t) { spin_up(t, 5); },
-         .coarse = true,
-         .floor = last_place(187.5),
-         .lost_at = 1}}});
+      {"A2", "projectile", {{.name = "thrown", .run = projectile, .steps = with_long_step(), .coarse = true}}});
+  cases.push_back({"A5",
+                   "constant torque spins a box up",
+                   {{.name = "10 s",
+                     .run = [](Trial& t) { spin_up(t, 10); },
+                     .coarse = true,
+                     .floor = last_place(250),
+                     .lost_at = 1},
+                    {.name = "off at 5 s",
+                     .run = [](Trial& t) { spin_up(t, 5); },
+                     .coarse = true,
+                     .floor = last_place(187.5),
+                     .lost_at = 1}}});
 }
 
 }  // namespace pcphys::cases

@@ -68,7 +68,8 @@ void slides(Trial& trial, const Slide& s) {
 
 /// Until friction stops it, and then it stays.
 void stops(Trial& trial, const Slide& s) {
-  const double slowing = gravity * (s.kinetic_friction * std::cos(s.slope) + std::copysign(std::sin(s.slope), -s.speed));
+  const double slowing =
+      gravity * (s.kinetic_friction * std::cos(s.slope) + std::copysign(std::sin(s.slope), -s.speed));
   const double speed = std::fabs(s.speed), expected = std::copysign(speed * speed / (2 * slowing), s.speed);
   Simulated& run = start(trial, s);
   run.step(trial.dt(), trial.steps(speed / slowing) + 5);

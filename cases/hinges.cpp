@@ -19,8 +19,8 @@ constexpr double door_mass = 20, door_arm = 0.45, hinge_tilt = 5 * pi / 180;
 constexpr double hinge_inertia = 5.40266666666667, motor_torque = 3, hinge_friction = 4;  // [kg m^2], [N m], [N m s]
 
 enum class Hinge { two_pins, pin_and_angle };
-/// joint: the library's own motor and damper; host: the same torque as a force that the host renews each step; drag: the damping as
-/// the body's drag.
+/// joint: the library's own motor and damper; host: the same torque as a force that the host renews each step; drag:
+/// the damping as the body's drag.
 enum class Motor { none, host, drag, joint };
 
 Simulated& hang_door(Trial& trial, Hinge hinge, double angle, Motor motor) {
@@ -60,7 +60,8 @@ void door(Trial& trial, Hinge hinge, Motor motor, const Csv& reference) {
   Worst angle, bend, force, largest_force;
   const auto compare = [&](std::size_t row) {
     const Vec3 p = run.pose(0).position;
-    angle.add(std::fabs(std::remainder(std::atan2(dot(p, sideways), dot(p, downhill)) - reference.at(row, "phi"), 2 * pi)));
+    angle.add(
+        std::fabs(std::remainder(std::atan2(dot(p, sideways), dot(p, downhill)) - reference.at(row, "phi"), 2 * pi)));
     const Vec3 is = rotate(run.pose(0).orientation, {0, 0, 1});
     bend.add(std::atan2(length(cross(is, axis)), dot(is, axis)));
   };
@@ -116,14 +117,15 @@ double lean(const Simulated& run) {
   return std::atan2(p.x, -p.z);
 }
 
-/// Energy that the pendulum gained: rounding, which in single precision is judged at the two longer steps. Where all of it comes
-/// back, at 1/60 s what a swing without stops has between its ends (A7: 6e-10).
+/// Energy that the pendulum gained: rounding, which in single precision is judged at the two longer steps. Where all of
+/// it comes back, at 1/60 s what a swing without stops has between its ends (A7: 6e-10).
 std::optional<double> never_gains(const Trial& trial, double restitution) {
   const double rounding = trial.either(1e-12, 1e-5);
   return trial.at({restitution == 1 ? std::max(1e-9, rounding) : rounding, rounding, rounding, rounding});
 }
 
-/// The instant at which an angle that grows through four steps is zero, by the polynomial through them [steps from the first].
+/// The instant at which an angle that grows through four steps is zero, by the polynomial through them [steps from the
+/// first].
 double instant_of_zero(const std::array<double, 4>& angles) {
   double instant = 0;
   for (int i = 0; i < 4; ++i) {
@@ -135,8 +137,8 @@ double instant_of_zero(const std::array<double, 4>& angles) {
   return instant;
 }
 
-/// Which stops it without a rebound. The instant is told by the swing that follows: a quarter of its period later the rod hangs down.
-/// (By the first step that is slow it is known to a step, whatever an engine does.)
+/// Which stops it without a rebound. The instant is told by the swing that follows: a quarter of its period later the
+/// rod hangs down. (By the first step that is slow it is known to a step, whatever an engine does.)
 void stop_at_limit(Trial& trial) {
   constexpr double t_hit = 0.5828961625247803, w_hit = 5.042178964653778, limit = -pi / 6, period = 1.668543042785553;
   Simulated& run = rod_with_a_stop(trial, 0);
@@ -154,9 +156,11 @@ void stop_at_limit(Trial& trial) {
     fast = fast || speed > w_hit;
     if (hit < 0 && fast && angle < 0 && speed < 0.5 * w_hit) hit = double((hit_step = k) - 1) * trial.dt();
     leans = {leans[1], leans[2], leans[3], angle};
-    if (low < 0 && hit_step > 0 && leans[1] < 0 && leans[2] >= 0) low = (double(k) - 3 + instant_of_zero(leans)) * trial.dt();
+    if (low < 0 && hit_step > 0 && leans[1] < 0 && leans[2] >= 0)
+      low = (double(k) - 3 + instant_of_zero(leans)) * trial.dt();
     beyond = std::max(beyond, limit - angle);
-    if (hit_step > 0 && k >= hit_step + 3) later = std::max(later, limit - angle), amplitude = std::max(amplitude, angle);
+    if (hit_step > 0 && k >= hit_step + 3)
+      later = std::max(later, limit - angle), amplitude = std::max(amplitude, angle);
     if (k > 1) gained = std::max(gained, (n.energy(run.mass(0), down) - e0) / gravity);
   }
   trial.report("instant of the stop by the next swing [s]", std::fabs(low - 0.25 * period - t_hit));
@@ -198,7 +202,8 @@ void thrown_back(Trial& trial, double restitution, double height) {
 
 constexpr double mean_of_random = 1.0 / 240, mean_of_turns = 0.5 * (1.0 / 60 + 1.0 / 240);
 
-/// Step lengths: 1/60 and 1/240 s in turn, or uniform in [0.5, 1.5] / 240 s; or all of them in proportion to another mean.
+/// Step lengths: 1/60 and 1/240 s in turn, or uniform in [0.5, 1.5] / 240 s; or all of them in proportion to another
+/// mean.
 std::vector<double> step_lengths(bool random, double mean, double seconds) {
   const double scale = mean / (random ? mean_of_random : mean_of_turns);
   std::vector<double> lengths;
@@ -217,7 +222,8 @@ struct ExactSwing {
     const auto bend = [w2](double a) { return -w2 * std::sin(a); };
     for (int i = 0; i < parts; ++i) {
       const double a1 = rate, r1 = bend(angle), a2 = rate + 0.5 * h * r1, r2 = bend(angle + 0.5 * h * a1);
-      const double a3 = rate + 0.5 * h * r2, r3 = bend(angle + 0.5 * h * a2), a4 = rate + h * r3, r4 = bend(angle + h * a3);
+      const double a3 = rate + 0.5 * h * r2, r3 = bend(angle + 0.5 * h * a2), a4 = rate + h * r3,
+                   r4 = bend(angle + h * a3);
       angle += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
       rate += h / 6 * (r1 + 2 * r2 + 2 * r3 + r4);
     }
@@ -280,26 +286,36 @@ void add_hinges(std::vector<Case>& cases) {
       return [=](Trial& t) { door(t, hinge, motor, reference); };
     };
     const std::string end = std::string(", ") + suffix;
-    doors.variants.push_back(
-        {.name = "a, free" + end, .run = run(Motor::none, open), .coarse = true, .second_order = "angle [rad]", .lost_at = 1});
+    doors.variants.push_back({.name = "a, free" + end,
+                              .run = run(Motor::none, open),
+                              .coarse = true,
+                              .second_order = "angle [rad]",
+                              .lost_at = 1});
     doors.variants.push_back({.name = "b, motor" + end,
                               .run = run(Motor::joint, driven),
                               .coarse = true,
                               .second_order = "angle [rad]",
                               .lost_at = 1});
-    doors.variants.push_back({.name = "b, host's torque" + end, .run = run(Motor::host, driven), .coarse = true, .lost_at = 1});
     doors.variants.push_back(
-        {.name = "b, drag" + end, .run = run(Motor::drag, driven), .coarse = true, .second_order = "angle [rad]", .lost_at = 1});
+        {.name = "b, host's torque" + end, .run = run(Motor::host, driven), .coarse = true, .lost_at = 1});
+    doors.variants.push_back({.name = "b, drag" + end,
+                              .run = run(Motor::drag, driven),
+                              .coarse = true,
+                              .second_order = "angle [rad]",
+                              .lost_at = 1});
   }
-  cases.push_back({"A19",
-                   "angle limit as a stop",
-                   {{.name = "from 90 deg", .run = stop_at_limit, .coarse = true, .substeps = {1, 4}, .lost_at = 0.25}}});
-  for (const auto& [name, e, degrees] : {std::tuple{"rebound, e = 0.5", 0.5, 49.494649672581}, {"rebound, e = 1", 1.0, 90.0}})
-    cases.back().variants.push_back({.name = name,
-                                     .run = [e = e, height = degrees * pi / 180](Trial& t) { thrown_back(t, e, height); },
-                                     .coarse = true,
-                                     .substeps = {1, 4},
-                                     .own = true});
+  cases.push_back(
+      {"A19",
+       "angle limit as a stop",
+       {{.name = "from 90 deg", .run = stop_at_limit, .coarse = true, .substeps = {1, 4}, .lost_at = 0.25}}});
+  for (const auto& [name, e, degrees] :
+       {std::tuple{"rebound, e = 0.5", 0.5, 49.494649672581}, {"rebound, e = 1", 1.0, 90.0}})
+    cases.back().variants.push_back(
+        {.name = name,
+         .run = [e = e, height = degrees * pi / 180](Trial& t) { thrown_back(t, e, height); },
+         .coarse = true,
+         .substeps = {1, 4},
+         .own = true});
 
   Case& changing = cases.emplace_back(Case{"A20", "steps of changing length; dt is their mean", {}});
   for (bool random : {false, true}) {
@@ -311,10 +327,14 @@ void add_hinges(std::vector<Case>& cases) {
                                  .steps = steps,
                                  .more_steps = more,
                                  .lost_at = 0.5});
-    changing.variants.push_back(
-        {.name = prefix + "A1b", .run = [=](Trial& t) { changing_fall(t, random, 0.5); }, .steps = steps, .more_steps = more});
-    changing.variants.push_back(
-        {.name = prefix + "A2", .run = [=](Trial& t) { changing_fall(t, random, 0); }, .steps = steps, .more_steps = more});
+    changing.variants.push_back({.name = prefix + "A1b",
+                                 .run = [=](Trial& t) { changing_fall(t, random, 0.5); },
+                                 .steps = steps,
+                                 .more_steps = more});
+    changing.variants.push_back({.name = prefix + "A2",
+                                 .run = [=](Trial& t) { changing_fall(t, random, 0); },
+                                 .steps = steps,
+                                 .more_steps = more});
   }
 }
 

@@ -223,7 +223,8 @@ void add_impacts(std::vector<Case>& cases) {
     const std::vector<Collision> rows = collisions(mass);
     spheres.variants.push_back(
         {.name = std::string(name) + ", direct", .run = [rows](Trial& t) { resolve(t, rows); }, .direct = true});
-    spheres.variants.push_back({.name = name, .run = [rows](Trial& t) { collide(t, rows); }, .coarse = true, .lost_at = 1});
+    spheres.variants.push_back(
+        {.name = name, .run = [rows](Trial& t) { collide(t, rows); }, .coarse = true, .lost_at = 1});
     spheres.variants.push_back({.name = std::string(name) + ", touching",
                                 .run = [rows](Trial& t) { touch(t, rows); },
                                 .steps = {1e-8},

@@ -15,8 +15,8 @@ using std::numbers::pi;
 constexpr int planks = 100;
 constexpr double plank = 0.25, span = 24;
 
-/// How far the middle hangs below the ends, at rest with `load` on it. With H what pulls along and V the weight below the centre of
-/// plank k from the middle, that one slopes by V / H; H is what makes a half as wide as half the span.
+/// How far the middle hangs below the ends, at rest with `load` on it. With H what pulls along and V the weight below
+/// the centre of plank k from the middle, that one slopes by V / H; H is what makes a half as wide as half the span.
 double sag_at_rest(double load) {
   const auto half = [=](double pull) {
     std::array<double, 2> reach{};  // of half the bridge: across, down
@@ -129,7 +129,8 @@ void four_bar(Trial& trial, bool hinges, const Csv& reference) {
     BodyDef middle = bar({0.1, 0, 0}, 0.35, coupler), last = bar({0.4, 0, 0}, 0.25, rocker);
     spin(middle, {0.1, 0, 0}, {0, 0, 0.1 * speed}, coupler_rate);
     spin(last, {0.4, 0, 0}, {}, rocker_rate);
-    const BodyId a = builder.id(builder.add(turning)), b = builder.id(builder.add(middle)), c = builder.id(builder.add(last));
+    const BodyId a = builder.id(builder.add(turning)), b = builder.id(builder.add(middle)),
+                 c = builder.id(builder.add(last));
     const auto join = [&](BodyId x, Vec3 at_x, Quat axes_x, BodyId y, Vec3 at_y, Quat axes_y) {
       JointDef def;
       def.a = x;
@@ -174,7 +175,8 @@ void ring(Trial& trial) {
       builder.add(without_contacts(def));
     }
     for (int i = 0; i < links; ++i)
-      add_pin(builder, builder.id(i), {0.5 * link_length, 0, 0}, builder.id((i + 1) % links), {-0.5 * link_length, 0, 0});
+      add_pin(builder, builder.id(i), {0.5 * link_length, 0, 0}, builder.id((i + 1) % links),
+              {-0.5 * link_length, 0, 0});
   });
   const Vec3 before = run.kept_angular_momentum();
   Worst out, turn, gap, force;
@@ -231,7 +233,8 @@ void add_loops(std::vector<Case>& cases) {
     int pins;
     double load;
   };
-  for (const Bridge& b : {Bridge{"one pin", 1, 0}, {"two pins", 2, 0}, {"one pin, 100 kg", 1, 100}, {"one pin, 1e4 kg", 1, 1e4}})
+  for (const Bridge& b :
+       {Bridge{"one pin", 1, 0}, {"two pins", 2, 0}, {"one pin, 100 kg", 1, 100}, {"one pin, 1e4 kg", 1, 1e4}})
     hung.variants.push_back({.name = b.name,
                              .run = [b](Trial& t) { bridge(t, b.pins, b.load); },
                              .steps = {1.0 / 240},
@@ -265,10 +268,14 @@ void add_loops(std::vector<Case>& cases) {
                      .more_substeps = {1, 2},
                      .lost_at = 1}}});
 
-  cases.push_back(
-      {"B11",
-       "grid of 100 x 100 balls and joints",
-       {{.name = "top row fixed", .run = grid, .steps = {1.0 / 60}, .substeps = {4}, .more_substeps = {1, 2}, .lost_at = 1}}});
+  cases.push_back({"B11",
+                   "grid of 100 x 100 balls and joints",
+                   {{.name = "top row fixed",
+                     .run = grid,
+                     .steps = {1.0 / 60},
+                     .substeps = {4},
+                     .more_substeps = {1, 2},
+                     .lost_at = 1}}});
 }
 
 }  // namespace pcphys::cases

@@ -106,7 +106,8 @@ Vec3 momentum(const Simulated& run) {
 Vec3 angular_momentum(const Simulated& run) {
   Vec3 sum;
   for (int i = 0; i < run.bodies(); ++i)
-    if (run.moves(i)) sum = sum + run.mass(i).mass * cross(run.pose(i).position, run.velocity(i)) + spin_momentum(run, i);
+    if (run.moves(i))
+      sum = sum + run.mass(i).mass * cross(run.pose(i).position, run.velocity(i)) + spin_momentum(run, i);
   return sum;
 }
 

@@ -53,14 +53,17 @@ struct Neighbours {
   double dt = 0;
 
   Vec3 velocity() const { return (0.5 / dt) * (after.position - before.position); }
-  Vec3 acceleration() const { return (1 / (dt * dt)) * ((after.position - now.position) - (now.position - before.position)); }
+  Vec3 acceleration() const {
+    return (1 / (dt * dt)) * ((after.position - now.position) - (now.position - before.position));
+  }
   Vec3 angular_velocity() const;
   /// Kinetic, and potential in `gravity`, of a body of this mass [J].
   double energy(const MassProperties& mass, Vec3 gravity) const;
 };
 
 /// As `walk`; `tell(row, t)` sees the run at each time and gives what takes the neighbours of body 0 there.
-template <class Tell> void walk_with_neighbours(Simulated& run, double dt, const Csv& reference, double seconds, Tell&& tell) {
+template <class Tell>
+void walk_with_neighbours(Simulated& run, double dt, const Csv& reference, double seconds, Tell&& tell) {
   long done = 0;
   for (std::size_t row = 1; row < reference.rows.size(); ++row) {
     const double t = reference.rows[row][0];
@@ -106,7 +109,8 @@ class Trend {
   double first_ = 0, last_ = 0;
 };
 
-/// Largest error of a component relative to itself; of one that is zero, but for the table's rounding, relative to `scale`.
+/// Largest error of a component relative to itself; of one that is zero, but for the table's rounding, relative to
+/// `scale`.
 double error_of_components(Vec3 found, Vec3 expected, double scale);
 
 /// exp of a rotation vector [rad].

@@ -64,7 +64,8 @@ void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b,
 
 // ---- chains --------------------------------------------------------------------------------------------
 
-void add_chain(scenes::Builder& builder, BodyId anchor, Vec3 at, Vec3 top, const std::vector<double>& angles, double ratio) {
+void add_chain(scenes::Builder& builder, BodyId anchor, Vec3 at, Vec3 top, const std::vector<double>& angles,
+               double ratio) {
   BodyId above = anchor;
   for (std::size_t k = 0; k < angles.size(); ++k) {
     const Vec3 along = link_length * Vec3{std::sin(angles[k]), 0, -std::cos(angles[k])};
@@ -114,7 +115,8 @@ namespace {
 void add_cubes(scenes::Builder& builder, int count, double top_mass, Vec3 offset) {
   const double half = 0.5 * cube_edge;
   for (int i = 0; i < count; ++i)
-    add_block(builder, {half, half, half}, i + 1 == count ? top_mass : 1, {offset + Vec3{0, 0, half + cube_edge * i}, {}});
+    add_block(builder, {half, half, half}, i + 1 == count ? top_mass : 1,
+              {offset + Vec3{0, 0, half + cube_edge * i}, {}});
 }
 
 }  // namespace
@@ -148,7 +150,8 @@ double nonfinite(const Simulated& run) {
   int count = 0;
   for (int i = 0; i < run.bodies(); ++i) {
     const Pose pose = run.pose(i);
-    count += !(finite(pose.position) && finite(pose.orientation) && finite(run.velocity(i)) && finite(run.angular_velocity(i)));
+    count += !(finite(pose.position) && finite(pose.orientation) && finite(run.velocity(i)) &&
+               finite(run.angular_velocity(i)));
   }
   return count;
 }

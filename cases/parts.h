@@ -34,7 +34,8 @@ void add_pin(scenes::Builder& builder, BodyId a, Vec3 at_a, BodyId b, Vec3 at_b,
 inline constexpr double link_length = 0.2;
 /// The chain hangs from `top`, which is pinned to `anchor` at `at`; link k leans by angles[k] from straight down
 /// towards x. Nothing of it collides.
-void add_chain(scenes::Builder& builder, BodyId anchor, Vec3 at, Vec3 top, const std::vector<double>& angles, double ratio);
+void add_chain(scenes::Builder& builder, BodyId anchor, Vec3 at, Vec3 top, const std::vector<double>& angles,
+               double ratio);
 /// Angles of the slowest mode, 1 for the largest, and its period [s], linearised.
 struct Mode {
   std::vector<double> angles;

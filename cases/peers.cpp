@@ -47,7 +47,9 @@ class PeerEngine final : public Engine {
   }
   double budget() const override { return budget_; }
   std::string peer() const override { return std::string(variant_.name); }
-  bool has(Precision precision) const override { return (variant_.precision == "double") == (precision == Precision::f64); }
+  bool has(Precision precision) const override {
+    return (variant_.precision == "double") == (precision == Precision::f64);
+  }
 
  private:
   const peers::Variant& variant_;

@@ -158,8 +158,9 @@ void double_pendulum(Trial& trial) {
   });
   const bool second = trial.order() == 2;
   const std::size_t singles = second ? 2 : 1;
-  trial.report("position until 2 s [m]", early,
-               trial.at(second ? Bounds{1.5e-2, 9.1e-4, 3.6e-5, 5.2e-7} : Bounds{2.2e-5, 1.3e-7, 2.3e-10, 1e-11}, singles));
+  trial.report(
+      "position until 2 s [m]", early,
+      trial.at(second ? Bounds{1.5e-2, 9.1e-4, 3.6e-5, 5.2e-7} : Bounds{2.2e-5, 1.3e-7, 2.3e-10, 1e-11}, singles));
   trial.report("position until 4 s [m]", all,
                trial.at(second ? Bounds{1e-1, 6e-3, 2.4e-4, 3.5e-6} : Bounds{4.4e-4, 6.2e-7, 1e-9, 1e-11}, singles));
   trial.report("joint gap [m]", gap);

@@ -75,7 +75,8 @@ struct Watch {
 double inner_energy(const Simulated& run) {
   double mass = 0;
   Vec3 momentum;
-  for (int i = 0; i < run.bodies(); ++i) mass += run.mass(i).mass, momentum = momentum + run.mass(i).mass * run.velocity(i);
+  for (int i = 0; i < run.bodies(); ++i)
+    mass += run.mass(i).mass, momentum = momentum + run.mass(i).mass * run.velocity(i);
   return energy(run) - 0.5 * dot(momentum, momentum) / mass;
 }
 
@@ -106,8 +107,8 @@ void pull(Trial& trial, double force, std::optional<double> gap_must, std::optio
   trial.report("not finite", nonfinite(run), 0.0);
 }
 
-/// A kinematic hand goes between two walls that stand 0.1 m apart, and stops behind them. What it holds by a plain pin comes along
-/// whatever it takes; what it `grabs` (as World::grab does) it pulls by 100 times its weight at most.
+/// A kinematic hand goes between two walls that stand 0.1 m apart, and stops behind them. What it holds by a plain pin
+/// comes along whatever it takes; what it `grabs` (as World::grab does) it pulls by 100 times its weight at most.
 void drag(Trial& trial, double speed, bool grabs) {
   int mover = 0;
   Simulated& run = trial.start([&](scenes::Builder& builder) {
@@ -125,7 +126,8 @@ void drag(Trial& trial, double speed, bool grabs) {
     def.pose.position = at;
     def.velocity = {speed, 0, 0};
     mover = builder.add(without_contacts(def));
-    add_pin(builder, builder.id(mover), {}, builder.id(pulled), {}, grabs ? 100 * 9.81 * weight : JointDef().largest_force);
+    add_pin(builder, builder.id(mover), {}, builder.id(pulled), {},
+            grabs ? 100 * 9.81 * weight : JointDef().largest_force);
     for (double side : {-1.0, 1.0}) builder.add_fixed_box({at.x + 2, at.y, at.z + side * (0.05 + 1)}, {0.2, 3, 1});
   });
   const double bone = shortest_bone(run);
@@ -187,16 +189,18 @@ void add_ragdolls(std::vector<Case>& cases) {
     of_pcphys.own = true;
     return of_pcphys;
   };
-  cases.push_back({"B10",
-                   "a ragdoll of 16 bones and 70 kg is pulled by a hand, dragged and spun",
-                   {variant("1e3 N", [](Trial& t) { pull(t, 1e3, 0.02, 5); }, 1),
-                    variant("1e4 N", [](Trial& t) { pull(t, 1e4, 0.1, 5); }, 1),
-                    variant("1e5 N", [](Trial& t) { pull(t, 1e5, {}, {}); }, 1),
-                    variant("dragged at 10 m/s", [](Trial& t) { drag(t, 10, false); }),
-                    grabbed("grabbed at 10 m/s", 10),
-                    variant("dragged at 50 m/s", [](Trial& t) { drag(t, 50, false); }),
-                    grabbed("grabbed at 50 m/s", 50),
-                    variant("root at 100 rad/s", spin)}});
+  cases.push_back(
+      {"B10",
+       "a ragdoll of 16 bones and 70 kg is pulled by a hand, dragged and spun",
+       {variant(
+            "1e3 N", [](Trial& t) { pull(t, 1e3, 0.02, 5); }, 1),
+        variant(
+            "1e4 N", [](Trial& t) { pull(t, 1e4, 0.1, 5); }, 1),
+        variant(
+            "1e5 N", [](Trial& t) { pull(t, 1e5, {}, {}); }, 1),
+        variant("dragged at 10 m/s", [](Trial& t) { drag(t, 10, false); }), grabbed("grabbed at 10 m/s", 10),
+        variant("dragged at 50 m/s", [](Trial& t) { drag(t, 50, false); }), grabbed("grabbed at 50 m/s", 50),
+        variant("root at 100 rad/s", spin)}});
 }
 
 }  // namespace pcphys::cases

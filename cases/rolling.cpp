@@ -39,7 +39,9 @@ double slip(const Simulated& run, double slope) {
   return dot(run.velocity(1), rotate(axis_angle({0, 1, 0}, slope), {1, 0, 0})) - radius * run.angular_velocity(1).y;
 }
 
-std::optional<double> at_fine_steps(const Trial& trial, double bound) { return trial.at({infinite, infinite, bound, bound}, 3); }
+std::optional<double> at_fine_steps(const Trial& trial, double bound) {
+  return trial.at({infinite, infinite, bound, bound}, 3);
+}
 
 // ---- A22 -----------------------------------------------------------------------------------------------
 
@@ -85,22 +87,33 @@ void slides_then_rolls(Trial& trial, double spin) {
 }  // namespace
 
 void add_rolling(std::vector<Case>& cases) {
-  cases.push_back(
-      {"A22",
-       "sphere on an incline",
-       {{.name = "rolls, mu = .5", .run = [](Trial& t) { rolls(t, 0.5, 0.4); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1},
-        {.name = "rolls, shell",
-         .run = [](Trial& t) { rolls(t, 0.5, 2.0 / 3); },
-         .coarse = true,
-         .substeps = {1, 4},
-         .lost_at = 1},
-        {.name = "slides, mu = .1", .run = [](Trial& t) { slides(t, 0.1); }, .coarse = true, .substeps = {1, 4}, .lost_at = 1},
-        {.name = "1 % above least mu",
-         .run = [](Trial& t) { rolls(t, 1.01 * std::tan(incline) * 2 / 7, 0.4); },
-         .coarse = true,
-         .substeps = {1, 4},
-         .lost_at = 1},
-        {.name = "1 % below least mu", .run = slips_below_threshold, .coarse = true, .substeps = {1, 4}, .lost_at = 1}}});
+  cases.push_back({"A22",
+                   "sphere on an incline",
+                   {{.name = "rolls, mu = .5",
+                     .run = [](Trial& t) { rolls(t, 0.5, 0.4); },
+                     .coarse = true,
+                     .substeps = {1, 4},
+                     .lost_at = 1},
+                    {.name = "rolls, shell",
+                     .run = [](Trial& t) { rolls(t, 0.5, 2.0 / 3); },
+                     .coarse = true,
+                     .substeps = {1, 4},
+                     .lost_at = 1},
+                    {.name = "slides, mu = .1",
+                     .run = [](Trial& t) { slides(t, 0.1); },
+                     .coarse = true,
+                     .substeps = {1, 4},
+                     .lost_at = 1},
+                    {.name = "1 % above least mu",
+                     .run = [](Trial& t) { rolls(t, 1.01 * std::tan(incline) * 2 / 7, 0.4); },
+                     .coarse = true,
+                     .substeps = {1, 4},
+                     .lost_at = 1},
+                    {.name = "1 % below least mu",
+                     .run = slips_below_threshold,
+                     .coarse = true,
+                     .substeps = {1, 4},
+                     .lost_at = 1}}});
   cases.push_back({"A23",
                    "sliding to rolling",
                    {{.name = "forward",

@@ -96,7 +96,8 @@ void flips(Trial& trial) {
 }
 
 /// Instants at which the spin about the intermediate axis changes sign, by Euler's equations and the classical
-/// fourth-order Runge-Kutta method. What each step rounds joins the next: flips grow it, to 3e-9 s at the fourth without that.
+/// fourth-order Runge-Kutta method. What each step rounds joins the next: flips grow it, to 3e-9 s at the fourth
+/// without that.
 std::vector<double> flip_times(double seconds) {
   const Vec3 i = box_moments;
   const auto rate = [i](Vec3 w) {
@@ -147,7 +148,8 @@ void long_tumble(Trial& trial) {
     trend.add(error);
   }
   trial.report("energy / E0", worst, trial.at({1e-4, 4e-6, infinite, infinite}));
-  trial.report("trend of the energy / its oscillation", trend / worst, trial.is_double() ? std::optional(0.1) : std::nullopt);
+  trial.report("trend of the energy / its oscillation", trend / worst,
+               trial.is_double() ? std::optional(0.1) : std::nullopt);
 }
 
 /// Angular momentum after 100,000 steps of a millisecond; longer steps make the same 100 s.

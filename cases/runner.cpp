@@ -15,7 +15,8 @@ std::vector<const Case*> selected(const Selection& selection) {
   std::vector<const Case*> result;
   for (const Case& c : list()) {
     const bool named = std::find(selection.names.begin(), selection.names.end(), c.name) != selection.names.end();
-    if (selection.groups.find(c.group()) != std::string::npos && (named || selection.names.empty())) result.push_back(&c);
+    if (selection.groups.find(c.group()) != std::string::npos && (named || selection.names.empty()))
+      result.push_back(&c);
   }
   return result;
 }
@@ -63,7 +64,8 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
     const auto steps = step_lengths(selection, variant, precision);
     for (const auto& n : substeps)
       for (const auto& dt : steps) {
-        const bool slow = std::any_of(variant.slow.begin(), variant.slow.end(), [&](double s) { return same(s, dt.value); });
+        const bool slow =
+            std::any_of(variant.slow.begin(), variant.slow.end(), [&](double s) { return same(s, dt.value); });
         if ((slow && !selection.slow) || (selection.dt && !same(*selection.dt, dt.value))) continue;
         // what is slow with one sub-step is slower with more
         if (n.value > 1 && substeps.size() > 1 && same(dt.value, ladder.back()) && !selection.slow) continue;
@@ -74,7 +76,8 @@ std::vector<Setting> settings(const Selection& selection, const Variant& variant
   return result;
 }
 
-std::unique_ptr<Trial> make_trial(Engine& engine, const Variant& variant, const Setting& setting, long limit, int repeats = 0) {
+std::unique_ptr<Trial> make_trial(Engine& engine, const Variant& variant, const Setting& setting, long limit,
+                                  int repeats = 0) {
   auto trial = std::make_unique<Trial>(engine, setting);
   trial->set_limit(limit);
   trial->set_repeats(repeats);
@@ -89,8 +92,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& variant, const Setting& setting, Engine& engine,
-                         double seconds, const std::string& gl) {
+std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& variant, const Setting& setting,
+                         Engine& engine, double seconds, const std::string& gl) {
   Row row;
   row.case_name = c.name;
   row.title = c.title;
@@ -114,15 +117,15 @@ std::vector<Row> rows_of(const Trial& trial, const Case& c, const Variant& varia
     row.must = finding.must;
     row.target = finding.target;
     // NaN fails too
-    row.pass =
-        row.failure.empty() && (gl.empty() || gl == "equal") && (row.must ? row.error <= *row.must : std::isfinite(row.error));
+    row.pass = row.failure.empty() && (gl.empty() || gl == "equal") &&
+               (row.must ? row.error <= *row.must : std::isfinite(row.error));
     rows.push_back(row);
   }
   return rows;
 }
 
-/// With repeats the median of so many runs in which nothing is read; a clock that stops for each reading costs as much as a step of
-/// the least worlds. Without, or where a run takes long, what the trial's own steps took.
+/// With repeats the median of so many runs in which nothing is read; a clock that stops for each reading costs as much
+/// as a step of the least worlds. Without, or where a run takes long, what the trial's own steps took.
 double time_of(Trial& trial, int repeats) {
   const double first = trial.meter().seconds;
   if (repeats < 2 || first > seconds_to_repeat || trial.meter().error.code != ErrorCode::none) return first;
@@ -181,7 +184,8 @@ void add_orders(const Variant& variant, std::vector<Row>& rows) {
   std::vector<Row> added;
   for (const auto& [k, points] : series) {
     const auto last = std::find_if(rows.rbegin(), rows.rend(), [&, &k = k](const Row& row) { return key(row) == k; });
-    if (std::get<3>(k) != metric || !last->bounded || last->precision != Precision::f64 || !last->peer.empty() || !last->order)
+    if (std::get<3>(k) != metric || !last->bounded || last->precision != Precision::f64 || !last->peer.empty() ||
+        !last->order)
       continue;
     Row row = *last;
     row.metric = std::to_string(variant.order) + " - order of " + metric.substr(0, metric.find(" ["));
@@ -221,7 +225,8 @@ std::size_t count_trials(const Selection& selection, std::span<Engine* const> en
 }
 
 std::vector<Row> run(const Selection& selection, std::span<Engine* const> engines,
-                     const std::function<void(std::span<const Row>)>& tell, const std::function<void(std::size_t)>& progress) {
+                     const std::function<void(std::span<const Row>)>& tell,
+                     const std::function<void(std::size_t)>& progress) {
   const std::unique_ptr<Engine> gl = selection.gl ? make_pcphys(Place::gl, 0, selection.device) : nullptr;
   std::vector<Row> all;
   std::size_t done = 0;
@@ -241,7 +246,8 @@ std::vector<Row> run(const Selection& selection, std::span<Engine* const> engine
   return all;
 }
 
-std::optional<double> order_of_convergence(std::span<const double> steps, std::span<const double> errors, Precision precision) {
+std::optional<double> order_of_convergence(std::span<const double> steps, std::span<const double> errors,
+                                           Precision precision) {
   const double floor = precision == Precision::f64 ? 1e-11 : 1e-5;
   std::vector<std::pair<double, double>> points;
   for (std::size_t i = 0; i < steps.size(); ++i) points.emplace_back(steps[i], errors[i]);

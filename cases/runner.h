@@ -18,16 +18,17 @@ struct Row {
   std::string metric;
   double error = 0;
   std::optional<double> must, target;
-  bool bounded = true;  // Setting::bounded
-  bool lost = false;    // Variant::lost_at
+  bool bounded = true;          // Setting::bounded
+  bool lost = false;            // Variant::lost_at
   std::optional<double> floor;  // Variant::floor
   bool pass = true;
   double ns_per_body_step = 0, total_ms = 0;
   std::string peer;
 
   std::optional<double> order;  // of the metric over the step lengths of its variant
-  std::string gl;               // hash beside the cpu's: "equal", "differs", "refused" (see failure), or empty when it was not asked for
-  std::string failure;          // why a step was refused
+  // hash beside the cpu's: "equal", "differs", "refused" (see failure), or empty when it was not asked for
+  std::string gl;
+  std::string failure;  // why a step was refused
 };
 
 struct Selection {
@@ -52,10 +53,12 @@ std::size_t count_trials(const Selection& selection, std::span<Engine* const> en
 
 /// Rows come in the order of the cases; `tell` sees each variant's when they are complete, `progress` counts trials.
 std::vector<Row> run(const Selection& selection, std::span<Engine* const> engines,
-                     const std::function<void(std::span<const Row>)>& tell, const std::function<void(std::size_t)>& progress);
+                     const std::function<void(std::span<const Row>)>& tell,
+                     const std::function<void(std::size_t)>& progress);
 
 /// Slope of log(error) over log(dt), by least squares over the three smallest steps above the floor of rounding;
 /// none where fewer than two are. `errors` belong to `steps`, in any order.
-std::optional<double> order_of_convergence(std::span<const double> steps, std::span<const double> errors, Precision precision);
+std::optional<double> order_of_convergence(std::span<const double> steps, std::span<const double> errors,
+                                           Precision precision);
 
 }  // namespace pcphys::cases

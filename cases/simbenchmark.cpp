@@ -1,4 +1,5 @@
-// A12 to A15: the scenes of SimBenchmark (Hwangbo and Lee, leggedrobotics/SimBenchmark), with RaiSim's figures as bounds.
+// A12 to A15: the scenes of SimBenchmark (Hwangbo and Lee, leggedrobotics/SimBenchmark), with RaiSim's figures as
+// bounds.
 #include <algorithm>
 
 #include "case.h"
@@ -16,7 +17,8 @@ BodyDef sphere(double mass, double radius, Vec3 position) {
 }
 
 /// A bound that a table names for one step length each; in single precision for those of `single` and longer.
-std::optional<double> named(const Trial& trial, std::initializer_list<std::pair<double, double>> bounds, double single = 1e-3) {
+std::optional<double> named(const Trial& trial, std::initializer_list<std::pair<double, double>> bounds,
+                            double single = 1e-3) {
   for (const auto& [dt, bound] : bounds)
     if (std::fabs(trial.dt() / dt - 1) < 1e-9 && (trial.is_double() || dt > 0.99 * single)) return bound;
   return {};
@@ -158,8 +160,8 @@ void pile(Trial& trial) {
     squares += now.squares * double(every) / double(steps);
     deepest = std::max(deepest, now.deepest);
   }
-  trial.report("penetration squared, mean [m^2]", squares, named(trial, {{1e-2, 1.5e-2}, {1e-3, 1.35e-4}, {1e-4, 1.6e-6}}),
-               named(trial, {{1e-3, 1e-6}}));
+  trial.report("penetration squared, mean [m^2]", squares,
+               named(trial, {{1e-2, 1.5e-2}, {1e-3, 1.35e-4}, {1e-4, 1.6e-6}}), named(trial, {{1e-3, 1e-6}}));
   trial.report("penetration, largest [m]", deepest, named(trial, {{1e-3, 2e-3}}));
   trial.report("energy gained at the end, relative", std::max(0.0, energy(run) / e0 - 1), 0);
 }
@@ -175,18 +177,21 @@ void elastic(Trial& trial) {
 }  // namespace
 
 void add_simbenchmark(std::vector<Case>& cases) {
-  cases.push_back({"A12",
-                   "SimBenchmark rolling: a dragged box with balls on it",
-                   {{.name = "F = 150 N", .run = rolling, .steps = {1e-2, 1e-3, 1e-4}, .substeps = {1, 4}, .slow = {1e-4}}}});
-  cases.push_back({"A13",
-                   "SimBenchmark bouncing: 49 elastic balls",
-                   {{.name = "20 s", .run = bouncing, .steps = {0.1, 1e-2, 1e-3, 1e-4}, .substeps = {1, 4}, .slow = {1e-4}}}});
+  cases.push_back(
+      {"A12",
+       "SimBenchmark rolling: a dragged box with balls on it",
+       {{.name = "F = 150 N", .run = rolling, .steps = {1e-2, 1e-3, 1e-4}, .substeps = {1, 4}, .slow = {1e-4}}}});
+  cases.push_back(
+      {"A13",
+       "SimBenchmark bouncing: 49 elastic balls",
+       {{.name = "20 s", .run = bouncing, .steps = {0.1, 1e-2, 1e-3, 1e-4}, .substeps = {1, 4}, .slow = {1e-4}}}});
   cases.push_back({"A14",
                    "SimBenchmark 666: 216 balls fall together",
                    {{.name = "10 s", .run = pile, .steps = {1e-2, 1e-3, 1e-4}, .substeps = {1, 4}, .slow = {1e-4}}}});
-  cases.push_back({"A15",
-                   "SimBenchmark elastic 666",
-                   {{.name = "10 s", .run = elastic, .steps = {1e-2, 4e-3, 1e-3, 1e-4}, .substeps = {1, 4}, .slow = {1e-4}}}});
+  cases.push_back(
+      {"A15",
+       "SimBenchmark elastic 666",
+       {{.name = "10 s", .run = elastic, .steps = {1e-2, 4e-3, 1e-3, 1e-4}, .substeps = {1, 4}, .slow = {1e-4}}}});
 }
 
 }  // namespace pcphys::cases

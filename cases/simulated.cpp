@@ -154,7 +154,8 @@ void Simulated::carry_out(const Deed& deed) {
 void Simulated::apply(const Deed& deed) {
   if (const auto* push = std::get_if<Push>(&deed)) apply_wrench(push->body, push->wrench);
   if (const auto* pull = std::get_if<Pull>(&deed)) apply_gravity(pull->gravity);
-  if (const auto* start = std::get_if<Start>(&deed)) apply_velocity(start->body, start->velocity, start->angular_velocity);
+  if (const auto* start = std::get_if<Start>(&deed))
+    apply_velocity(start->body, start->velocity, start->angular_velocity);
 }
 
 double Simulated::repeat(const Simulated& other) {

@@ -28,7 +28,8 @@ struct Meter {
   long limit = std::numeric_limits<long>::max();
   double budget = std::numeric_limits<double>::infinity();  // of `seconds`; more is an error
   Error error;                                              // of the first step that was refused
-  std::uint64_t hash = 0;                                   // after `hashed_steps` steps, or after the last where there are fewer
+  // after `hashed_steps` steps, or after the last where there are fewer
+  std::uint64_t hash = 0;
 };
 inline constexpr long hashed_steps = 600;
 
@@ -49,9 +50,12 @@ class Simulated {
   /// Acts from now on, in place of what was set before. An engine that cannot do it reports an error.
   void set_wrench(int body, const Wrench& wrench) { carry_out(Push{body, wrench}); }
   void set_gravity(Vec3 gravity) { carry_out(Pull{gravity}); }
-  void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity) { carry_out(Start{body, velocity, angular_velocity}); }
-  /// Does on this simulation, which has just been started, what was done to another one, and nothing else. What it takes [s], but
-  /// for the first step, in which engines set themselves up: as if that had taken as long as the others. Below zero: an error.
+  void set_velocity(int body, Vec3 velocity, Vec3 angular_velocity) {
+    carry_out(Start{body, velocity, angular_velocity});
+  }
+  /// Does on this simulation, which has just been started, what was done to another one, and nothing else. What it
+  /// takes [s], but for the first step, in which engines set themselves up: as if that had taken as long as the others.
+  /// Below zero: an error.
   double repeat(const Simulated& other);
   /// About the origin, as the engine keeps it: what is read in phase with the positions swings about that [kg m^2/s].
   virtual Vec3 kept_angular_momentum() const;

@@ -86,7 +86,8 @@ void plain_tower(Trial& trial, int count) {
   };
   for (const Contact& contact : run.problem().world.contacts())
     for (const Contact::Point& point : contact.points)
-      force[std::size_t(std::max(place(contact.a), place(contact.b)))] += point.impulse * double(trial.substeps()) / trial.dt();
+      force[std::size_t(std::max(place(contact.a), place(contact.b)))] +=
+          point.impulse * double(trial.substeps()) / trial.dt();
   Worst off;
   for (int i = 1; i <= count; ++i) off.add(std::fabs(force[std::size_t(i)] / ((count + 1 - i) * gravity) - 1));
   trial.report("contact forces, relative", off, bounded ? std::optional(0.02) : std::nullopt);
@@ -94,7 +95,8 @@ void plain_tower(Trial& trial, int count) {
 
 // ---- B9 ------------------------------------------------------------------------------------------------
 
-/// Box2D's and Box3D's (samples, class CardHouse; E. Catto, MIT): five storeys of cards that lean by 25 degrees, with level ones across.
+/// Box2D's and Box3D's (samples, class CardHouse; E. Catto, MIT): five storeys of cards that lean by 25 degrees, with
+/// level ones across.
 void card_house(Trial& trial, double margin) {
   const double thin = 0.001, half = 0.2, deep = 0.1, lean = 25 * pi / 180;
   Simulated& run = trial.start(
@@ -103,7 +105,8 @@ void card_house(Trial& trial, double margin) {
         builder.set_material(0.7, 0);
         add_floor(builder);
         const auto card = [&](double x, double z, double angle) {
-          add_block(builder, {thin, deep, half}, 1000 * 8 * thin * deep * half, {{x, 0, z}, axis_angle({0, 1, 0}, angle)});
+          add_block(builder, {thin, deep, half}, 1000 * 8 * thin * deep * half,
+                    {{x, 0, z}, axis_angle({0, 1, 0}, angle)});
         };
         double first = 0, z = half - 0.02;
         for (int storey = 5; storey > 0; --storey) {
@@ -160,7 +163,8 @@ void arch(Trial& trial) {
     add_stone(builder, {inner(last, 1), outer(last, 1), outer(last, -1), inner(last, -1)});
     const Vec3 half{2, 0.5, 0.5};
     for (int i = 0; i < 4; ++i)
-      add_block(builder, half, 200 * 8 * half.x * half.y * half.z, {{0, 0, outer(last, 1).z + half.z * (2 * i + 1)}, {}});
+      add_block(builder, half, 200 * 8 * half.x * half.y * half.z,
+                {{0, 0, outer(last, 1).z + half.z * (2 * i + 1)}, {}});
   });
   const auto [across, sunk] = farthest(trial, run, 60);
   trial.report("across [m]", across, 0.02);
@@ -187,8 +191,8 @@ void jenga(Trial& trial) {
   trial.report("down [m]", m.down, 0.005);
 }
 
-/// Box3D's (samples, class JengaStack; E. Catto, MIT): 30 layers of two beams each, laid crosswise; 1 cm of air between two layers, and the
-/// lowest is half sunk into the floor.
+/// Box3D's (samples, class JengaStack; E. Catto, MIT): 30 layers of two beams each, laid crosswise; 1 cm of air between
+/// two layers, and the lowest is half sunk into the floor.
 void beams(Trial& trial) {
   const double thick = 0.1, half = 1;
   const int layers = 30;
@@ -286,45 +290,49 @@ void add_stacks(std::vector<Case>& cases) {
                                .more_substeps = fewer,
                                .lost_at = 0.5});
 
-  cases.push_back(
-      {"B9",
-       "card house, arch, jenga, beams, dominoes",
-       {{.name = "cards",
-         .run = [](Trial& t) { card_house(t, StepSettings{}.contact_margin); },
-         .steps = fine,
-         .substeps = {4},
-         .more_steps = longer,
-         .more_substeps = fewer,
-         .lost_at = 0.5},
-        {.name = "cards, margin 0.5 mm",
-         .run = [](Trial& t) { card_house(t, 5e-4); },
-         .steps = fine,
-         .substeps = {4},
-         .more_steps = longer,
-         .more_substeps = fewer,
-         .lost_at = 0.5},
-        {.name = "arch",
-         .run = arch,
-         .steps = {1.0 / 60},
-         .substeps = {4},
-         .more_steps = {1.0 / 30},
-         .more_substeps = fewer,
-         .lost_at = 0.5},
-        {.name = "jenga",
-         .run = jenga,
-         .steps = fine,
-         .substeps = {4},
-         .more_steps = longer,
-         .more_substeps = fewer,
-         .lost_at = 0.5},
-        {.name = "30 layers of beams",
-         .run = beams,
-         .steps = fine,
-         .substeps = {4},
-         .more_steps = longer,
-         .more_substeps = fewer,
-         .lost_at = 0.5},
-        {.name = "dominoes", .run = dominoes, .steps = fine, .substeps = {4}, .more_steps = longer, .more_substeps = fewer}}});
+  cases.push_back({"B9",
+                   "card house, arch, jenga, beams, dominoes",
+                   {{.name = "cards",
+                     .run = [](Trial& t) { card_house(t, StepSettings{}.contact_margin); },
+                     .steps = fine,
+                     .substeps = {4},
+                     .more_steps = longer,
+                     .more_substeps = fewer,
+                     .lost_at = 0.5},
+                    {.name = "cards, margin 0.5 mm",
+                     .run = [](Trial& t) { card_house(t, 5e-4); },
+                     .steps = fine,
+                     .substeps = {4},
+                     .more_steps = longer,
+                     .more_substeps = fewer,
+                     .lost_at = 0.5},
+                    {.name = "arch",
+                     .run = arch,
+                     .steps = {1.0 / 60},
+                     .substeps = {4},
+                     .more_steps = {1.0 / 30},
+                     .more_substeps = fewer,
+                     .lost_at = 0.5},
+                    {.name = "jenga",
+                     .run = jenga,
+                     .steps = fine,
+                     .substeps = {4},
+                     .more_steps = longer,
+                     .more_substeps = fewer,
+                     .lost_at = 0.5},
+                    {.name = "30 layers of beams",
+                     .run = beams,
+                     .steps = fine,
+                     .substeps = {4},
+                     .more_steps = longer,
+                     .more_substeps = fewer,
+                     .lost_at = 0.5},
+                    {.name = "dominoes",
+                     .run = dominoes,
+                     .steps = fine,
+                     .substeps = {4},
+                     .more_steps = longer,
+                     .more_substeps = fewer}}});
 }
 
 }  // namespace pcphys::cases

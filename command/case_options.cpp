@@ -14,7 +14,8 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
                  "only the variant of this name, as --list shows it; where none has it, those whose names start so");
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--dt", options.dt, "this step length only [s], also as a fraction");
-  app.add_option("--backend", options.backend, "gl: run the first 600 steps of everything there too, and compare hashes")
+  app.add_option("--backend", options.backend,
+                 "gl: run the first 600 steps of everything there too, and compare hashes")
       ->capture_default_str();
   app.add_flag("--first", options.first, "with --backend gl: those 600 steps alone, for the hashes; no errors");
   add_device(app, options.device);
@@ -22,7 +23,8 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
       ->capture_default_str();
   app.add_option("--peers", options.peers, "other engines beside pcphys: all, none, or names with commas between")
       ->capture_default_str();
-  app.add_option("--budget", options.budget, "a trial of a peer that takes longer is given up [s]")->capture_default_str();
+  app.add_option("--budget", options.budget, "a trial of a peer that takes longer is given up [s]")
+      ->capture_default_str();
   app.add_option("--json", options.json, "write the rows to this file; - is standard output");
   app.add_option("--csv", options.csv, "write the rows as a table to this file");
 }
@@ -34,7 +36,8 @@ Result<cases::Selection> resolve(const CaseOptions& options, const std::string& 
   selection.variant = options.variant;
   selection.slow = options.all;
   selection.coarse = true;
-  if (auto status = check_choice("precision", options.precision, {"float", "double", "both"}); !status) return status.error();
+  if (auto status = check_choice("precision", options.precision, {"float", "double", "both"}); !status)
+    return status.error();
   if (auto status = check_choice("backend", options.backend, {"cpu", "gl"}); !status) return status.error();
   if (auto status = check_range("device", options.device, -1, 1000); !status) return status.error();
   if (auto status = check_range("repeats", options.repeats, 1, 1000); !status) return status.error();

@@ -44,7 +44,8 @@ Json to_json(const cases::Row& row) {
 /// One line of the fields of the JSON, in the same order; text in quotes.
 std::string csv_line(const Json& row) {
   std::string line;
-  for (const auto& [key, value] : row.items()) line += (line.empty() ? "" : ",") + (value.is_null() ? "" : value.dump());
+  for (const auto& [key, value] : row.items())
+    line += (line.empty() ? "" : ",") + (value.is_null() ? "" : value.dump());
   return line + "\n";
 }
 
@@ -67,8 +68,8 @@ std::string step_text(double dt) {
 void print(std::span<const cases::Row> rows) {
   for (const cases::Row& row : rows) {
     std::printf("%-4s %-18s %-10s %-6s %-6s n=%-2u %-40s %10.3g", row.case_name.c_str(), row.variant.c_str(),
-                row.peer.empty() ? row.backend.c_str() : row.peer.c_str(), name(row.precision), step_text(row.dt).c_str(),
-                row.substeps, row.metric.c_str(), row.error);
+                row.peer.empty() ? row.backend.c_str() : row.peer.c_str(), name(row.precision),
+                step_text(row.dt).c_str(), row.substeps, row.metric.c_str(), row.error);
     if (row.must)
       std::printf("  must %9.2g", *row.must);
     else
@@ -134,7 +135,8 @@ int run_cases(const CaseOptions& options, const char* command, const std::string
   }
   if (auto status = files->write(json, csv); !status) return fail(status.error());
   const auto is_own = [](const cases::Row& row) { return row.peer.empty(); };
-  const auto missed = std::count_if(rows.begin(), rows.end(), [&](const cases::Row& row) { return is_own(row) && !row.pass; });
+  const auto missed =
+      std::count_if(rows.begin(), rows.end(), [&](const cases::Row& row) { return is_own(row) && !row.pass; });
   if (missed == 0) return exit_ok;
   std::cerr << "pcphys: " << missed << " of " << std::count_if(rows.begin(), rows.end(), is_own)
             << " rows miss what they must reach.\n";

@@ -25,12 +25,14 @@ void add_commands(CLI::App& app, CommandLine& line) {
     add_run_options(*command, line.run);
     add_output_options(*command, line.run);
   }
-  run_command->add_option("--events", line.run.events, "write what happened in each step to this file, a line of JSON an event");
+  run_command->add_option("--events", line.run.events,
+                          "write what happened in each step to this file, a line of JSON an event");
   run_command->add_option("--gltf", line.run.gltf, "write the motion as glTF 2.0 to this file (.gltf or .glb)");
   run_command->add_flag("--hash", line.run.hash, "print nothing but the hash of the final state");
   run_command->add_flag("--poses", line.run.poses, "add the final pose and velocity of every body to the JSON");
   for (CLI::App* command : {scenes_command, doctor_command}) add_report_options(*command, line.output);
-  CLI::App* accuracy_command = app.add_subcommand("accuracy", "errors against motion that is known, and what they must reach");
+  CLI::App* accuracy_command =
+      app.add_subcommand("accuracy", "errors against motion that is known, and what they must reach");
   CLI::App* stability_command = app.add_subcommand("stability", "stiff and extreme cases, and what they must reach");
   for (CLI::App* command : {accuracy_command, stability_command}) add_case_options(*command, line.cases);
   CLI::App* compare_command = app.add_subcommand("compare", "scenes in pcphys and in other engines, in the same run");

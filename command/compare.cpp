@@ -20,7 +20,8 @@ Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_
       if (!info.own_kernels) names.push_back(std::string(info.name));
   std::vector<Setup> result;
   if (run_options.sleep == "on")
-    return Error{ErrorCode::bad_argument, "--sleep on is not for compare: the peers keep everything awake; leave it off."};
+    return Error{ErrorCode::bad_argument,
+                 "--sleep on is not for compare: the peers keep everything awake; leave it off."};
   for (const std::string& name : names) {
     const auto entry = scene_of(name);
     if (!entry) return entry.error();
@@ -34,8 +35,9 @@ Result<std::vector<Setup>> setups(const CompareOptions& options, RunOptions run_
     const auto scene = scenes::make(setup->scene, setup->scene_options, world);
     if (!scene) return scene.error();
     if (!scene->kernels.empty())
-      return Error{ErrorCode::bad_argument, "The forces of scene " + scene->name +
-                                                " are a kernel of its own, which no other engine runs; compare another scene."};
+      return Error{ErrorCode::bad_argument,
+                   "The forces of scene " + scene->name +
+                       " are a kernel of its own, which no other engine runs; compare another scene."};
     result.push_back(*setup);
   }
   return result;
@@ -88,7 +90,8 @@ int compare(const CompareOptions& options, const RunOptions& run_options) {
     rows.insert(rows.end(), found.begin(), found.end());
     const scenes::Metrics& own = contest->score(0).end;
     sound = sound && own.escapes.through == 0 && own.nonfinite == 0;
-    if (files->printed()) std::cout << (rows.size() == found.size() ? "" : "\n") << compare_text(*contest) << std::flush;
+    if (files->printed())
+      std::cout << (rows.size() == found.size() ? "" : "\n") << compare_text(*contest) << std::flush;
   }
   const Setup& first = all->front();
   const Json report{{"steps", first.steps},

@@ -137,7 +137,8 @@ std::vector<std::string> line(const Contest& contest, std::size_t entrant) {
     for (double depth : {end.penetration.max, end.penetration.mean(), score.peak_penetration})
       cells.push_back(format("%.3g", mm * depth));
   if (!contest.scene().joints.empty())
-    for (double gap : {end.separation.max, end.separation.mean, score.peak_separation}) cells.push_back(format("%.3g", mm * gap));
+    for (double gap : {end.separation.max, end.separation.mean, score.peak_separation})
+      cells.push_back(format("%.3g", mm * gap));
   if (!contest.scene().joints.empty() && contest.scene().floor) {
     const bool cones = has_cones(contest);
     cells.push_back(format("%.2f", degrees * (cones ? end.limit_excess.cone : end.limit_excess.any)));
@@ -163,7 +164,8 @@ std::string remarks(const Contest& contest, std::size_t entrant) {
   if (end.escapes.over_the_rim) said.push_back(format("bodies thrown over the rim: %ld", end.escapes.over_the_rim));
   if (end.nonfinite) said.push_back(format("bodies that are not finite: %ld", end.nonfinite));
   if (who.engine && who.engine->failures())
-    said.push_back(format("it dropped contacts or constraints in %llu sub-steps", (unsigned long long)who.engine->failures()));
+    said.push_back(
+        format("it dropped contacts or constraints in %llu sub-steps", (unsigned long long)who.engine->failures()));
   if (who.engine)
     for (const std::string& sentence : who.engine->untranslated()) said.push_back(sentence);
   std::string text;
@@ -202,9 +204,9 @@ std::string compare_csv(const Json& rows, bool with_head) {
 
 std::string compare_text(const Contest& contest) {
   const scenes::Scene& scene = contest.scene();
-  std::string text =
-      format("%s %d: %zu bodies, %zu joints, %llu steps of %g s\n", scene.name.c_str(), scene.count, contest.world().body_count(),
-             contest.world().joint_count(), (unsigned long long)contest.score(0).steps, contest.dt());
+  std::string text = format("%s %d: %zu bodies, %zu joints, %llu steps of %g s\n", scene.name.c_str(), scene.count,
+                            contest.world().body_count(), contest.world().joint_count(),
+                            (unsigned long long)contest.score(0).steps, contest.dt());
   Table table;
   table.add(head(contest));
   for (std::size_t i = 0; i < contest.entrants().size(); ++i) table.add(line(contest, i));

@@ -28,7 +28,9 @@ class Own : public peers::Peer {
   Pose pose(std::size_t body) const override { return *simulation_.world.pose(id(body)); }
   Vec3 velocity(std::size_t body) const override { return *simulation_.world.velocity(id(body)); }
   Vec3 angular_velocity(std::size_t body) const override { return *simulation_.world.angular_velocity(id(body)); }
-  MassProperties mass_properties(std::size_t body) const override { return *simulation_.world.mass_properties(id(body)); }
+  MassProperties mass_properties(std::size_t body) const override {
+    return *simulation_.world.mass_properties(id(body));
+  }
   std::size_t contacts() const override { return points_; }
   std::optional<double> deepest() const override {
     double depth = 0;
@@ -59,7 +61,8 @@ scenes::State state_of(const peers::Peer& engine, std::size_t bodies) {
   return state;
 }
 
-Entrant make_peer(const std::string& name, const World& world, const scenes::Scene& scene, const peers::Options& options) {
+Entrant make_peer(const std::string& name, const World& world, const scenes::Scene& scene,
+                  const peers::Options& options) {
   const auto all = peers::variants();
   const auto variant = std::find_if(all.begin(), all.end(), [&](const peers::Variant& v) { return v.name == name; });
   Entrant entrant{name, variant->version, std::string(variant->solver), std::string(variant->precision), nullptr, {}};
@@ -83,9 +86,14 @@ Result<Contest> Contest::make(const Setup& setup, std::span<const std::string> p
   auto own = Simulation::make(setup);
   if (!own) return own.error();
   const char* precision = setup.precision == Precision::f64 ? "double" : "float";
-  contest.entrants_.push_back(
-      {"pcphys", PCPHYS_VERSION, "joint trees direct, soft contacts", precision, std::make_unique<Own>(std::move(*own)), {}});
-  for (const std::string& name : peers) contest.entrants_.push_back(make_peer(name, contest.world_, contest.scene_, options));
+  contest.entrants_.push_back({"pcphys",
+                               PCPHYS_VERSION,
+                               "joint trees direct, soft contacts",
+                               precision,
+                               std::make_unique<Own>(std::move(*own)),
+                               {}});
+  for (const std::string& name : peers)
+    contest.entrants_.push_back(make_peer(name, contest.world_, contest.scene_, options));
   contest.scores_.resize(contest.entrants_.size());
   contest.rims_.resize(contest.entrants_.size());
   contest.seconds_.resize(contest.entrants_.size());

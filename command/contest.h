@@ -40,7 +40,8 @@ class Contest {
   const std::vector<Entrant>& entrants() const { return entrants_; }  // pcphys first
   const Score& score(std::size_t entrant) const { return scores_[entrant]; }
   double dt() const { return setup_.dt; }
-  /// Times are those of the processor where all runs on one thread of it, and of the wall clock where a GPU or more threads take part.
+  /// Times are those of the processor where all runs on one thread of it, and of the wall clock where a GPU or more
+  /// threads take part.
   bool processor_time() const;
 
  private:

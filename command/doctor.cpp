@@ -79,7 +79,8 @@ Json peers_json(Json& missing) {
     if (found.contains(engine)) continue;
     found[engine] = variant.found ? Json(variant.version) : Json(nullptr);
     if (!variant.found)
-      missing.push_back({{"what", engine + " when pcphys was built, for `pcphys compare`"}, {"package", variant.package}});
+      missing.push_back(
+          {{"what", engine + " when pcphys was built, for `pcphys compare`"}, {"package", variant.package}});
   }
   return found;
 }
@@ -90,8 +91,8 @@ void print_arithmetic(const char* label, const GlArithmetic& a) {
     return;
   }
   std::printf("    %-7s %s; division %s, square root %s; fma %s; subnormals %s\n", label,
-              a.parity() ? "equal to the CPU bit for bit" : "NOT equal to the CPU", name(a.division), name(a.square_root),
-              a.fma_fused ? "fused" : "not fused", a.subnormals_kept ? "kept" : "flushed");
+              a.parity() ? "equal to the CPU bit for bit" : "NOT equal to the CPU", name(a.division),
+              name(a.square_root), a.fma_fused ? "fused" : "not fused", a.subnormals_kept ? "kept" : "flushed");
 }
 
 void print_device(const GlReport& r) {
@@ -99,10 +100,11 @@ void print_device(const GlReport& r) {
     std::printf("  device %d: not usable. %s\n", r.device, r.problem.c_str());
     return;
   }
-  std::printf("  device %d: %s (%s)%s\n", r.device, r.renderer.c_str(), r.version.c_str(), r.software ? ", software" : "");
-  std::printf("    limits  %u storage blocks of %.0f MiB, %u KiB shared memory, work groups of %u\n", r.limits.storage_blocks,
-              double(r.limits.storage_block_bytes) / (1 << 20), r.limits.shared_memory_bytes >> 10,
-              r.limits.work_group_invocations);
+  std::printf("  device %d: %s (%s)%s\n", r.device, r.renderer.c_str(), r.version.c_str(),
+              r.software ? ", software" : "");
+  std::printf("    limits  %u storage blocks of %.0f MiB, %u KiB shared memory, work groups of %u\n",
+              r.limits.storage_blocks, double(r.limits.storage_block_bytes) / (1 << 20),
+              r.limits.shared_memory_bytes >> 10, r.limits.work_group_invocations);
   // llvmpipe hands each dispatch to threads of its own and waits: longer than a small one takes (docs/gpu.md).
   if (r.renderer.find("llvmpipe") != std::string::npos && std::getenv("LP_NUM_THREADS") == nullptr)
     std::puts("    hint    small scenes run two to five times as fast with LP_NUM_THREADS=0 in the environment");
@@ -122,12 +124,13 @@ int doctor(const OutputOptions& options) {
   for (const GlReport& r : reports) {
     devices.push_back(device_json(r));
     usable = usable || r.usable;
-    table += std::to_string(r.device) + "," + (r.usable ? "1" : "0") + ",\"" + r.renderer + "\",\"" + r.version + "\"," +
-             (r.f32.parity() ? "1" : "0") + "," + (r.f64.parity() ? "1" : "0") + "\n";
+    table += std::to_string(r.device) + "," + (r.usable ? "1" : "0") + ",\"" + r.renderer + "\",\"" + r.version +
+             "\"," + (r.f32.parity() ? "1" : "0") + "," + (r.f64.parity() ? "1" : "0") + "\n";
   }
   if (!usable && !reports.front().package.empty())
     missing.push_back({{"what", "OpenGL 4.3 through EGL, for --backend gl"}, {"package", reports.front().package}});
-  if (!has_fcl()) missing.push_back({{"what", "FCL when pcphys was built, for --narrow fcl"}, {"package", "libfcl-dev"}});
+  if (!has_fcl())
+    missing.push_back({{"what", "FCL when pcphys was built, for --narrow fcl"}, {"package", "libfcl-dev"}});
   const Json peers = peers_json(missing);
   const Json report{{"version", PCPHYS_VERSION},
                     {"processor", processor()},
@@ -140,12 +143,13 @@ int doctor(const OutputOptions& options) {
 
   if (auto status = files->write(report, table); !status) return fail(status.error());
   if (files->printed()) {
-    std::printf("pcphys %s\nCPU: %s\n  lanes: float %s, double %s\nOpenGL through EGL:\n", PCPHYS_VERSION, processor().c_str(),
-                report["lanes_float"].dump().c_str(), report["lanes_double"].dump().c_str());
+    std::printf("pcphys %s\nCPU: %s\n  lanes: float %s, double %s\nOpenGL through EGL:\n", PCPHYS_VERSION,
+                processor().c_str(), report["lanes_float"].dump().c_str(), report["lanes_double"].dump().c_str());
     for (const GlReport& r : reports) print_device(r);
     std::printf("FCL narrow phase: %s\n", has_fcl() ? "there" : "not there");
     for (const auto& [engine, version] : peers.items())
-      std::printf("peer %s: %s\n", engine.c_str(), version.is_null() ? "not there" : version.get<std::string>().c_str());
+      std::printf("peer %s: %s\n", engine.c_str(),
+                  version.is_null() ? "not there" : version.get<std::string>().c_str());
     for (const Json& item : missing)
       std::printf("missing: %s; install %s\n", item["what"].get<std::string>().c_str(),
                   item["package"].get<std::string>().c_str());

@@ -75,17 +75,23 @@ struct Look {
   }
 };
 
-constexpr std::array<std::array<double, 3>, 6> palette{
-    {{0.86, 0.33, 0.31}, {0.95, 0.68, 0.26}, {0.42, 0.67, 0.38}, {0.29, 0.57, 0.78}, {0.55, 0.42, 0.72}, {0.62, 0.62, 0.60}}};
+constexpr std::array<std::array<double, 3>, 6> palette{{{0.86, 0.33, 0.31},
+                                                        {0.95, 0.68, 0.26},
+                                                        {0.42, 0.67, 0.38},
+                                                        {0.29, 0.57, 0.78},
+                                                        {0.55, 0.42, 0.72},
+                                                        {0.62, 0.62, 0.60}}};
 
 /// Colours of moving bodies, then one for fixed boxes that one can look through.
 void add_materials(Document& document) {
   for (const auto& colour : palette)
-    document.root["materials"].push_back(
-        {{"pbrMetallicRoughness",
-          {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0}}, {"metallicFactor", 0.1}, {"roughnessFactor", 0.6}}}});
+    document.root["materials"].push_back({{"pbrMetallicRoughness",
+                                           {{"baseColorFactor", {colour[0], colour[1], colour[2], 1.0}},
+                                            {"metallicFactor", 0.1},
+                                            {"roughnessFactor", 0.6}}}});
   document.root["materials"].push_back(
-      {{"pbrMetallicRoughness", {{"baseColorFactor", {0.7, 0.7, 0.72, 0.2}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}},
+      {{"pbrMetallicRoughness",
+        {{"baseColorFactor", {0.7, 0.7, 0.72, 0.2}}, {"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}},
        {"alphaMode", "BLEND"}});
 }
 
@@ -123,7 +129,8 @@ std::map<Look, std::size_t> add_meshes(Document& document, const scenes::Scene& 
     document.root["accessors"].back()["min"] = range(part.mesh.positions, 3, false);
     document.root["accessors"].back()["max"] = range(part.mesh.positions, 3, true);
     const std::size_t normals = document.add_accessor(vertex_view, part.normals, float_type, count, "VEC3");
-    const std::size_t indices = document.add_accessor(index_view, part.indices, short_type, part.mesh.indices.size(), "SCALAR");
+    const std::size_t indices =
+        document.add_accessor(index_view, part.indices, short_type, part.mesh.indices.size(), "SCALAR");
     for (auto& [wanted, index] : looks) {
       if (Look a{wanted.shape, 0}, b{look.shape, 0}; a < b || b < a) continue;
       index = document.root["meshes"].size();
@@ -184,8 +191,8 @@ void GltfRecorder::record(const World& world, std::uint64_t step, double time) {
     const bool good = read && finite(read->position) && finite(read->orientation) && length(read->orientation) > 0;
     const Pose pose = good ? *read : scene_.bodies[track.body].start;  // a viewer refuses NaN
     const double scale = 1 / length(pose.orientation);
-    float q[4] = {float(scale * pose.orientation.x), float(scale * pose.orientation.y), float(scale * pose.orientation.z),
-                  float(scale * pose.orientation.w)};
+    float q[4] = {float(scale * pose.orientation.x), float(scale * pose.orientation.y),
+                  float(scale * pose.orientation.z), float(scale * pose.orientation.w)};
     if (!track.rotations.empty()) {  // q and -q are the same attitude: take the nearer
       const float* last = &track.rotations[track.rotations.size() - 4];
       if (q[0] * last[0] + q[1] * last[1] + q[2] * last[2] + q[3] * last[3] < 0)
@@ -232,8 +239,8 @@ std::string GltfRecorder::file(bool binary) const {
       for (std::size_t part : {0u, 1u}) {
         const std::size_t output =
             document.add_accessor(view, offsets[2 * t + part], float_type, times_.size(), part ? "VEC4" : "VEC3");
-        channels.push_back(
-            {{"sampler", samplers.size()}, {"target", {{"node", tracks_[t].body}, {"path", part ? "rotation" : "translation"}}}});
+        channels.push_back({{"sampler", samplers.size()},
+                            {"target", {{"node", tracks_[t].body}, {"path", part ? "rotation" : "translation"}}}});
         samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
       }
     root["animations"] = Json::array({{{"name", scene_.name}, {"samplers", samplers}, {"channels", channels}}});

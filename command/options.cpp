@@ -23,8 +23,7 @@ Result<Place> place_of(const char* option, const std::string& text) {
 }
 
 /// Nothing where the text is no decimal number from end to end, or one that `Number` cannot hold.
-template <class Number>
-std::optional<Number> number(std::string_view text) {
+template <class Number> std::optional<Number> number(std::string_view text) {
   Number value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
@@ -57,7 +56,8 @@ void check_values(CLI::App& app) {
 Result<double> time_step(const std::string& text) {
   const std::size_t slash = text.find('/');
   const auto above = number<double>(std::string_view(text).substr(0, slash));
-  const auto below = slash == std::string::npos ? std::optional<double>(1.0) : number<double>(std::string_view(text).substr(slash + 1));
+  const auto below = slash == std::string::npos ? std::optional<double>(1.0)
+                                                : number<double>(std::string_view(text).substr(slash + 1));
   const double dt = above && below ? *above / *below : std::numeric_limits<double>::quiet_NaN();
   if (std::isfinite(dt) && dt > 0) return dt;
   return bad("--dt is '" + text + "'; give a time step above 0 in seconds, such as 0.01 or 1/60.");
@@ -65,8 +65,8 @@ Result<double> time_step(const std::string& text) {
 
 Status check_range(const char* option, long long value, long long low, long long high) {
   if (value >= low && value <= high) return {};
-  return bad(std::string("--") + option + " is " + std::to_string(value) + "; give a whole number from " + std::to_string(low) +
-             " to " + std::to_string(high) + ".");
+  return bad(std::string("--") + option + " is " + std::to_string(value) + "; give a whole number from " +
+             std::to_string(low) + " to " + std::to_string(high) + ".");
 }
 
 Status check_budget(double seconds) {
@@ -127,7 +127,8 @@ Status check_numbers(const RunOptions& options) {
   if (options.count)
     if (auto status = check_range("count", *options.count, 0, many); !status) return status;
   if (options.seed)
-    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max()); !status) return status;
+    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max()); !status)
+      return status;
   if (options.steps)
     if (auto status = check_range("steps", *options.steps, 1, many); !status) return status;
   if (auto status = check_range("substeps", options.substeps, 1, 1000); !status) return status;
@@ -139,8 +140,8 @@ Status check_numbers(const RunOptions& options) {
   if (!(options.ratio > 0 && std::isfinite(options.ratio)))
     return bad("--ratio is " + std::to_string(options.ratio) + "; give a finite mass ratio above 0.");
   for (const auto& [name, value] :
-       {std::pair("friction", options.friction), std::pair("restitution", options.restitution), std::pair("drag", options.drag),
-        std::pair("joint-damping", options.joint_damping)})
+       {std::pair("friction", options.friction), std::pair("restitution", options.restitution),
+        std::pair("drag", options.drag), std::pair("joint-damping", options.joint_damping)})
     if (value && !(*value >= 0 && std::isfinite(*value)))
       return bad("--" + std::string(name) + " is " + std::to_string(*value) + "; give a finite number, 0 or more.");
   return {};
@@ -189,7 +190,8 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--ratio", options.ratio, "mass ratio of chain, chainswing and heavy")->capture_default_str();
   app.add_option("--friction", options.friction, "of all bodies, static and kinetic (default: the scene's own)");
   app.add_option("--restitution", options.restitution, "of all bodies (default: the scene's own)");
-  app.add_option("--drag", options.drag, "of all bodies that move, linear and angular [1/s] (default: the scene's own)");
+  app.add_option("--drag", options.drag,
+                 "of all bodies that move, linear and angular [1/s] (default: the scene's own)");
   app.add_option("--joint-damping", options.joint_damping, "of all joints [N m s/rad] (default: the scene's own)");
 }
 
@@ -199,7 +201,8 @@ void add_lanes_and_threads(CLI::App& app, std::string& lanes, long long& threads
 }
 
 void add_device(CLI::App& app, long long& device) {
-  app.add_option("--device", device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")->capture_default_str();
+  app.add_option("--device", device, "EGL device, as `pcphys doctor` numbers them; -1: the first that works")
+      ->capture_default_str();
 }
 
 void add_run_options(CLI::App& app, RunOptions& options) {
@@ -213,17 +216,20 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_option("--substeps", options.substeps, "sub-steps a step")->capture_default_str();
   app.add_flag("--resident", options.resident,
                "on gl, where nothing meets or holds a body: poses come to the host when they are read");
-  app.add_option("--order", options.order, "2, or 4: joint trees on which nothing but forces and pins acts move in fourth order")
+  app.add_option("--order", options.order,
+                 "2, or 4: joint trees on which nothing but forces and pins acts move in fourth order")
       ->capture_default_str();
   app.add_option("--precision", options.precision, "float or double")->capture_default_str();
   add_lanes_and_threads(app, options.lanes, options.threads);
   app.add_option("--warmup", options.warmup, "steps at the start whose times are not counted")->capture_default_str();
   app.add_option("--sleep", options.sleep, "on: islands at rest are no longer stepped")->capture_default_str();
-  app.add_option("--islands", options.islands, "cpu or gl: where the islands that may sleep are found")->capture_default_str();
+  app.add_option("--islands", options.islands, "cpu or gl: where the islands that may sleep are found")
+      ->capture_default_str();
   app.add_option("--integrator", options.integrator, "verlet, or seed: the scheme of the original document")
       ->capture_default_str();
   add_device(app, options.device);
-  app.add_option("--timings", options.timings, "on: clock every stage, which makes a GPU wait after each; off: whole steps only")
+  app.add_option("--timings", options.timings,
+                 "on: clock every stage, which makes a GPU wait after each; off: whole steps only")
       ->capture_default_str();
 }
 
@@ -234,11 +240,11 @@ void add_output_options(CLI::App& app, RunOptions& options) {
 
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps) {
   Setup setup;
-  for (const Status& status :
-       {check_numbers(options), check_choice("sleep", options.sleep, {"on", "off"}),
-        check_choice("islands", options.islands, {"cpu", "gl"}), check_choice("narrow", options.narrow, {"native", "fcl"}),
-        check_choice("integrator", options.integrator, {"verlet", "seed"}),
-        check_choice("timings", options.timings, {"on", "off"})})
+  for (const Status& status : {check_numbers(options), check_choice("sleep", options.sleep, {"on", "off"}),
+                               check_choice("islands", options.islands, {"cpu", "gl"}),
+                               check_choice("narrow", options.narrow, {"native", "fcl"}),
+                               check_choice("integrator", options.integrator, {"verlet", "seed"}),
+                               check_choice("timings", options.timings, {"on", "off"})})
     if (!status) return status.error();
   if (auto status = set_places(options, setup.settings); !status) return status.error();
   if (auto status = set_precision(options, setup); !status) return status.error();

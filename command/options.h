@@ -32,7 +32,8 @@ struct RunOptions {
   std::optional<long long> count, seed;
   std::string backend = "cpu", integrate, joints, impulses;  // a stage that is left empty takes `backend`
   std::string islands = "cpu";
-  std::string narrow = "native", precision = "float", lanes = "auto", sleep = "off", integrator = "verlet", timings = "on";
+  std::string narrow = "native", precision = "float", lanes = "auto", sleep = "off", integrator = "verlet",
+              timings = "on";
   std::string dt = "1/60";
   std::optional<long long> steps;
   long long substeps = 4, order = 2, threads = 1, warmup = 0, device = -1;
@@ -106,8 +107,8 @@ Status check_choice(const char* option, const std::string& value, std::initializ
 Status check_budget(double seconds);
 /// Names of peers with commas between; all or none. Those that were not found are among them. Errors: unknown_name.
 Result<std::vector<std::string>> peer_names(const std::string& list);
-/// Those of the list that were found. With "all" the others are named on standard error; asked for by name, one that was not found is an
-/// error.
+/// Those of the list that were found. With "all" the others are named on standard error; asked for by name, one that
+/// was not found is an error.
 Result<std::vector<std::string>> found_peers(const std::string& list);
 /// "0.01" or "1/60" [s].
 Result<double> time_step(const std::string& text);
@@ -122,8 +123,8 @@ Result<SceneEntry> scene_of(const std::string& text);
 /// One scene of each family, of which every measure is told.
 bool single(const WildOptions& options);
 
-// Errors: bad_argument with a sentence that names the option and what it accepts; of peers as `found_peers`. Whether there are such
-// scenes, cases, families and devices is looked at when they are wanted.
+// Errors: bad_argument with a sentence that names the option and what it accepts; of peers as `found_peers`. Whether
+// there are such scenes, cases, families and devices is looked at when they are wanted.
 Result<Setup> resolve(const RunOptions& options, std::uint64_t default_steps);
 /// Of the cases of these groups.
 Result<cases::Selection> resolve(const CaseOptions& options, const std::string& groups);

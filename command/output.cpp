@@ -184,8 +184,8 @@ void print_error(std::string sentence) {
 
 int fail(const Error& error) {
   print_error(error.message);
-  const bool usage =
-      error.code == ErrorCode::bad_argument || error.code == ErrorCode::unknown_name || error.code == ErrorCode::bad_time_step;
+  const bool usage = error.code == ErrorCode::bad_argument || error.code == ErrorCode::unknown_name ||
+                     error.code == ErrorCode::bad_time_step;
   return usage ? exit_usage : exit_failed;
 }
 

@@ -23,8 +23,8 @@ std::size_t row_bytes(Buffer buffer, const World& world) {
   if (of_table(buffer)) return world.state().tables.row_bytes(buffer);
   return schema(buffer).reals == 0 ? sizeof(std::uint32_t) : schema(buffer).reals * world.state().tables.real_bytes();
 }
-constexpr const char* domains[] = {"body",  "contact", "contact",         "contact of a tree",
-                                   "joint", "joint",   "joint of a tree", "tree",
+constexpr const char* domains[] = {"body",  "contact",       "contact",         "contact of a tree",
+                                   "joint", "joint",         "joint of a tree", "tree",
                                    "body",  "pair of bodies"};
 
 /// An element of the kernel's domain, in words.
@@ -53,9 +53,7 @@ Bytes bytes_of(const PlanEntry& entry, const World& world) {
 
 Json entry_json(const PlanEntry& entry, const World& world) {
   constexpr const char* kinds[] = {"kernel", "upload", "download", "collide"};
-  Json json{{"kind", kinds[std::size_t(entry.kind)]},
-            {"place", name(entry.place)},
-            {"substep", entry.substep}};
+  Json json{{"kind", kinds[std::size_t(entry.kind)]}, {"place", name(entry.place)}, {"substep", entry.substep}};
   if (entry.transfers()) {
     json["buffer"] = std::string(buffer_name(entry));
     json["bytes"] = entry.bytes;
@@ -82,8 +80,10 @@ Json buffers_json(const StepPlan& plan, const World& world) {
   for (const PlanBinding& b : plan.bindings) {
     const auto [buffer, table] = world.state().own.names(b.buffer);
     if (!is_own(b.buffer)) used[std::size_t(b.buffer)] = true;
-    bound.push_back(
-        {{"buffer", buffer}, {"table", table}, {"place", name(b.place)}, {"bytes_per_row", row_bytes(b.buffer, world)}});
+    bound.push_back({{"buffer", buffer},
+                     {"table", table},
+                     {"place", name(b.place)},
+                     {"bytes_per_row", row_bytes(b.buffer, world)}});
   }
   for (std::size_t b = 0; b < buffer_count; ++b)
     if (!used[b]) not_needed.push_back(schema(Buffer(b)).name);
@@ -99,7 +99,8 @@ std::string bytes_text(const StepPlan& plan, const World& world) {
     const Bytes bytes = bytes_of(entry, world);
     std::string line = "  " + std::string(kernel_name(entry));
     line.resize(std::max<std::size_t>(line.size() + 1, 26), ' ');
-    text += line + std::to_string(bytes.read) + " " + std::to_string(bytes.written) + " a " + domain(entry, world) + "\n";
+    text +=
+        line + std::to_string(bytes.read) + " " + std::to_string(bytes.written) + " a " + domain(entry, world) + "\n";
   }
   std::size_t per_body = 0;
   const Json buffers = buffers_json(plan, world);
@@ -134,8 +135,8 @@ std::string plan_csv(const StepPlan& plan, const World& world) {
     const Json json = entry_json(entry, world);
     const bool kernel = !entry.transfers();
     text += json["kind"].get<std::string>() + "," + name(entry.place) + "," + std::to_string(entry.substep) + ",";
-    text +=
-        std::string(kernel ? stage_name(entry) : "") + "," + std::string(kernel ? kernel_name(entry) : buffer_name(entry)) + ",";
+    text += std::string(kernel ? stage_name(entry) : "") + "," +
+            std::string(kernel ? kernel_name(entry) : buffer_name(entry)) + ",";
     text += std::string(kernel ? phase_name(entry) : "") + "," + (entry.barrier ? "1" : "0") + "," +
             (kernel ? "" : std::to_string(entry.bytes)) + "\n";
   }
@@ -152,7 +153,8 @@ int plan(const RunOptions& options) {
   auto simulation = Simulation::make(*setup);
   if (!simulation) return fail(simulation.error());
   for (std::uint64_t step = 0; step < setup->steps; ++step)
-    if (const StepReport& report = simulation->stepper.step(simulation->world, setup->dt); !report) return fail(report.error);
+    if (const StepReport& report = simulation->stepper.step(simulation->world, setup->dt); !report)
+      return fail(report.error);
   const auto plan = simulation->stepper.plan_for(simulation->world, setup->dt);
   if (!plan) return fail(plan.error());
 

@@ -111,7 +111,8 @@ Json to_json(const Simulation& simulation, const Outcome& outcome, bool poses) {
   const scenes::Metrics& end = outcome.end;
   const Incidents& all = outcome.incidents;
   Json left_out = Json::array();
-  for (const LeftOut& item : simulation.stepper.plan().left_out) left_out.push_back({{"what", item.what}, {"why", item.why}});
+  for (const LeftOut& item : simulation.stepper.plan().left_out)
+    left_out.push_back({{"what", item.what}, {"why", item.why}});
   Json json{
       {"scene", simulation.scene.name},
       {"count", simulation.scene.count},
@@ -194,23 +195,27 @@ std::string to_text(const Simulation& simulation, const Outcome& outcome) {
   const scenes::Metrics& end = outcome.end;
   std::string text = format("%s %d: %zu bodies, %zu joints\n", simulation.scene.name.c_str(), simulation.scene.count,
                             simulation.world.body_count(), simulation.world.joint_count());
-  text += format("%llu steps of %g s, %u sub-steps, %s; integrate %s, joints %s, impulses %s\n", (unsigned long long)setup.steps,
-                 setup.dt, s.substeps, setup.precision == Precision::f64 ? "double" : "float", name(s.integrate), name(s.joints),
+  text += format("%llu steps of %g s, %u sub-steps, %s; integrate %s, joints %s, impulses %s\n",
+                 (unsigned long long)setup.steps, setup.dt, s.substeps,
+                 setup.precision == Precision::f64 ? "double" : "float", name(s.integrate), name(s.joints),
                  name(s.impulses));
   text += "device            " + device_name(simulation) + "\n";
   text += format("time a step       median %.4f ms, 99 %% within %.4f ms\n", median(outcome.times.step),
                  quantile(outcome.times.step, 0.99));
-  text += format("frames a second   %.0f to %.0f (mean of ten frames)\n", outcome.times.min_fps(), outcome.times.max_fps());
+  text +=
+      format("frames a second   %.0f to %.0f (mean of ten frames)\n", outcome.times.min_fps(), outcome.times.max_fps());
   if (s.timings) {
     text += "stages [ms]      ";
-    for (std::size_t i = 0; i < timer_count; ++i) text += format(" %s %.4f", name(Timer(i)), median(outcome.times.stages[i]));
+    for (std::size_t i = 0; i < timer_count; ++i)
+      text += format(" %s %.4f", name(Timer(i)), median(outcome.times.stages[i]));
     text += "\n";
   }
   text += format("transfers         %llu bytes a step\n", (unsigned long long)outcome.last.transfer_bytes);
   for (const LeftOut& item : simulation.stepper.plan().left_out)
     text += "left out          " + item.what + ": " + item.why + "\n";
   text += format("contacts          %u with %u points\n", outcome.last.contacts, outcome.last.points);
-  if (s.sleep) text += format("asleep            %u bodies in %u islands\n", outcome.last.asleep, outcome.last.islands_asleep);
+  if (s.sleep)
+    text += format("asleep            %u bodies in %u islands\n", outcome.last.asleep, outcome.last.islands_asleep);
   text += format("overlap           max %.3f mm, mean %.3f mm, peak %.3f mm\n", mm * end.penetration.max,
                  mm * end.penetration.mean(), mm * outcome.peaks.penetration);
   if (simulation.world.joint_count() > 0)
@@ -222,7 +227,8 @@ std::string to_text(const Simulation& simulation, const Outcome& outcome) {
   text += format("energy            %.6g J at the start, %.6g J at the end, %.6g J at most\n", outcome.start.energy(),
                  end.energy(), outcome.peaks.energy);
   text += format("lost              %ld escaped, %ld not finite\n", end.escapes.through, end.nonfinite);
-  if (end.escapes.over_the_rim) text += format("over the rim      %ld thrown out of the open box\n", end.escapes.over_the_rim);
+  if (end.escapes.over_the_rim)
+    text += format("over the rim      %ld thrown out of the open box\n", end.escapes.over_the_rim);
   return text + "hash              " + hash_text(outcome.hash) + "\n";
 }
 
@@ -237,7 +243,8 @@ void StepRows::add(std::uint64_t step, double ms, const StepReport& report) {
   text_ += format("%llu,%.9g,%.6g", (unsigned long long)step, double(step) * simulation_.setup.dt, ms);
   for (double stage : report.ms) text_ += format(",%.6g", stage);
   text_ += format(",%u,%u,%u,%llu,%.9g,%.9g,%.9g,%.9g,%.9g\n", report.pairs, report.contacts, report.points,
-                  (unsigned long long)report.transfer_bytes, world.kinetic_energy(), world.potential_energy(), p.x, p.y, p.z);
+                  (unsigned long long)report.transfer_bytes, world.kinetic_energy(), world.potential_energy(), p.x, p.y,
+                  p.z);
 }
 
 std::string unsound(const Outcome& outcome) {

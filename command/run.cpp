@@ -18,7 +18,8 @@ struct Files {
   static Result<Files> open(const RunOptions& options) {
     const bool gltf = options.gltf.ends_with(".gltf") || options.gltf.ends_with(".glb");
     if (!options.gltf.empty() && !gltf)
-      return Error{ErrorCode::bad_argument, "--gltf is '" + options.gltf + "'; give a file name that ends in .gltf or .glb."};
+      return Error{ErrorCode::bad_argument,
+                   "--gltf is '" + options.gltf + "'; give a file name that ends in .gltf or .glb."};
     Files files;
     OutputFile hash;
     const Status status = open_outputs({{"--json", options.json, files.json},
@@ -56,7 +57,8 @@ Status make_steps(Simulation& simulation, Outcome& outcome, Notes& notes) {
     const double ms = 1000 * (now() - begin);
     if (!report) {
       outcome.last = report;
-      return Error{report.error.code, "Step " + std::to_string(step) + " of " + setup.scene + " failed. " + report.error.message};
+      return Error{report.error.code,
+                   "Step " + std::to_string(step) + " of " + setup.scene + " failed. " + report.error.message};
     }
     outcome.incidents.add(report);
     if (step > setup.warmup) outcome.times.add(ms, report);
@@ -78,7 +80,8 @@ Status write_results(const RunOptions& options, Files& files, const Simulation& 
   if (notes.gltf)
     if (auto status = files.gltf.write(notes.gltf->file(options.gltf.ends_with(".glb"))); !status) return status;
   if (files.json)
-    if (auto status = files.json.write(to_json(simulation, outcome, options.poses).dump(2) + "\n"); !status) return status;
+    if (auto status = files.json.write(to_json(simulation, outcome, options.poses).dump(2) + "\n"); !status)
+      return status;
   if (options.hash)
     std::cout << hash_text(outcome.hash) << "\n";
   else if (!files.json && !files.csv.standard_output() && !files.events.standard_output())

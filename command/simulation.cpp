@@ -89,7 +89,8 @@ void Watch::after(std::uint64_t step) {
     peaks.potential_high = std::max(peaks.potential_high, potential);
   }
   if (!simulation_.scene.joints.empty())
-    peaks.joint_separation = std::max(peaks.joint_separation, scenes::joint_separation(simulation_.scene, world, poses).max);
+    peaks.joint_separation =
+        std::max(peaks.joint_separation, scenes::joint_separation(simulation_.scene, world, poses).max);
   if (last) outcome_.end = scenes::measure(simulation_.scene, world, rim_);
   if (!last && step % every != 0) return;
   peaks.penetration = std::max(peaks.penetration, scenes::penetration(simulation_.scene, world, poses).max);

@@ -50,8 +50,8 @@ struct Peaks {
 /// What steps did beside moving on, over the run: sums of StepReport's counts, and its largest sub-steps.
 struct Incidents {
   std::uint32_t most_substeps = 0;
-  std::uint64_t repeats = 0, given_up = 0;                             // times, steps
-  std::uint64_t limited = 0, frozen = 0;  // bodies, once a step
+  std::uint64_t repeats = 0, given_up = 0;  // times, steps
+  std::uint64_t limited = 0, frozen = 0;    // bodies, once a step
 
   void add(const StepReport& report);
 };
@@ -66,8 +66,8 @@ struct Outcome {
   std::uint64_t hash = 0;
 };
 
-/// Samples the extremes, and measures the end: joint gaps at every step, the energy too of a small scene, overlaps and limits every
-/// 20 steps (60 of a large one).
+/// Samples the extremes, and measures the end: joint gaps at every step, the energy too of a small scene, overlaps and
+/// limits every 20 steps (60 of a large one).
 class Watch {
  public:
   Watch(const Simulation& simulation, Outcome& outcome);

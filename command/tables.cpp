@@ -86,8 +86,8 @@ std::string to_csv(const std::vector<Measured>& all) {
   std::string text = "table,scene,count,original_max_fps,original_min_fps,max_fps,min_fps,median_ms\n";
   for (const Measured& m : all) {
     char line[200];
-    std::snprintf(line, sizeof line, "%d,%s,%d,%.2f,%.2f,%.6g,%.6g,%.6g\n", m.row.table, m.row.scene, m.row.count, m.row.max_fps,
-                  m.row.min_fps, m.max_fps, m.min_fps, m.median_ms);
+    std::snprintf(line, sizeof line, "%d,%s,%d,%.2f,%.2f,%.6g,%.6g,%.6g\n", m.row.table, m.row.scene, m.row.count,
+                  m.row.max_fps, m.row.min_fps, m.max_fps, m.min_fps, m.median_ms);
     text += line;
   }
   return text;
@@ -99,8 +99,8 @@ void print_row(const Measured& m) {
     std::printf("%8s | %21s | %23s | %9s | %s\n", "", "original, max min fps", "pcphys, max min fps", "median ms",
                 "times faster (max, min)");
   }
-  std::printf("%8d | %10.2f %10.2f | %11.0f %11.0f | %9.4f | %.0f, %.0f\n", m.row.count, m.row.max_fps, m.row.min_fps, m.max_fps,
-              m.min_fps, m.median_ms, m.max_fps / m.row.max_fps, m.min_fps / m.row.min_fps);
+  std::printf("%8d | %10.2f %10.2f | %11.0f %11.0f | %9.4f | %.0f, %.0f\n", m.row.count, m.row.max_fps, m.row.min_fps,
+              m.max_fps, m.min_fps, m.median_ms, m.max_fps / m.row.max_fps, m.min_fps / m.row.min_fps);
   std::fflush(stdout);
 }
 

@@ -79,9 +79,10 @@ int wild(const WildOptions& options) {
   const bool printed = shrinks && options.shrink_to.empty();
   ResultFiles files;
   OutputFile program;
-  const Status opened = open_outputs({{"--json", options.json, files.json},
-                                      {"--csv", options.csv, files.csv},
-                                      {printed ? "--shrink" : "--shrink-to", printed ? "-" : options.shrink_to, program}});
+  const Status opened =
+      open_outputs({{"--json", options.json, files.json},
+                    {"--csv", options.csv, files.csv},
+                    {printed ? "--shrink" : "--shrink-to", printed ? "-" : options.shrink_to, program}});
   if (!opened) return fail(opened.error());
 
   const auto summaries = play(*run, shrinks);

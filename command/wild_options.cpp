@@ -16,7 +16,8 @@ Error bad(const std::string& sentence) { return {ErrorCode::bad_argument, senten
 Status check_numbers(const WildOptions& options) {
   constexpr long long many = 1'000'000'000'000;
   if (options.seed)
-    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max() - many); !status) return status;
+    if (auto status = check_range("seed", *options.seed, 0, std::numeric_limits<long long>::max() - many); !status)
+      return status;
   if (options.count)
     if (auto status = check_range("count", *options.count, 1, many); !status) return status;
   if (auto status = check_range("threads", options.threads, 0, 256); !status) return status;
@@ -45,17 +46,21 @@ Status set_play(const WildOptions& options, wild::RunOptions& run) {
 void add_wild_options(CLI::App& app, WildOptions& options) {
   app.add_option("FAMILY", options.families, "families of scenes; all when none is given");
   app.add_flag("--list", options.list, "list the families");
-  app.add_option("--seed", options.seed, "play this one scene and print every measure; with --count or --budget the first one");
+  app.add_option("--seed", options.seed,
+                 "play this one scene and print every measure; with --count or --budget the first one");
   app.add_option("--count", options.count, "scenes of each family");
-  app.add_option("--budget", options.budget, "seconds for all families together (default: 60, without --seed and --count)");
+  app.add_option("--budget", options.budget,
+                 "seconds for all families together (default: 60, without --seed and --count)");
   app.add_option("--precision", options.precision, "float, double or both")->capture_default_str();
   app.add_option("--backend", options.backend, "cpu or gl, for all stages")->capture_default_str();
   add_lanes_and_threads(app, options.lanes, options.threads);
   app.add_option("--peers", options.peers, "the same scenes in other engines: all, none, or names with commas between")
       ->capture_default_str();
-  app.add_option("--bits", options.bits, "replay every so many seeds in other ways that must give the same bits; 0: none")
+  app.add_option("--bits", options.bits,
+                 "replay every so many seeds in other ways that must give the same bits; 0: none")
       ->capture_default_str();
-  app.add_option("--bits-gl", options.bits_gl, "replay every so many seeds on OpenGL too; 0: none")->capture_default_str();
+  app.add_option("--bits-gl", options.bits_gl, "replay every so many seeds on OpenGL too; 0: none")
+      ->capture_default_str();
   app.add_flag("--shrink", options.shrink,
                "stop at the first scene that breaks, and print the smallest one that still does as a C++ program");
   app.add_option("--shrink-to", options.shrink_to, "write that program to this file, and the rest to standard output");

@@ -34,7 +34,8 @@ int main() {
   Stepper stepper;
   double widest = 0, lean = 0, apart = 0;
   for (int step = 0; step < 240; ++step) {
-    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 1;
+    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report)
+      return std::puts(report.error.message.c_str()), 1;
     const Quat q = world.pose(*door_id)->orientation;
     widest = std::max(widest, 2 * std::atan2(std::fabs(q.y), std::fabs(q.w)));
     lean = std::max(lean, std::acos(std::min(1.0, rotate(q, {0, 1, 0}).y)));

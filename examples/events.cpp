@@ -28,11 +28,12 @@ int main() {
   Stepper stepper(settings);
   std::size_t sounds = 0, touching = 0, drawn = 0;
   for (int step = 1; step <= 240; step++) {
-    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 1;
+    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report)
+      return std::puts(report.error.message.c_str()), 1;
     const StepEvents events = stepper.events();
     for (const ContactHit& hit : events.hits)
-      std::printf("%.2f s: body %u sounds at x = %+.2f m, %.2f m/s, %.2f N s\n", step / 60.0, hit.a.index, hit.point.x, hit.speed,
-                  hit.impulse);
+      std::printf("%.2f s: body %u sounds at x = %+.2f m, %.2f m/s, %.2f N s\n", step / 60.0, hit.a.index, hit.point.x,
+                  hit.speed, hit.impulse);
     sounds += events.hits.size();
     touching += events.begun.size() - events.ended.size();
     drawn += events.moved.size();

@@ -1,4 +1,5 @@
-// A hand drags a ragdoll by its head through a gap that is too narrow for it: the ragdoll stays whole, and the hand slips.
+// A hand drags a ragdoll by its head through a gap that is too narrow for it: the ragdoll stays whole, and the hand
+// slips.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -38,10 +39,12 @@ int main() {
   Stepper stepper;
   double gap = 0;
   for (int step = 0; step < 180; ++step) {
-    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 1;
+    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report)
+      return std::puts(report.error.message.c_str()), 1;
     for (const JointId joint : doll->joints) gap = std::max(gap, *world.joint_separation(joint));
   }
   const double slipped = *world.joint_separation(*grip);
-  std::printf("The hand slipped by %.2f m; the ragdoll's joints were never open by more than %.4f mm.\n", slipped, 1e3 * gap);
+  std::printf("The hand slipped by %.2f m; the ragdoll's joints were never open by more than %.4f mm.\n", slipped,
+              1e3 * gap);
   return slipped > 1 && gap < 1e-4 ? 0 : 1;
 }

@@ -1,4 +1,5 @@
-// A cluster of stars under its own gravity, and its energy and momentum as totals over all stars, made where the stars are.
+// A cluster of stars under its own gravity, and its energy and momentum as totals over all stars, made where the stars
+// are.
 #include <cmath>
 #include <cstdio>
 
@@ -39,18 +40,20 @@ int main() {
     StepSettings settings;
     settings.set_all(place);
     Stepper stepper(settings);
-    Status ok = stepper.add_kernel(world, {.text = gravitation::text(), .parameters = {{"G", 0.005}, {"softening", 0.01}}});
+    Status ok =
+        stepper.add_kernel(world, {.text = gravitation::text(), .parameters = {{"G", 0.005}, {"softening", 0.01}}});
     if (ok) ok = stepper.add_kernel(world, {.text = totals::text()});
     if (!ok) return std::puts(ok.error().message.c_str()), 1;
     double first = 0, last = 0;
     for (int i = 0; i < 120; i++) {
-      if (const StepReport& made = stepper.step(world, 1.0 / 120); !made) return std::puts(made.error.message.c_str()), 1;
+      if (const StepReport& made = stepper.step(world, 1.0 / 120); !made)
+        return std::puts(made.error.message.c_str()), 1;
       last = double(*world.get(*energy, RowOf(1)));
       if (i == 0) first = last;
     }
     const double drift = std::abs(last / first - 1);
-    std::printf("%s: energy %.6f J, %.1e of it gained or lost; momentum %.3f kg m/s along x; hash %016llx\n", name(place), last,
-                drift, world.get(*momentum, RowOf(1))->x, (unsigned long long)world.hash());
+    std::printf("%s: energy %.6f J, %.1e of it gained or lost; momentum %.3f kg m/s along x; hash %016llx\n",
+                name(place), last, drift, world.get(*momentum, RowOf(1))->x, (unsigned long long)world.hash());
     if (!(drift < 0.01)) return 1;
     hashes[int(place)] = world.hash();
   }

@@ -35,7 +35,8 @@ int main() {
     const double frame_time = 0.004 + 0.003 * (frames % 5);  // the host's frames are not regular
     time += frame_time;
     for (waiting += frame_time; waiting >= step_time; waiting -= step_time) {
-      if (const StepReport& report = stepper.step(world, step_time); !report) return std::puts(report.error.message.c_str()), 1;
+      if (const StepReport& report = stepper.step(world, step_time); !report)
+        return std::puts(report.error.message.c_str()), 1;
       ++steps;
       last = now;
       now = world.pose(*id)->position;
@@ -46,7 +47,8 @@ int main() {
     lowest_jump = std::min(lowest_jump, shown.y - drawn.y);
     drawn = shown;
   }
-  std::printf("%d frames, %d steps, box drawn at %.3f m, largest move in a frame %.3f m\n", frames, steps, drawn.y, -lowest_jump);
+  std::printf("%d frames, %d steps, box drawn at %.3f m, largest move in a frame %.3f m\n", frames, steps, drawn.y,
+              -lowest_jump);
   // it falls 1.5 m and is at most 5.5 m/s fast: no frame of 16 ms may show a jump larger than that
   return begun >= 1 && drawn.y > 0.48 && drawn.y < 0.52 && lowest_jump > -0.1 ? 0 : 1;
 }

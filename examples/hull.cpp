@@ -9,7 +9,8 @@ using namespace pcphys;
 
 int main() {
   // A ramp 2 m long, 1 m wide and high. Points inside, on faces or given twice do no harm.
-  const std::vector<Vec3> points{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}, {2, 0, 1}, {0, 1, 1}, {0.5, 0.2, 0.5}, {2, 0, 0}};
+  const std::vector<Vec3> points{{0, 0, 0}, {2, 0, 0}, {0, 1, 0},       {0, 0, 1},
+                                 {2, 0, 1}, {0, 1, 1}, {0.5, 0.2, 0.5}, {2, 0, 0}};
   const auto wedge = make_hull(points);
   if (!wedge) return std::puts(wedge.error().message.c_str()), 1;
   std::printf("%zu vertices, %zu faces, %.3f m^3\n", wedge->vertices().size(), wedge->face_count(), wedge->volume());
@@ -38,8 +39,8 @@ int main() {
     for (const Vec3& v : wedge->vertices()) lowest = std::fmin(lowest, transform(pose, v).y);
     fastest = std::fmax(fastest, length(*world.velocity(id)));
   }
-  std::printf("ten wedges of %.0f kg: lowest corner %.4f m, fastest %.4f m/s\n", world.mass_properties(ids[0])->mass, lowest,
-              fastest);
+  std::printf("ten wedges of %.0f kg: lowest corner %.4f m, fastest %.4f m/s\n", world.mass_properties(ids[0])->mass,
+              lowest, fastest);
 
   const auto flat = make_hull(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}});
   std::puts(flat.error().message.c_str());

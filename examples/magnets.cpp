@@ -1,4 +1,5 @@
-// Forces between all pairs of bodies, on the CPU and on the GPU, with the same bits: magnets that pull each other together.
+// Forces between all pairs of bodies, on the CPU and on the GPU, with the same bits: magnets that pull each other
+// together.
 #include <cstdio>
 
 #include "magnet.h"
@@ -26,10 +27,12 @@ int main() {
         stepper.add_kernel(world, {.text = magnet::text(), .parameters = {{"strength", 2e-3}, {"softening", 0.01}}});
     if (!added) return std::puts(added.error().message.c_str()), 1;
     for (int i = 0; i < 60; i++)
-      if (const StepReport& made = stepper.step(world, 1.0 / 60); !made) return std::puts(made.error.message.c_str()), 1;
+      if (const StepReport& made = stepper.step(world, 1.0 / 60); !made)
+        return std::puts(made.error.message.c_str()), 1;
     const BodyId corner = world.bodies().front();
-    std::printf("%s: a corner has moved to (%.3f, %.3f, %.3f) m, hash %016llx\n", name(place), world.pose(corner)->position.x,
-                world.pose(corner)->position.y, world.pose(corner)->position.z, (unsigned long long)world.hash());
+    std::printf("%s: a corner has moved to (%.3f, %.3f, %.3f) m, hash %016llx\n", name(place),
+                world.pose(corner)->position.x, world.pose(corner)->position.y, world.pose(corner)->position.z,
+                (unsigned long long)world.hash());
     hashes[int(place)] = world.hash();
   }
   return hashes[0] == hashes[1] ? 0 : 1;

@@ -39,14 +39,18 @@ int main() {
   Stepper stepper;
   double full_speed = 0;
   for (int step = 1; step <= 240; ++step) {
-    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 1;
+    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report)
+      return std::puts(report.error.message.c_str()), 1;
     if (full_speed == 0 && world.angular_velocity(*wheel_id)->y > 9.99) full_speed = step / 60.0;
     if (step == 180)
       if (const Status braked = world.set_motor(*axle_id, {0, 50}); !braked) return 1;  // a brake now
   }
-  const double expected = 10 * world.mass_properties(*wheel_id)->moments.y / 1, sag = 1 - world.pose(*weight_id)->position.y;
-  std::printf("The wheel ran at 10 rad/s after %.2f s (%.2f expected), stands now at %.4f rad/s; the weight hangs %.1f um low.\n",
-              full_speed, expected, world.angular_velocity(*wheel_id)->y, 1e6 * sag);
+  const double expected = 10 * world.mass_properties(*wheel_id)->moments.y / 1,
+               sag = 1 - world.pose(*weight_id)->position.y;
+  std::printf(
+      "The wheel ran at 10 rad/s after %.2f s (%.2f expected), stands now at %.4f rad/s; the weight hangs %.1f um "
+      "low.\n",
+      full_speed, expected, world.angular_velocity(*wheel_id)->y, 1e6 * sag);
   return std::fabs(full_speed - expected) < 0.04 && std::fabs(world.angular_velocity(*wheel_id)->y) < 1e-3 &&
                  std::fabs(sag - 2 * 9.81 / 1e6) < 1e-6
              ? 0

@@ -27,10 +27,13 @@ int main() {
     def.mass = 10;
     const auto body = world.create_body(def);
     Stepper stepper({.integrate = place, .joints = place, .impulses = place});
-    const KernelDef kernel = {.text = rocket::text(), .parameters = {{"exhaust_speed", 300.0}, {"flow", 0.5}}};  // m/s, kg/s
-    if (const Status added = stepper.add_kernel(world, kernel); !added) return std::puts(added.error().message.c_str()), 1;
+    // m/s, kg/s
+    const KernelDef kernel = {.text = rocket::text(), .parameters = {{"exhaust_speed", 300.0}, {"flow", 0.5}}};
+    if (const Status added = stepper.add_kernel(world, kernel); !added)
+      return std::puts(added.error().message.c_str()), 1;
     for (int i = 0; i < 240; i++)
-      if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 1;
+      if (const StepReport& report = stepper.step(world, 1.0 / 60); !report)
+        return std::puts(report.error.message.c_str()), 1;
     hashes[int(place)] = world.hash();
     std::printf("%s: height %.3f m, fuel %.3f kg, hash %016llx\n", name(place), world.pose(*body)->position.y,
                 double(*world.get(*fuel, *body)), (unsigned long long)hashes[int(place)]);

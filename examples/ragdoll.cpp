@@ -37,7 +37,8 @@ int main() {
 
   Stepper stepper;
   for (int step = 0; step < 300; ++step)
-    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 1;
+    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report)
+      return std::puts(report.error.message.c_str()), 1;
 
   double apart = 0, lowest = 1;
   for (JointId joint : world.joints()) apart = std::max(apart, *world.joint_separation(joint));

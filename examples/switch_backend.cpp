@@ -22,7 +22,8 @@ template <class Choose> std::uint64_t run(const char* label, Choose choose) {
   for (int step = 0; step < steps; ++step) {
     choose(step, settings);
     if (const Status status = stepper.configure(settings); !status) return std::puts(status.error().message.c_str()), 0;
-    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report) return std::puts(report.error.message.c_str()), 0;
+    if (const StepReport& report = stepper.step(world, 1.0 / 60); !report)
+      return std::puts(report.error.message.c_str()), 0;
   }
   std::printf("%-30s 0x%016llx\n", label, (unsigned long long)world.hash());
   return world.hash();

@@ -26,8 +26,10 @@ btScalar geometric_friction(const btCollisionObject* a, const btCollisionObject*
 std::unique_ptr<btCollisionShape> make_shape(const ShapeDef& shape) {
   switch (shape.kind) {
     case ShapeKind::sphere: return std::make_unique<btSphereShape>(btScalar(shape.size.x));
-    case ShapeKind::capsule: return std::make_unique<btCapsuleShape>(btScalar(shape.size.x), btScalar(2 * shape.size.y));
-    case ShapeKind::cylinder: return std::make_unique<btCylinderShape>(to_bullet(Vec3{shape.size.x, shape.size.y, shape.size.x}));
+    case ShapeKind::capsule:
+      return std::make_unique<btCapsuleShape>(btScalar(shape.size.x), btScalar(2 * shape.size.y));
+    case ShapeKind::cylinder:
+      return std::make_unique<btCylinderShape>(to_bullet(Vec3{shape.size.x, shape.size.y, shape.size.x}));
     case ShapeKind::box: return std::make_unique<btBoxShape>(to_bullet(shape.size));
     case ShapeKind::hull: {
       auto hull = std::make_unique<btConvexHullShape>();
@@ -194,7 +196,8 @@ class Bullet : public Peer {
     btRigidBody &a = rigid(joint.a), &b = rigid(joint.b);
     const btTransform frame_a = to_bullet(joint.frame_a), frame_b = to_bullet(joint.frame_b);
     switch (kind(joint.freedom)) {
-      case JointKind::ball: return std::make_unique<btPoint2PointConstraint>(a, b, frame_a.getOrigin(), frame_b.getOrigin());
+      case JointKind::ball:
+        return std::make_unique<btPoint2PointConstraint>(a, b, frame_a.getOrigin(), frame_b.getOrigin());
       case JointKind::cone_twist: {
         auto cone = std::make_unique<btConeTwistConstraint>(a, b, frame_a, frame_b);
         cone->setLimit(btScalar(joint.freedom.cone), btScalar(joint.freedom.cone), btScalar(joint.freedom.twist));

@@ -85,14 +85,18 @@ Result<Description> Description::of(const World& world, std::span<const BodyId> 
     index[id] = int(result.bodies.size());
     result.bodies.push_back(std::move(*body));
   }
-  if (!world.springs().empty()) return Error{ErrorCode::unavailable, "Peers are given no springs: leave them or the peers out."};
+  if (!world.springs().empty())
+    return Error{ErrorCode::unavailable, "Peers are given no springs: leave them or the peers out."};
   for (JointId id : world.joints()) {
     const JointDef def = *world.joint(id);
     if (def.motor.torque > 0 || def.spring.stiffness > 0 || def.yields())
-      return Error{ErrorCode::unavailable, "Peers are given no motors, springs and largest forces of joints: leave them or the peers out."};
+      return Error{ErrorCode::unavailable,
+                   "Peers are given no motors, springs and largest forces of joints: leave them or the peers out."};
     if (!index.contains(def.a) || !index.contains(def.b))
-      return Error{ErrorCode::unavailable, "A joint holds a body that the peer was not given: list all bodies of the world."};
-    result.joints.push_back({index[def.a], index[def.b], def.frame_a, def.frame_b, def.freedom, def.collide, def.spring.damping});
+      return Error{ErrorCode::unavailable,
+                   "A joint holds a body that the peer was not given: list all bodies of the world."};
+    result.joints.push_back(
+        {index[def.a], index[def.b], def.frame_a, def.frame_b, def.freedom, def.collide, def.spring.damping});
   }
   result.untranslated = notes(world, result);
   return result;
@@ -111,7 +115,8 @@ bool Description::collides(std::size_t body) const {
   return std::any_of(shapes.begin(), shapes.end(), [](const ShapeDef& shape) { return shape.filter.mask != 0; });
 }
 
-void change_wrench(std::vector<Body>& bodies, std::vector<std::size_t>& pushed, std::size_t body, const Wrench& wrench) {
+void change_wrench(std::vector<Body>& bodies, std::vector<std::size_t>& pushed, std::size_t body,
+                   const Wrench& wrench) {
   bodies[body].wrench = wrench;
   if (bodies[body].dynamic && std::find(pushed.begin(), pushed.end(), body) == pushed.end()) pushed.push_back(body);
 }

@@ -76,7 +76,9 @@ void change_wrench(std::vector<Body>& bodies, std::vector<std::size_t>& pushed, 
 bool may_touch(const Filter& a, const Filter& b);
 
 /// a then b: the frame b, given in a, in a's parent.
-inline Pose operator*(const Pose& a, const Pose& b) { return {transform(a, b.position), a.orientation * b.orientation}; }
+inline Pose operator*(const Pose& a, const Pose& b) {
+  return {transform(a, b.position), a.orientation * b.orientation};
+}
 inline Pose inverse(const Pose& p) {
   const Quat q = conjugate(p.orientation);
   return {-rotate(q, p.position), q};

@@ -15,7 +15,8 @@ Result<std::unique_ptr<Peer>> make_ode(const Description& description, const Opt
 std::string ode_version();
 
 enum class MujocoIntegrator { euler, rk4 };
-Result<std::unique_ptr<Peer>> make_mujoco(const Description& description, const Options& options, MujocoIntegrator integrator);
+Result<std::unique_ptr<Peer>> make_mujoco(const Description& description, const Options& options,
+                                          MujocoIntegrator integrator);
 std::string mujoco_version();
 
 }  // namespace pcphys::peers

@@ -29,7 +29,8 @@ struct DeleteFiles {
   }
 };
 
-/// MuJoCo reports through functions of the process: warnings are counted in its data, errors are thrown and caught here.
+/// MuJoCo reports through functions of the process: warnings are counted in its data, errors are thrown and caught
+/// here.
 void take_reports() {
   mju_user_warning = [](const char*) {};
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };
@@ -39,12 +40,14 @@ Error gave_up(const std::string& why) { return {ErrorCode::unavailable, "MuJoCo 
 
 class Mujoco : public Peer {
  public:
-  Mujoco(const Description& description, const Options& options) : description_(description), wanted_(options.substeps) {
+  Mujoco(const Description& description, const Options& options)
+      : description_(description), wanted_(options.substeps) {
     untranslated_ = description.untranslated;
   }
 
   Status build(const Options& options, MujocoIntegrator integrator) {
-    if (description_.has_hulls()) return Error{ErrorCode::unavailable, "Hulls are not translated for MuJoCo; leave it out."};
+    if (description_.has_hulls())
+      return Error{ErrorCode::unavailable, "Hulls are not translated for MuJoCo; leave it out."};
     std::string attributes = integrator == MujocoIntegrator::rk4 ? "integrator='RK4'" : "integrator='Euler'";
     if (options.iterations > 0) attributes += " iterations='" + std::to_string(options.iterations) + "'";
     made_ = make_mujoco_model(description_, attributes);
@@ -77,11 +80,15 @@ class Mujoco : public Peer {
         mj_step(model_.get(), data_.get());
         status = look_at_warnings();
       }
-    } catch (const std::runtime_error& error) { status = gave_up(error.what()); }
+    } catch (const std::runtime_error& error) {
+      status = gave_up(error.what());
+    }
     stepping_ = nullptr;
     return status;
   }
-  int substeps(double dt) const override { return wanted_ > 0 ? wanted_ : std::max(1, int(std::ceil(dt / own_step - 1e-9))); }
+  int substeps(double dt) const override {
+    return wanted_ > 0 ? wanted_ : std::max(1, int(std::ceil(dt / own_step - 1e-9)));
+  }
   int iterations() const override { return model_->opt.iterations; }
 
   Pose pose(std::size_t body) const override {
@@ -136,7 +143,9 @@ class Mujoco : public Peer {
       if (!model_) return gave_up(message);
       data_.reset(mj_makeData(model_.get()));
       if (!data_) return gave_up("no memory for its state");
-    } catch (const std::runtime_error& error) { return gave_up(error.what()); }
+    } catch (const std::runtime_error& error) {
+      return gave_up(error.what());
+    }
     return {};
   }
 
@@ -271,7 +280,8 @@ thread_local const Mujoco* Mujoco::stepping_ = nullptr;
 
 std::string mujoco_version() { return mj_versionString(); }
 
-Result<std::unique_ptr<Peer>> make_mujoco(const Description& description, const Options& options, MujocoIntegrator integrator) {
+Result<std::unique_ptr<Peer>> make_mujoco(const Description& description, const Options& options,
+                                          MujocoIntegrator integrator) {
   auto peer = std::make_unique<Mujoco>(description, options);
   if (auto status = peer->build(options, integrator); !status) return status.error();
   return std::unique_ptr<Peer>(std::move(peer));

@@ -35,7 +35,9 @@ std::string text(double value) {
 }
 std::string text(Vec3 v) { return text(v.x) + " " + text(v.y) + " " + text(v.z); }
 std::string text(Quat q) { return text(q.w) + " " + text(q.x) + " " + text(q.y) + " " + text(q.z); }
-std::string text(const Pose& pose) { return " pos='" + text(pose.position) + "' quat='" + text(pose.orientation) + "'"; }
+std::string text(const Pose& pose) {
+  return " pos='" + text(pose.position) + "' quat='" + text(pose.orientation) + "'";
+}
 
 class Writer {
  public:
@@ -133,7 +135,8 @@ class Writer {
       if (body.dynamic) bodies_ += "<freejoint/>";
     }
     if (body.dynamic)
-      bodies_ += "<inertial pos='0 0 0' mass='" + text(body.mass.mass) + "' diaginertia='" + text(body.mass.moments) + "'/>";
+      bodies_ +=
+          "<inertial pos='0 0 0' mass='" + text(body.mass.mass) + "' diaginertia='" + text(body.mass.moments) + "'/>";
     for (const ShapeDef& shape : body.shapes) write_shape(shape, body.material);
     for (int child : children_[std::size_t(index)]) write_body(child);
     bodies_ += "</body>";
@@ -169,11 +172,13 @@ class Writer {
       const AngleRange range = angles[std::size_t(axis)];
       if (range.locked() && range.lower == 0) continue;
       const double sign = link.flipped ? -1 : 1;
-      const Vec3 along = rotate(own_frame.orientation, {axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0});
-      bodies_ += "<joint type='hinge' name='" + joint_name(link.joint, axis) + "'" + place + " axis='" + text(along) + "'";
+      const Vec3 along =
+          rotate(own_frame.orientation, {axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0});
+      bodies_ +=
+          "<joint type='hinge' name='" + joint_name(link.joint, axis) + "'" + place + " axis='" + text(along) + "'";
       if (!range.free())
-        bodies_ +=
-            " limited='true' range='" + text(std::max(range.lower, -largest)) + " " + text(std::min(range.upper, largest)) + "'";
+        bodies_ += " limited='true' range='" + text(std::max(range.lower, -largest)) + " " +
+                   text(std::min(range.upper, largest)) + "'";
       bodies_ += damping(j) + "/>";
     }
   }
@@ -239,8 +244,10 @@ class Writer {
         }))
       notes.push_back("groups of filters have no effect");
     if (cones_)
-      notes.push_back("a cone limits the whole rotation of the joint, twist included; the twist has no limit of its own");
-    if (hinges_) notes.push_back("pitch, yaw and roll are three hinges in a row, which agree with pcphys to first order");
+      notes.push_back(
+          "a cone limits the whole rotation of the joint, twist included; the twist has no limit of its own");
+    if (hinges_)
+      notes.push_back("pitch, yaw and roll are three hinges in a row, which agree with pcphys to first order");
     if (hinges_ && description_.has_damping()) notes.push_back("damping acts on pitch, yaw and roll one by one");
     if (loop_limits_) notes.push_back("joints that close a loop have no limits");
     if (std::any_of(description_.joints.begin(), description_.joints.end(), [](const Joint& j) { return j.collide; }))

@@ -87,8 +87,12 @@ class Ode : public Peer {
     const dReal *p = dBodyGetPosition(ids_[body]), *q = dBodyGetQuaternion(ids_[body]);
     return {{p[0], p[1], p[2]}, {q[1], q[2], q[3], q[0]}};
   }
-  Vec3 velocity(std::size_t body) const override { return vector(ids_[body] ? dBodyGetLinearVel(ids_[body]) : nullptr); }
-  Vec3 angular_velocity(std::size_t body) const override { return vector(ids_[body] ? dBodyGetAngularVel(ids_[body]) : nullptr); }
+  Vec3 velocity(std::size_t body) const override {
+    return vector(ids_[body] ? dBodyGetLinearVel(ids_[body]) : nullptr);
+  }
+  Vec3 angular_velocity(std::size_t body) const override {
+    return vector(ids_[body] ? dBodyGetAngularVel(ids_[body]) : nullptr);
+  }
   MassProperties mass_properties(std::size_t body) const override {
     if (!ids_[body]) return {};
     dMass mass;
@@ -136,7 +140,8 @@ class Ode : public Peer {
   void touch(dGeomID a, dGeomID b) {
     const dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
     if (body_a == body_b) return;
-    const auto &first = *static_cast<const Contact*>(dGeomGetData(a)), &second = *static_cast<const Contact*>(dGeomGetData(b));
+    const auto &first = *static_cast<const Contact*>(dGeomGetData(a)),
+               &second = *static_cast<const Contact*>(dGeomGetData(b));
     if (!may_touch(first.shape->filter, second.shape->filter)) return;
     if (body_a && body_b && held_apart(body_a, body_b)) return;
     std::array<dContact, points_a_pair> points;
@@ -183,7 +188,8 @@ class Ode : public Peer {
     if (body.dynamic) {
       id = dBodyCreate(world_);
       dMass mass;
-      dMassSetParameters(&mass, body.mass.mass, 0, 0, 0, body.mass.moments.x, body.mass.moments.y, body.mass.moments.z, 0, 0, 0);
+      dMassSetParameters(&mass, body.mass.mass, 0, 0, 0, body.mass.moments.x, body.mass.moments.y, body.mass.moments.z,
+                         0, 0, 0);
       dBodySetMass(id, &mass);
       place(id, body.pose);
       dBodySetLinearVel(id, body.velocity.x, body.velocity.y, body.velocity.z);
@@ -348,9 +354,9 @@ Result<std::unique_ptr<Peer>> make_ode(const Description& description, const Opt
   if (description.has_hulls()) return Error{ErrorCode::unavailable, "Hulls are not translated for ODE; leave it out."};
   const std::size_t rows = expected_rows(description);
   if (step == OdeStep::dantzig && rows > most_direct_rows)
-    return Error{ErrorCode::unavailable, "ODE's direct step takes time with the cube of its rows; this scene may have " +
-                                             std::to_string(rows) + ", and it runs up to " + std::to_string(most_direct_rows) +
-                                             "."};
+    return Error{ErrorCode::unavailable,
+                 "ODE's direct step takes time with the cube of its rows; this scene may have " + std::to_string(rows) +
+                     ", and it runs up to " + std::to_string(most_direct_rows) + "."};
   return std::unique_ptr<Peer>(std::make_unique<Ode>(description, options, step));
 }
 

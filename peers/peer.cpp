@@ -38,12 +38,14 @@ std::vector<Entry> list() {
   rk4 = [](const Description& d, const Options& o) { return make_mujoco(d, o, MujocoIntegrator::rk4); };
   mujoco_is = mujoco_version();
 #endif
-  return {
-      entry({"bullet", "Bullet", "sequential impulses", "libbullet-dev", "float", false, {}}, bullet, bullet_is),
-      entry({"ode", "ODE", "QuickStep", "libode-dev", "double", false, {}}, quick, ode_is),
-      entry({"ode-dantzig", "ODE", "world step with Dantzig's solver", "libode-dev", "double", false, {}}, dantzig, ode_is),
-      entry({"mujoco", "MuJoCo", "Newton, semi-implicit Euler", "libmujoco-dev", "double", false, {}}, euler, mujoco_is),
-      entry({"mujoco-rk4", "MuJoCo", "Newton, Runge-Kutta of order 4", "libmujoco-dev", "double", false, {}}, rk4, mujoco_is)};
+  return {entry({"bullet", "Bullet", "sequential impulses", "libbullet-dev", "float", false, {}}, bullet, bullet_is),
+          entry({"ode", "ODE", "QuickStep", "libode-dev", "double", false, {}}, quick, ode_is),
+          entry({"ode-dantzig", "ODE", "world step with Dantzig's solver", "libode-dev", "double", false, {}}, dantzig,
+                ode_is),
+          entry({"mujoco", "MuJoCo", "Newton, semi-implicit Euler", "libmujoco-dev", "double", false, {}}, euler,
+                mujoco_is),
+          entry({"mujoco-rk4", "MuJoCo", "Newton, Runge-Kutta of order 4", "libmujoco-dev", "double", false, {}}, rk4,
+                mujoco_is)};
 }
 
 const std::vector<Entry>& entries() {
@@ -77,13 +79,15 @@ Result<std::unique_ptr<Peer>> make(std::string_view variant, const World& world,
     names += (names.empty() ? "" : ", ") + std::string(entry.variant.name);
     if (entry.variant.name != variant) continue;
     if (!entry.make)
-      return Error{ErrorCode::unavailable, std::string(entry.variant.engine) + " was not found when pcphys was built; install " +
+      return Error{ErrorCode::unavailable, std::string(entry.variant.engine) +
+                                               " was not found when pcphys was built; install " +
                                                std::string(entry.variant.package) + " and configure again."};
     const auto description = Description::of(world, bodies);
     if (!description) return description.error();
     return entry.make(*description, options);
   }
-  return Error{ErrorCode::unknown_name, "There is no peer '" + std::string(variant) + "'; choose one of " + names + "."};
+  return Error{ErrorCode::unknown_name,
+               "There is no peer '" + std::string(variant) + "'; choose one of " + names + "."};
 }
 
 }  // namespace pcphys::peers

@@ -40,6 +40,8 @@ void build(Builder& builder, Vec3 direction, Quat orientation, Vec3 push) {
 
 void build_chain(Builder& builder) { build(builder, {0, -1, 0}, {}, {1, 0, 0}); }
 
-void build_chainswing(Builder& builder) { build(builder, {1, 0, 0}, axis_angle({0, 0, 1}, 0.5 * std::numbers::pi), {}); }
+void build_chainswing(Builder& builder) {
+  build(builder, {1, 0, 0}, axis_angle({0, 0, 1}, 0.5 * std::numbers::pi), {});
+}
 
 }  // namespace pcphys::scenes

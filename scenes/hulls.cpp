@@ -55,7 +55,8 @@ void build_hulls(Builder& builder) {
     const int cell = i % per_layer;
     def.pose.position = {(cell % n - 0.5 * (n - 1)) * spacing, 1.0 + spacing * (i / per_layer),
                          (cell / n - 0.5 * (n - 1)) * spacing};
-    const double a = random.between(-1, 1), b = random.between(-1, 1), c = random.between(-1, 1), d = random.between(0.1, 1);
+    const double a = random.between(-1, 1), b = random.between(-1, 1), c = random.between(-1, 1),
+                 d = random.between(0.1, 1);
     const double l = std::sqrt(a * a + b * b + c * c + d * d);
     def.pose.orientation = {a / l, b / l, c / l, d / l};
     builder.add(def);

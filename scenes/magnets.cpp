@@ -1,4 +1,5 @@
-// Magnetic balls in the open-lidded box: like poles push each other, unlike ones pull. The force is a kernel, the pole a property of the scene's own.
+// Magnetic balls in the open-lidded box: like poles push each other, unlike ones pull. The force is a kernel, the pole
+// a property of the scene's own.
 #include "builder.h"
 #include "examples/magnet.h"
 

@@ -37,15 +37,17 @@ LimitExcess limit_excess(const JointDef& joint, Quat qa, Quat qb) {
     const double cone = outside(is.swing, 0, freedom.cone);
     return {std::max(cone, outside(is.roll, -freedom.twist, freedom.twist)), cone};
   }
-  return {std::max({outside(is.roll, freedom.lower.x, freedom.upper.x), outside(is.pitch, freedom.lower.y, freedom.upper.y),
-                    outside(is.yaw, freedom.lower.z, freedom.upper.z)}),
-          0};
+  return {
+      std::max({outside(is.roll, freedom.lower.x, freedom.upper.x), outside(is.pitch, freedom.lower.y, freedom.upper.y),
+                outside(is.yaw, freedom.lower.z, freedom.upper.z)}),
+      0};
 }
 
 namespace {
 
 /// The scene's joints with the poses of their bodies.
-template <class Action> void for_each_joint(const Scene& scene, const World& world, std::span<const Pose> poses, Action action) {
+template <class Action>
+void for_each_joint(const Scene& scene, const World& world, std::span<const Pose> poses, Action action) {
   std::vector<const Pose*> of;  // by index of the body's id
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const std::size_t index = scene.bodies[i].id.index;
@@ -54,7 +56,8 @@ template <class Action> void for_each_joint(const Scene& scene, const World& wor
   }
   const auto pose = [&](BodyId body) { return body.index < of.size() && of[body.index] ? *of[body.index] : Pose{}; };
   for (JointId id : scene.joints)
-    if (const auto joint = world.joint(id)) action(*joint, pose(joint->a), pose(joint->b));  // the ground has no pose of its own
+    // the ground has no pose of its own
+    if (const auto joint = world.joint(id)) action(*joint, pose(joint->a), pose(joint->b));
 }
 
 /// Beyond the walls of the open-lidded box, or below its floor.

@@ -125,7 +125,8 @@ class Container {
   static std::uint64_t key(BodyId id) { return std::uint64_t(id.generation) << 32 | id.index; }
   static std::uint64_t pair_key(std::uint64_t a, std::uint64_t b) { return std::min(a, b) << 32 | std::max(a, b); }
   static std::uint64_t cell_key(Cell c) {
-    return (std::uint64_t(c.x & 0x1fffff) << 42) | (std::uint64_t(c.y & 0x1fffff) << 21) | std::uint64_t(c.z & 0x1fffff);
+    return (std::uint64_t(c.x & 0x1fffff) << 42) | (std::uint64_t(c.y & 0x1fffff) << 21) |
+           std::uint64_t(c.z & 0x1fffff);
   }
 
   bool counts(std::size_t i) const {
@@ -165,7 +166,8 @@ class Container {
 
   double overlap_of(std::size_t i, std::size_t k) const {
     const ShapeDef &a = scene_.bodies[i].shape, &b = scene_.bodies[k].shape;
-    if (a.kind == ShapeKind::hull && b.kind == ShapeKind::hull) return overlap(a.convex, poses_[i], b.convex, poses_[k]);
+    if (a.kind == ShapeKind::hull && b.kind == ShapeKind::hull)
+      return overlap(a.convex, poses_[i], b.convex, poses_[k]);
     return a.size.x + b.size.x - distance(core(a, poses_[i]), core(b, poses_[k]));
   }
 

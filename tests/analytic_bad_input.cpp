@@ -127,8 +127,8 @@ TEST_CASE("C11: degenerate shapes and impossible masses are refused, and nobody 
     CHECK(n.world().snapshot() == snapshot);
     CHECK(n.world().body_count() == n.count);
     // mass properties that are set later are held to the same
-    for (const MassProperties& m : {MassProperties{0, {1, 1, 1}}, MassProperties{-1, {1, 1, 1}}, MassProperties{1, {0, 1, 1}},
-                                    MassProperties{1, {1, 1, 2.1}}})
+    for (const MassProperties& m : {MassProperties{0, {1, 1, 1}}, MassProperties{-1, {1, 1, 1}},
+                                    MassProperties{1, {0, 1, 1}}, MassProperties{1, {1, 1, 2.1}}})
       CHECK(code(n.world().set_mass_properties(n.bodies[1], m)) == ErrorCode::bad_mass);
     CHECK(code(n.world().set_mass_properties(n.bodies[1], {not_a_number, {1, 1, 1}})) == ErrorCode::not_finite);
     CHECK(n.world().hash() == hash);

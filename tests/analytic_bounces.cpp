@@ -207,7 +207,9 @@ TEST_CASE("A16(ii): oblique collisions of two spheres from 0.05 m apart") {
     const double energy = run.world.kinetic_energy();
     run.step(1.0 / 1200, std::lround(0.05 / std::cos(beta) / 2 * 1200) + 2);
     const Momenta later = momenta_stored(run.world);
-    const auto at = [&](const char* x, const char* y, const char* z) { return Vec3{csv.at(i, x), csv.at(i, y), csv.at(i, z)}; };
+    const auto at = [&](const char* x, const char* y, const char* z) {
+      return Vec3{csv.at(i, x), csv.at(i, y), csv.at(i, z)};
+    };
     const double speed = std::max({2.0, length(at("v1x", "v1y", "v1z")), length(at("v2x", "v2y", "v2z"))});
     const double error = std::max({length(*run.world.velocity(a) - at("v1x", "v1y", "v1z")) / speed,
                                    length(*run.world.velocity(b) - at("v2x", "v2y", "v2z")) / speed,

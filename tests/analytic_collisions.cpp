@@ -21,11 +21,14 @@ TEST_CASE("A16(i), A17(i), A18: every impact of the tables and a struck rod, str
 
 // The step sees a gap of a few last places of the positions; what it leaves of the closing speed, and how far the
 // bodies move within the step, bound the error from both sides: least at dt = 1e-8 s.
-TEST_CASE("A16: the same collisions through a whole step, gap and all") { check_rows(rows_of("A16", {Precision::f64}, 1e-8)); }
+TEST_CASE("A16: the same collisions through a whole step, gap and all") {
+  check_rows(rows_of("A16", {Precision::f64}, 1e-8));
+}
 
 TEST_CASE("A16: momentum through an impact in mid-step") {
   for (const Mode& mode : precisions())
-    for (const char* variant : {"m2 = 1 kg", "m2 = 1e6 kg"}) check_rows(rows_of("A16", mode, {}, variant), metric("momentum"));
+    for (const char* variant : {"m2 = 1 kg", "m2 = 1e6 kg"})
+      check_rows(rows_of("A16", mode, {}, variant), metric("momentum"));
 }
 
 // ---- A21(b) --------------------------------------------------------------------------------------------
@@ -70,10 +73,11 @@ double worst_slide(const Mode& mode, std::uint32_t substeps) {
   double worst = 0;
   for (const Slide& s : slides)
     for (double dt : {1.0 / 60, 1.0 / 240, 1.0 / 1200}) {
-      const double error = std::fabs(slide(mode, s.friction, dt, substeps, true) - 0.5 * s.acceleration) / (s.acceleration * dt);
+      const double error =
+          std::fabs(slide(mode, s.friction, dt, substeps, true) - 0.5 * s.acceleration) / (s.acceleration * dt);
       worst = std::max(worst, error);
-      MESSAGE("A21b " << mode.name() << ", settled, " << substeps << " sub-steps, mu " << s.friction << ", dt " << dt << ": "
-                      << error << " of the must");
+      MESSAGE("A21b " << mode.name() << ", settled, " << substeps << " sub-steps, mu " << s.friction << ", dt " << dt
+                      << ": " << error << " of the must");
     }
   return worst;
 }

@@ -96,12 +96,14 @@ TEST_CASE("errata (v): a pin turns a needle by I^-1 (t x D), not (I^-1 t) x D") 
     // One step stops the pin's point dead: the impulse that a 3 x 3 block with the right lever finds.
     Needle moving(mode, arm, {}, {1, -2, 0.5});
     moving.run.step(mode.is_double() ? 1e-12 : 1e-7);
-    const PropertyView rate = *moving.run.world.view("displacement_rate"), spin = *moving.run.world.view("angular_momentum");
+    const PropertyView rate = *moving.run.world.view("displacement_rate"),
+                       spin = *moving.run.world.view("angular_momentum");
     const Vec3 u{rate.at(1, 0), rate.at(1, 1), rate.at(1, 2)};
     const Vec3 turn = scaled(inverse, {spin.at(1, 0), spin.at(1, 1), spin.at(1, 2)});
     CHECK(length(u + cross(turn, arm)) <= (mode.is_double() ? 1e-9 : 1e-4));
 
-    // The gap of 23 mm closes, and stays closed; turn by turn the published lever opens it (analytic_errata_limits.cpp).
+    // The gap of 23 mm closes, and stays closed; turn by turn the published lever opens it
+    // (analytic_errata_limits.cpp).
     Needle open(mode, arm, d, {});
     double gap = *open.run.world.joint_separation(open.joint);
     CHECK(gap == doctest::Approx(0.0229).epsilon(0.01));
@@ -175,7 +177,8 @@ TEST_CASE("errata (vi): what falls in drag falls by the exact term; by 1 - dt F 
   }
 }
 
-TEST_CASE("errata (vi): angular drag takes exp(-F t) of a box's angular momentum and leaves its direction, at any dt F") {
+TEST_CASE(
+    "errata (vi): angular drag takes exp(-F t) of a box's angular momentum and leaves its direction, at any dt F") {
   const Vec3 moments{0.2, 0.4, 0.52}, spin{4, 3, 2}, start = scaled(moments, spin);
   for (const Mode& mode : precisions()) {
     CAPTURE(mode.name());

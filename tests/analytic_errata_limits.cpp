@@ -1,6 +1,7 @@
-// Pins the rest of the errata, each beside the published formula: (i) the corners of one manifold share an impulse, (iii.3)
-// factors of two between a rotation and its logarithm, (iii.4) its sign and the range of spins, (v) an open pin closes as a block,
-// and one direction at a time with the right lever alone, (vii) small turns and slow motions in single precision.
+// Pins the rest of the errata, each beside the published formula: (i) the corners of one manifold share an impulse,
+// (iii.3) factors of two between a rotation and its logarithm, (iii.4) its sign and the range of spins, (v) an open pin
+// closes as a block, and one direction at a time with the right lever alone, (vii) small turns and slow motions in
+// single precision.
 #include <array>
 
 #include "support_physics.h"
@@ -22,8 +23,9 @@ BodyId spinning(Run& run, Vec3 spin) {
   return run.add(def);
 }
 
-/// Gaps [m] before the first and after each of four turns of the original's pin, which solves the one direction of the gap: a box of
-/// 1 kg whose point `arm` is pinned to the world, `off` its place. Published: t2 goes through M before the cross product.
+/// Gaps [m] before the first and after each of four turns of the original's pin, which solves the one direction of the
+/// gap: a box of 1 kg whose point `arm` is pinned to the world, `off` its place. Published: t2 goes through M before
+/// the cross product.
 std::array<double, 5> pin_turns(Vec3 half, Vec3 arm, Vec3 off, bool published) {
   const Vec3 moments = mass_properties(ShapeDef::box(half), 1 / (8 * half.x * half.y * half.z))->moments;
   Pose pose{off, {}};
@@ -72,7 +74,8 @@ TEST_CASE("errata (i): four corners that land together share the impulse; one fo
   CHECK(-speed + 4 * impulse > 2.5 * speed);
 }
 
-TEST_CASE("errata (iii.3): a turn is twice its quaternion's logarithm; a factor lost halves or doubles the spin each step") {
+TEST_CASE(
+    "errata (iii.3): a turn is twice its quaternion's logarithm; a factor lost halves or doubles the spin each step") {
   const double spin = 10, turn = spin * dt;
   for (const Mode& mode : everywhere()) {
     CAPTURE(mode.name());
@@ -93,7 +96,9 @@ TEST_CASE("errata (iii.3): a turn is twice its quaternion's logarithm; a factor 
   CHECK(2 * std::atan(turn) / turn == doctest::Approx(1.98).epsilon(2e-3));
 }
 
-TEST_CASE("errata (iii.4): the two quaternions of a turn give one spin; as published, the other is a spin the long way round") {
+TEST_CASE(
+    "errata (iii.4): the two quaternions of a turn give one spin; as published, the other is a spin the long way "
+    "round") {
   const double spin = 10, turn = spin * dt;
   for (const Mode& mode : precisions()) {
     Run run(mode);
@@ -146,7 +151,8 @@ TEST_CASE("errata (v): an open pin closes as one block") {
 }
 
 TEST_CASE(
-    "errata (v): one direction at a time the right lever closes a pin, by a half or two thirds a turn; the published one opens "
+    "errata (v): one direction at a time the right lever closes a pin, by a half or two thirds a turn; the published "
+    "one opens "
     "it") {
   const Vec3 off{0.02, 0.005, 0.01};  // 23 mm
   for (const Vec3 half : {Vec3{0.1, 0.1, 0.1}, {0.05, 0.05, 0.2}, {0.05, 0.1, 0.3}, {0.01, 0.01, 0.3}}) {
@@ -161,7 +167,8 @@ TEST_CASE(
     }
     CHECK(right[4] < 0.06 * right[0]);
     if (half.x == half.z) {
-      for (std::size_t i = 1; i < right.size(); i++) CHECK(published[i] == doctest::Approx(right[i]).epsilon(1e-9));  // isotropic
+      // isotropic
+      for (std::size_t i = 1; i < right.size(); i++) CHECK(published[i] == doctest::Approx(right[i]).epsilon(1e-9));
     } else {
       for (std::size_t i = 1; i < right.size(); i++) CHECK(published[i] > 0.1);
     }

@@ -1,6 +1,6 @@
 // Pins that rotations and small motions hold where formulas of the original document fail: (iii) the side of the
-// multiplication, (iii') the first-order exponential, (iii'') constant angular velocity, (iv) a velocity given by way of
-// the last orientation, (vii) velocities as differences of single-precision positions.
+// multiplication, (iii') the first-order exponential, (iii'') constant angular velocity, (iv) a velocity given by way
+// of the last orientation, (vii) velocities as differences of single-precision positions.
 // Each test computes the published formula beside ours and shows by how much it is off.
 #include "support_physics.h"
 
@@ -26,7 +26,8 @@ Quat plus_half(Quat q, Quat p, Vec3 v) {
 const double degree = std::acos(-1.0) / 180;
 const Quat tilted = exponential({30 * degree, 0, 0});
 
-/// An isotropic body's attitude after 1 s, tilted about x and spinning about z, by the world's difference applied on the right.
+/// An isotropic body's attitude after 1 s, tilted about x and spinning about z, by the world's difference applied on
+/// the right.
 Quat published_spin(Quat q, Vec3 spin, int per_second) {
   Quat last = exponential((-1.0 / per_second) * spin) * q;
   for (int i = 0; i < per_second; i++) {
@@ -39,7 +40,8 @@ Quat published_spin(Quat q, Vec3 spin, int per_second) {
 
 }  // namespace
 
-TEST_CASE("errata (iii): a rotation of the world multiplies on the left; on the right the error does not shrink with dt") {
+TEST_CASE(
+    "errata (iii): a rotation of the world multiplies on the left; on the right the error does not shrink with dt") {
   const Vec3 spin{0, 0, 5};
   struct Tilt {
     double degrees, off;  // [rad] after 1 s as published, at 1/60 s; no less at shorter steps
@@ -79,7 +81,8 @@ TEST_CASE("errata (iii'): a spin keeps its rate; by the first-order exponential 
       const BodyId id = run.add(def);
       run.step(1.0 / per_second, std::lround(per_second * seconds));
       CHECK(run.world.angular_velocity(id)->z == doctest::Approx(spin).epsilon(mode.is_double() ? 1e-13 : 1e-6));
-      CHECK(angle_between(run.orientation(id), exponential({0, 0, spin * seconds})) <= (mode.is_double() ? 1e-11 : 1e-4));
+      CHECK(angle_between(run.orientation(id), exponential({0, 0, spin * seconds})) <=
+            (mode.is_double() ? 1e-11 : 1e-4));
     }
     Quat q, last = exponential({0, 0, -spin / per_second});
     for (int i = 0; i < per_second * seconds; i++) {

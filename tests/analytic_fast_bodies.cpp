@@ -13,7 +13,8 @@ enum class Thing { ball5, ball1, box10 };
 
 BodyDef thing(Thing kind, Vec3 position, Vec3 velocity, double restitution) {
   BodyDef def;
-  def.shapes = {kind == Thing::box10 ? ShapeDef::box({0.05, 0.05, 0.05}) : ShapeDef::sphere(kind == Thing::ball5 ? 0.05 : 0.01)};
+  def.shapes = {kind == Thing::box10 ? ShapeDef::box({0.05, 0.05, 0.05})
+                                     : ShapeDef::sphere(kind == Thing::ball5 ? 0.05 : 0.01)};
   def.pose.position = position;
   def.velocity = velocity;
   def.material = {0, 0, restitution};
@@ -79,12 +80,12 @@ TEST_CASE("C6: walls of every thickness, speeds, steps, straight and grazing") {
                 worst_speed = std::max(worst_speed, o.speed_error);
                 worst_normal = std::max(worst_normal, o.normal_error);
                 if (o.passed || o.speed_error > 0.01 || o.normal_error > 0.01)
-                  MESSAGE(mode.name() << ": kind " << int(kind) << ", " << speed << " m/s, wall " << thickness << ", " << degrees
-                                      << " deg, dt 1/" << 1 / dt << ", start " << start << ": passed " << o.passed << ", speed "
-                                      << o.speed_error << ", normal " << o.normal_error);
+                  MESSAGE(mode.name() << ": kind " << int(kind) << ", " << speed << " m/s, wall " << thickness << ", "
+                                      << degrees << " deg, dt 1/" << 1 / dt << ", start " << start << ": passed "
+                                      << o.passed << ", speed " << o.speed_error << ", normal " << o.normal_error);
               }
-    MESSAGE("C6 " << mode.name() << ": " << runs << " runs, " << passed << " passed, speed " << worst_speed << ", normal "
-                  << worst_normal);
+    MESSAGE("C6 " << mode.name() << ": " << runs << " runs, " << passed << " passed, speed " << worst_speed
+                  << ", normal " << worst_normal);
     CHECK(passed == 0);
     CHECK(worst_speed <= 0.01);
   }
@@ -113,8 +114,8 @@ TEST_CASE("C6: two bodies that both move, head on and off centre") {
             if (length(v - Vec3{speed, 0, 0}) < 1e-6 * speed) missed++;
             worst = std::max(worst, error);
             if (error > 0.01)
-              MESSAGE(mode.name() << " " << speed << " m/s, offset " << offset << ", dt 1/" << 1 / dt << ", start " << start
-                                  << ": " << error);
+              MESSAGE(mode.name() << " " << speed << " m/s, offset " << offset << ", dt 1/" << 1 / dt << ", start "
+                                  << start << ": " << error);
           }
     MESSAGE("C6 pairs " << mode.name() << ": " << runs << " runs, " << missed << " missed, error " << worst);
     CHECK(missed == 0);
@@ -139,7 +140,8 @@ TEST_CASE("C6: what another sends against a wall that was out of its own reach")
 
 namespace {
 
-/// A closed box of walls 0.2 m thick about the origin, half as wide inside as `half` says, full of fast balls and boxes.
+/// A closed box of walls 0.2 m thick about the origin, half as wide inside as `half` says, full of fast balls and
+/// boxes.
 struct Swarm {
   std::vector<BodyId> ids;
   double half;

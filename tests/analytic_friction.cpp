@@ -25,8 +25,8 @@ struct Incline {
   Vec3 down;   // the slope
   Vec3 start;  // when it had settled
 
-  Incline(const Mode& mode, const ShapeDef& shape, double height, const Material& material, double degrees, double yaw = 0,
-          std::uint32_t substeps = 4, double dt = 1.0 / 240, bool settle = true)
+  Incline(const Mode& mode, const ShapeDef& shape, double height, const Material& material, double degrees,
+          double yaw = 0, std::uint32_t substeps = 4, double dt = 1.0 / 240, bool settle = true)
       : run(mode, {0, -gravity * std::cos(degrees * pi / 180), 0}, substeps), down{std::cos(yaw), 0, std::sin(yaw)} {
     run.add(plane_of(material));
     BodyDef def;
@@ -79,7 +79,8 @@ TEST_CASE("A21a: a box that sticks does not creep; static friction holds to 1 % 
     Incline holds = box_on(mode, 1.01 * tangent, 1.01 * tangent), slides = box_on(mode, 0.99 * tangent, 0.99 * tangent);
     holds.run.step(1.0 / 240, 480);
     slides.run.step(1.0 / 240, 480);
-    MESSAGE("A21a " << mode.name() << ": " << holds.way() << " m at 1.01 tan, " << slides.way() << " m at .99 tan in 2 s");
+    MESSAGE("A21a " << mode.name() << ": " << holds.way() << " m at 1.01 tan, " << slides.way()
+                    << " m at .99 tan in 2 s");
     CHECK(std::fabs(holds.way()) <= 1e-4);
     CHECK(std::fabs(slides.way() / (0.01 * gravity * std::sin(pi / 6) * 2) - 1) <= 0.05);
   }
@@ -216,8 +217,8 @@ TEST_CASE("rolling friction: a ball rolls out, and holds on a slope of up to its
     ball.run.step(dt, long((2 / slowing - 0.5) / dt));
     CHECK(ball.speed() > 0.1);
     ball.run.step(dt, 480);
-    MESSAGE("rolling friction " << mode.name() << ": rolls " << ball.way() << " m, formula " << way << "; then " << ball.speed()
-                                << " m/s");
+    MESSAGE("rolling friction " << mode.name() << ": rolls " << ball.way() << " m, formula " << way << "; then "
+                                << ball.speed() << " m/s");
     CHECK(std::fabs(ball.way() / way - 1) <= 5e-3);
     CHECK(std::fabs(ball.speed()) <= 1e-6);
     const double limit = std::atan(lever / radius) * 180 / pi;
@@ -226,8 +227,8 @@ TEST_CASE("rolling friction: a ball rolls out, and holds on a slope of up to its
     goes.run.step(dt, 2400);
     const double pull =
         gravity * 5 / 7 * (std::sin(1.01 * limit * pi / 180) - lever / radius * std::cos(1.01 * limit * pi / 180));
-    MESSAGE("rolling friction " << mode.name() << ": at .99 of the angle " << holds.way() << " m in 10 s, at 1.01 " << goes.way()
-                                << " m, formula " << 50 * pull);
+    MESSAGE("rolling friction " << mode.name() << ": at .99 of the angle " << holds.way() << " m in 10 s, at 1.01 "
+                                << goes.way() << " m, formula " << 50 * pull);
     CHECK(std::fabs(holds.way()) <= 1e-4);
     CHECK(std::fabs(goes.way() / (50 * pull) - 1) <= 0.02);
   }
@@ -281,8 +282,8 @@ TEST_CASE("combination rules: each of them, and which holds where two differ") {
     def.material = b;
     run.add(def);
     run.step(1e-3);
-    return Vec3{run.world.view("contact_static_friction")->at(1, 0), run.world.view("contact_kinetic_friction")->at(1, 0),
-                run.world.view("contact_restitution")->at(1, 0)};
+    return Vec3{run.world.view("contact_static_friction")->at(1, 0),
+                run.world.view("contact_kinetic_friction")->at(1, 0), run.world.view("contact_restitution")->at(1, 0)};
   };
   const double a = 0.9, b = 0.4;
   const double expected[] = {0.65, 0.6, 0.4, 0.36, 0.9};

@@ -1,5 +1,5 @@
-// Pins that no point of a manifold comes before another: the mirror image of boxes that fall on one another, and the same boxes turned
-// by 90 degrees, move as the image of their motion (C19), at rest, sliding and bouncing.
+// Pins that no point of a manifold comes before another: the mirror image of boxes that fall on one another, and the
+// same boxes turned by 90 degrees, move as the image of their motion (C19), at rest, sliding and bouncing.
 #include <algorithm>
 #include <vector>
 

@@ -56,7 +56,8 @@ TEST_CASE("free boxes that turn by a third of a radian in a sub-step keep their 
     double dt;
   };
   for (const Mode& mode : precisions())
-    for (const Box& box : {Box{{0.062, 0.21, 0.4}, {-16, 19, -23}, 1.0 / 30}, Box{{0.0085, 0.009, 0.049}, {-9.9, 48, 34}, 1.0 / 60}}) {
+    for (const Box& box :
+         {Box{{0.062, 0.21, 0.4}, {-16, 19, -23}, 1.0 / 30}, Box{{0.0085, 0.009, 0.049}, {-9.9, 48, 34}, 1.0 / 60}}) {
       CAPTURE(mode.name());
       CAPTURE(box.half.x);
       Run run(mode, {}, 4);

@@ -88,11 +88,11 @@ struct SceneRun {
   void tell(const Mode& mode) const {
     MESSAGE(scene.name << " " << scene.count << ", " << mode.name() << ": energy gain " << gain() << " J, "
                        << gain() / (high - low) << " of the potential range " << high - low << " J; penetration "
-                       << end.penetration.max << " m, mean " << end.penetration.mean() << "; separation " << end.separation.max
-                       << ", from 4 s on " << separation << ", in any step " << peak << " m; limits from 4 s on "
-                       << limit / degree << ", in the last second " << last_limit / degree << " deg, of 99 % of joints "
-                       << (beyond.empty() ? 0 : share_within(0.99) / degree) << "; sideways " << end.drift.sideways << ", down "
-                       << end.drift.down);
+                       << end.penetration.max << " m, mean " << end.penetration.mean() << "; separation "
+                       << end.separation.max << ", from 4 s on " << separation << ", in any step " << peak
+                       << " m; limits from 4 s on " << limit / degree << ", in the last second " << last_limit / degree
+                       << " deg, of 99 % of joints " << (beyond.empty() ? 0 : share_within(0.99) / degree)
+                       << "; sideways " << end.drift.sideways << ", down " << end.drift.down);
   }
   void check_sound() const {
     CHECK(escaped == 0);

@@ -1,5 +1,5 @@
-// Pins the compatibility mode `Integrator::seed`: the original document's recurrence to rounding, its first-order error,
-// what it does where 1 - h F would turn a velocity round, and equal bits wherever it runs.
+// Pins the compatibility mode `Integrator::seed`: the original document's recurrence to rounding, its first-order
+// error, what it does where 1 - h F would turn a velocity round, and equal bits wherever it runs.
 #include "support_cases.h"
 #include "support_world.h"
 
@@ -108,6 +108,8 @@ TEST_CASE("seed: a world that does not ask for it runs none of its kernels, and 
   CHECK(kernels().find("_seed") == std::string::npos);
   settings.integrator = Integrator::seed;
   const std::string seed = kernels();
-  for (const char* name : {"begin_seed ", "advance_seed ", "synchronise_seed "}) CHECK(seed.find(name) != std::string::npos);
-  for (const char* name : {"begin ", "advance ", "remember ", "synchronise "}) CHECK(seed.find(name) == std::string::npos);
+  for (const char* name : {"begin_seed ", "advance_seed ", "synchronise_seed "})
+    CHECK(seed.find(name) != std::string::npos);
+  for (const char* name : {"begin ", "advance ", "remember ", "synchronise "})
+    CHECK(seed.find(name) == std::string::npos);
 }

@@ -20,15 +20,16 @@ void add_bridge(Run& run, double load) {
   join(run, above, run.world.ground(), {6, 0.14, 0});
 }
 
-/// A roof of twelve links whose ridge weighs `load`: it falls through, and stops within milliseconds when both halves are straight again.
+/// A roof of twelve links whose ridge weighs `load`: it falls through, and stops within milliseconds when both halves
+/// are straight again.
 void add_roof(Run& run, double load, double slope) {
   const Vec3 rise = 0.5 * Vec3{std::cos(slope), std::sin(slope), 0}, fall{rise.x, -rise.y, 0};
   BodyId above = run.world.ground();
   Vec3 at;
   for (int i = 0; i < 12; i++) {
     const Vec3 way = i < 6 ? rise : fall;
-    const BodyId link =
-        run.add(rod({0.25, 0.03, 0.1}, i == 6 ? load : 1, at + 0.5 * way, axis_angle({0, 0, 1}, i < 6 ? slope : -slope)));
+    const BodyId link = run.add(
+        rod({0.25, 0.03, 0.1}, i == 6 ? load : 1, at + 0.5 * way, axis_angle({0, 0, 1}, i < 6 ? slope : -slope)));
     join(run, above, link, at);
     above = link;
     at = at + way;
@@ -38,8 +39,9 @@ void add_roof(Run& run, double load, double slope) {
 
 }  // namespace
 
-// The joint that closes the loop is solved inside what the tree leaves it. As a soft row on bare bodies it opened by 47 mm with
-// links of 1 kg, and 84 and 338 mm with one of 10 and of 100; now by 0.12, 0.28 and 2.4 mm, most of it loop_give.
+// The joint that closes the loop is solved inside what the tree leaves it. As a soft row on bare bodies it opened by 47
+// mm with links of 1 kg, and 84 and 338 mm with one of 10 and of 100; now by 0.12, 0.28 and 2.4 mm, most of it
+// loop_give.
 TEST_CASE("trees: a bridge between two posts holds to three millimetres") {
   for (const Mode& mode : precisions())
     for (const double load : {1.0, 10.0, 100.0}) {
@@ -77,11 +79,12 @@ TEST_CASE("trees: of a bridge between two posts the tree's own joints hold, and 
   }
 }
 
-// Sub-steps were those of the tension of the step before: at 1/60 s the whole stop lies within one, and roofs flew apart at any load.
-// Now the step is made again with what it asks for, and a pin pulls no harder than its sub-steps can follow: the heaviest roofs open by
-// up to 52 mm as they stop, and of 164 none to two fly apart (roundings decide).
+// Sub-steps were those of the tension of the step before: at 1/60 s the whole stop lies within one, and roofs flew
+// apart at any load. Now the step is made again with what it asks for, and a pin pulls no harder than its sub-steps can
+// follow: the heaviest roofs open by up to 52 mm as they stop, and of 164 none to two fly apart (roundings decide).
 TEST_CASE(
-    "trees: a step of a loop that brings more tension than its sub-steps were chosen for is made again, and few roofs fly "
+    "trees: a step of a loop that brings more tension than its sub-steps were chosen for is made again, and few roofs "
+    "fly "
     "apart") {
   struct Roof {
     double load, steepest;  // links, degrees
@@ -102,8 +105,8 @@ TEST_CASE(
           if (holds) continue;
           apart++;
           MESSAGE("trees, a roof of " << roof.load << " kg, " << slope << " degrees, " << substeps << " sub-steps, "
-                                      << mode.name() << ": open by " << w.separation << " m, gained " << w.gain / w.kinetic
-                                      << " of its energy");
+                                      << mode.name() << ": open by " << w.separation << " m, gained "
+                                      << w.gain / w.kinetic << " of its energy");
         }
   MESSAGE("trees: of " << roofs << " roofs " << apart << " fly apart");
   CHECK(roofs == 164);
@@ -114,8 +117,8 @@ TEST_CASE(
 
 namespace {
 
-/// Five links let go from level, the last 100 times as heavy: its place after two seconds, for masses times `scale`. Later they whip, and
-/// what is rounding in single precision grows.
+/// Five links let go from level, the last 100 times as heavy: its place after two seconds, for masses times `scale`.
+/// Later they whip, and what is rounding in single precision grows.
 struct Scaled {
   Worst worst;
   Vec3 place;
@@ -125,7 +128,8 @@ Scaled swing(const Mode& mode, double scale) {
   BodyId above = run.world.ground();
   for (int i = 0; i < 5; i++) {
     const double mass = scale * (i == 4 ? 100 : 1);
-    const BodyId link = run.add(rod({0.03, 0.25, 0.03}, mass, {0.25 + 0.5 * i, 0, 0}, axis_angle({0, 0, 1}, 90 * degree)));
+    const BodyId link =
+        run.add(rod({0.03, 0.25, 0.03}, mass, {0.25 + 0.5 * i, 0, 0}, axis_angle({0, 0, 1}, 90 * degree)));
     join(run, above, link, {0.5 * i, 0, 0}, i == 2 ? AngleFreedom::hinge() : AngleFreedom{}, about_z);
     above = link;
   }
@@ -163,7 +167,8 @@ void add_whips(Run& run, double spin, unsigned seed, const AngleFreedom& freedom
   BodyId above;
   for (int i = 0; i < 6; i++) {
     BodyDef def = rod({0.03, 0.25, 0.05}, 1 + 0.5 * i, {0, -0.5 * i, 0});
-    for (double* component : {&def.angular_velocity.x, &def.angular_velocity.y, &def.angular_velocity.z}) *component = either();
+    for (double* component : {&def.angular_velocity.x, &def.angular_velocity.y, &def.angular_velocity.z})
+      *component = either();
     const BodyId link = run.add(def);
     if (i > 0) join(run, above, link, {0, 0.25 - 0.5 * i, 0}, freedom, axis_angle({0, 0, 1}, -90 * degree));
     above = link;
@@ -208,8 +213,8 @@ TEST_CASE("trees: spins of 300 and 1000 rad/s hold together and gain no energy")
     for (double spin : {300.0, 1000.0}) check_whips(mode, spin, 10 * millimetre, 0);
 }
 
-// A closing pin at a radian and more a sub-step has no solution near the tangent. What comes of it leaves the range of numbers, or
-// not; where it does, the bodies are frozen and named, and everything else goes on.
+// A closing pin at a radian and more a sub-step has no solution near the tangent. What comes of it leaves the range of
+// numbers, or not; where it does, the bodies are frozen and named, and everything else goes on.
 TEST_CASE("trees: loops whose bodies spin at up to 4000 rad/s stay numbers, or are frozen by name") {
   for (const Mode& mode : precisions())
     for (const double spin : {100.0, 1000.0, 4000.0}) {
@@ -234,8 +239,8 @@ TEST_CASE("trees: loops whose bodies spin at up to 4000 rad/s stay numbers, or a
         named += report.frozen.size();
       }
       for (const BodyId id : run.world.bodies()) {
-        CHECK(
-            std::isfinite(length(run.position(id)) + length(*run.world.velocity(id)) + length(*run.world.angular_velocity(id))));
+        CHECK(std::isfinite(length(run.position(id)) + length(*run.world.velocity(id)) +
+                            length(*run.world.angular_velocity(id))));
         frozen += *run.world.frozen(id);
       }
       CHECK(frozen == named);

@@ -193,9 +193,10 @@ TEST_CASE("trees: a cantilever of four welded boxes holds") {
         note(w, run.world, 0);
         sag = std::max(sag, angle_between(run.orientation(last), {}));
       }
-      MESSAGE("trees, cantilever with a tip of " << tip << " kg, " << mode.name() << ": sag " << sag / degree
-                                                 << " degrees, at the end " << angle_between(run.orientation(last), {}) / degree
-                                                 << ", separation " << w.separation / millimetre << " mm");
+      MESSAGE("trees, cantilever with a tip of "
+              << tip << " kg, " << mode.name() << ": sag " << sag / degree << " degrees, at the end "
+              << angle_between(run.orientation(last), {}) / degree << ", separation " << w.separation / millimetre
+              << " mm");
       CAPTURE(mode.name());
       CHECK(w.finite);
       CHECK(sag <= 1 * degree);
@@ -267,7 +268,8 @@ void add_star(Run& run) {
     BodyDef arm = rod({0.3, 0.05, 0.08}, 0.5 + i, rotate(turn, {0.5, 0, 0}), turn);
     arm.angular_velocity = {3.0 * i, 2.0 - i, 4};
     arm.velocity = {0, 0, i % 2 ? 2.0 : -1.0};
-    join(run, centre, run.add(arm), rotate(turn, {0.2, 0, 0}), AngleFreedom::cone_and_twist(30 * degree, 20 * degree), turn);
+    join(run, centre, run.add(arm), rotate(turn, {0.2, 0, 0}), AngleFreedom::cone_and_twist(30 * degree, 20 * degree),
+         turn);
   }
 }
 

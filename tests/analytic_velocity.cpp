@@ -41,7 +41,8 @@ TEST_CASE("velocity: read back exactly in free flight, with drag and without") {
       const BodyId id = run.add(def);
       run.step(dt);
       const auto exact = [&](double t) {
-        return drag > 0 ? Vec3{4 * std::exp(-drag * t), gravity / drag * std::expm1(-drag * t), 0} : Vec3{4, -gravity * t, 0};
+        return drag > 0 ? Vec3{4 * std::exp(-drag * t), gravity / drag * std::expm1(-drag * t), 0}
+                        : Vec3{4, -gravity * t, 0};
       };
       CHECK(length(*run.world.velocity(id) - exact(dt)) <= 1e-12);
       run.step(dt, (30 << level) - 1);
@@ -135,7 +136,8 @@ TEST_CASE("two-real position: single precision moves at 1 mm/s, 1 km from the or
     const double way = 1e-3 * double(steps) / 60;
     const Vec3 moved = run.position(id) - def.pose.position;
     if (mode.place == Place::cpu)
-      MESSAGE("1 mm/s at 1 km, " << mode.name() << ": off by " << length(moved - Vec3{way, 0, -way}) / way << " of the way");
+      MESSAGE("1 mm/s at 1 km, " << mode.name() << ": off by " << length(moved - Vec3{way, 0, -way}) / way
+                                 << " of the way");
     // a single float's last place is 6.1e-5 m there, 15 times the way of a sub-step
     CHECK(length(moved - Vec3{way, 0, -way}) <= 1e-6 * way);
   }

@@ -1,5 +1,6 @@
-// Pins chains that whip: swung from level their light ends turn round within a few sub-steps. They keep their joints and their energy, by
-// sub-steps where they whip and nowhere else (docs/substeps.md), and what sub-steps resolve is not damped (docs/joint-trees.md).
+// Pins chains that whip: swung from level their light ends turn round within a few sub-steps. They keep their joints
+// and their energy, by sub-steps where they whip and nowhere else (docs/substeps.md), and what sub-steps resolve is not
+// damped (docs/joint-trees.md).
 #include "scenes/metrics.h"
 #include "support_cases.h"
 #include "support_world.h"
@@ -9,22 +10,26 @@ using namespace physics;
 TEST_CASE("B2: chains with loads of 100 links are as far off as converged SHAKE at one sub-step of 1/1200 s") {
   for (const Mode& mode : precisions())
     for (const char* variant : {"3 links, 1:100", "5 links, 1:100"}) {
-      const auto position = [&](const cases::Row& row) { return row.metric.starts_with("position") && row.variant == variant; };
+      const auto position = [&](const cases::Row& row) {
+        return row.metric.starts_with("position") && row.variant == variant;
+      };
       check_rows(rows_of("B2", mode, 1.0 / 1200, variant), position);
     }
 }
 
 TEST_CASE("B2: chains of 10 and 50 links that whip gain no more than 1 % of their energy, for a moment") {
   for (const Mode& mode : precisions())
-    for (const char* variant : {"10 links, 1:1, 5 s", "50 links, 1:1, 5 s"}) check_rows(rows_of("B2", mode, 1.0 / 240, variant));
+    for (const char* variant : {"10 links, 1:1, 5 s", "50 links, 1:1, 5 s"})
+      check_rows(rows_of("B2", mode, 1.0 / 240, variant));
 }
 
 namespace {
 
 struct Swung {
   double gap = 0, gain = 0;  // [m]; of the energy at the end, of that of the start
-  double peak = 0;           // most energy above the start's after any step, of what the fall from level to hanging sets free
-  int above = 0;             // steps after which that is more than 1 %
+  // most energy above the start's after any step, of what the fall from level to hanging sets free
+  double peak = 0;
+  int above = 0;  // steps after which that is more than 1 %
   std::uint32_t substeps = 0;
 };
 /// What a level chain loses until it hangs [J].
@@ -61,15 +66,17 @@ Swung swing(Precision precision, int links, double load, int steps_a_second = 60
 }
 
 void tell(Precision precision, int links, double load, const Swung& s) {
-  MESSAGE(links << " links, a load of " << load << ", " << std::string(precision == Precision::f32 ? "single" : "double")
-                << ": energy above the start's at most " << s.peak << " of the fall's, by more than 1 % after " << s.above
-                << " steps; at the end " << s.gain << "; gap " << s.gap);
+  MESSAGE(links << " links, a load of " << load << ", "
+                << std::string(precision == Precision::f32 ? "single" : "double")
+                << ": energy above the start's at most " << s.peak << " of the fall's, by more than 1 % after "
+                << s.above << " steps; at the end " << s.gain << "; gap " << s.gap);
 }
 
 }  // namespace
 
-// With four sub-steps throughout some of these came apart by metres: 20 links with a load of 50 in single precision, 30 with 10. What is
-// read as their energy jumps for a step or two where a whip cracks: by 0.38 of what the fall sets free in the worst of these runs.
+// With four sub-steps throughout some of these came apart by metres: 20 links with a load of 50 in single precision, 30
+// with 10. What is read as their energy jumps for a step or two where a whip cracks: by 0.38 of what the fall sets free
+// in the worst of these runs.
 TEST_CASE("trees: chains of any number of links and any load hold when they whip") {
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const int links : {10, 20, 30})

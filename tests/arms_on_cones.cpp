@@ -1,7 +1,8 @@
-// Limits of a cone and its twist hold in the sub-step in which they are met: where a contact turns a joint over them (tree_limits; with only those
-// limits that act before the contacts, 19 of these 300 arms go beyond by more than a degree, the worst by 11); where a joint turns along the rim,
-// which its rate of now would let go on a tangent (pc_row_ahead; without, 9 of these 200 arms, the worst by 1.5); and where it turns from one limit
-// to the other within a sub-step (pc_choose_limit; without, 31 of these 200 arms, the worst by 9).
+// Limits of a cone and its twist hold in the sub-step in which they are met: where a contact turns a joint over them
+// (tree_limits; with only those limits that act before the contacts, 19 of these 300 arms go beyond by more than a
+// degree, the worst by 11); where a joint turns along the rim, which its rate of now would let go on a tangent
+// (pc_row_ahead; without, 9 of these 200 arms, the worst by 1.5); and where it turns from one limit to the other within
+// a sub-step (pc_choose_limit; without, 31 of these 200 arms, the worst by 9).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -16,10 +17,10 @@ using namespace worldtest;
 namespace {
 
 constexpr double degree = 3.14159265 / 180, circle = 6.2832;
-constexpr double reach = 0.33;           // from the pin to the arm's centre [m]
-const Vec3 forward{1, 0, 0};             // the cone's axis
-const Vec3 pin = forward * 0.22;         // in the torso
-const Vec3 middle = forward * 0.55;      // of an arm that stands in the middle of its cone
+constexpr double reach = 0.33;       // from the pin to the arm's centre [m]
+const Vec3 forward{1, 0, 0};         // the cone's axis
+const Vec3 pin = forward * 0.22;     // in the torso
+const Vec3 middle = forward * 0.55;  // of an arm that stands in the middle of its cone
 
 struct Dice {
   std::mt19937 dice;
@@ -35,7 +36,8 @@ struct Arm {
   World world;
   JointDef shoulder;
 
-  Arm(unsigned seed, double cone, double twist, BodyDef arm) : world({seed % 2 == 0 ? Precision::f32 : Precision::f64, {0, 0, 0}}) {
+  Arm(unsigned seed, double cone, double twist, BodyDef arm)
+      : world({seed % 2 == 0 ? Precision::f32 : Precision::f64, {0, 0, 0}}) {
     BodyDef torso;
     torso.shapes = {ShapeDef::box({0.2, 0.2, 0.2})};
     arm.shapes = {ShapeDef::box({0.3, 0.05, 0.05})};
@@ -90,7 +92,8 @@ double turned_along_rim(unsigned seed) {
   return Arm(seed, cone, 3, arm).most_beyond();
 }
 
-/// Turning about itself at 20 to 100 rad/s, from a limit of its twist of 0.1 to 0.3 rad on: in a sub-step by up to twice what is between them.
+/// Turning about itself at 20 to 100 rad/s, from a limit of its twist of 0.1 to 0.3 rad on: in a sub-step by up to
+/// twice what is between them.
 double turned_about_itself(unsigned seed) {
   Dice dice{std::mt19937(seed * 13 + 5)};
   const double twist = dice.between(0.1, 0.3), spin = dice.between(20, 100), start = dice.between(-1, 1);
@@ -109,6 +112,12 @@ double worst_of(unsigned arms, double (*beyond)(unsigned seed)) {
 
 }  // namespace
 
-TEST_CASE("300 arms that a ball strikes stay within a degree of their limits") { CHECK(worst_of(300, struck) <= degree); }
-TEST_CASE("200 arms that turn along the rim of their cone stay within a degree of it") { CHECK(worst_of(200, turned_along_rim) <= degree); }
-TEST_CASE("200 arms that turn from limit to limit of their twist stay within a degree") { CHECK(worst_of(200, turned_about_itself) <= degree); }
+TEST_CASE("300 arms that a ball strikes stay within a degree of their limits") {
+  CHECK(worst_of(300, struck) <= degree);
+}
+TEST_CASE("200 arms that turn along the rim of their cone stay within a degree of it") {
+  CHECK(worst_of(200, turned_along_rim) <= degree);
+}
+TEST_CASE("200 arms that turn from limit to limit of their twist stay within a degree") {
+  CHECK(worst_of(200, turned_about_itself) <= degree);
+}

@@ -1,6 +1,6 @@
-// Pins what every public function refuses: the error's code, a whole sentence, and a world that is as it was, from one table
-// (tests/support_bad_*.cpp). docs/errors.md is that table, and each function of the public headers that answers with a Result is in it.
-// After a change of the table run this test with PCPHYS_WRITE_DOCS=1 and it writes the page:
+// Pins what every public function refuses: the error's code, a whole sentence, and a world that is as it was, from one
+// table (tests/support_bad_*.cpp). docs/errors.md is that table, and each function of the public headers that answers
+// with a Result is in it. After a change of the table run this test with PCPHYS_WRITE_DOCS=1 and it writes the page:
 //   PCPHYS_WRITE_DOCS=1 ctest --test-dir build/release -R bad_arguments
 #include <algorithm>
 #include <cctype>
@@ -60,7 +60,8 @@ std::string page() {
   std::ostringstream out;
   out << "# Errors\n"
          "What public functions refuse, and by which error. The message says what was wrong and what to do, and the\n"
-         "world is as it was. Ranges of numbers, and what each code stands for: [limits.md](limits.md). Where there is\n"
+         "world is as it was. Ranges of numbers, and what each code stands for: [limits.md](limits.md). Where there "
+         "is\n"
          "no memory any function answers `buffer_full`.\n"
          "\n"
          "<!-- Written by tests/bad_arguments.cpp from tests/support_bad_*.cpp; see there. -->\n";
@@ -69,7 +70,8 @@ std::string page() {
     for (const BadCall& call : section.calls)
       out << "| `" << call.function << "` | " << call.wrong << " | `" << name(call.code) << "` |\n";
   }
-  out << "\n## While a step runs\nA callback may look at its world, and change other ones. Of the world that is stepped, and of "
+  out << "\n## While a step runs\nA callback may look at its world, and change other ones. Of the world that is "
+         "stepped, and of "
          "its stepper, these\n"
          "answer `busy`, whatever else is wrong:";
   std::string list;
@@ -137,7 +139,8 @@ TEST_CASE("every public function that can refuse is in the table") {
        {"world.h", "step.h", "hull.h", "kernel.h", "plan.h", "events.h", "device.h", "fcl.h", "property.h", "types.h"})
     for (const std::string& function : functions_of(header)) {
       found++;
-      CHECK_MESSAGE(in_table.contains(function), function << " of " << header << " is in no row of tests/support_bad_*.cpp");
+      CHECK_MESSAGE(in_table.contains(function),
+                    function << " of " << header << " is in no row of tests/support_bad_*.cpp");
     }
   CHECK(found > 50);
 }
@@ -145,5 +148,6 @@ TEST_CASE("every public function that can refuse is in the table") {
 TEST_CASE("docs/errors.md is the table") {
   const std::string path = PCPHYS_SOURCE_DIR "/docs/errors.md", wanted = page();
   if (std::getenv("PCPHYS_WRITE_DOCS")) std::ofstream(path, std::ios::binary) << wanted;
-  CHECK_MESSAGE(text_of(path) == wanted, "docs/errors.md is old; run this test with PCPHYS_WRITE_DOCS=1 to write it anew");
+  CHECK_MESSAGE(text_of(path) == wanted,
+                "docs/errors.md is old; run this test with PCPHYS_WRITE_DOCS=1 to write it anew");
 }

@@ -1,5 +1,6 @@
-// Pins what a blow does to a body that rests on a floor: it is stopped where it lies. A soft row lets go of a share of its
-// impulse; once that was a share of what had just come, too, and a body that was sent down at 20 m/s went on at 2.4.
+// Pins what a blow does to a body that rests on a floor: it is stopped where it lies. A soft row lets go of a share of
+// its impulse; once that was a share of what had just come, too, and a body that was sent down at 20 m/s went on at
+// 2.4.
 #include <algorithm>
 
 #include "support_world.h"

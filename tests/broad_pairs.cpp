@@ -164,7 +164,8 @@ TEST_CASE("pairs: many steps of moving, coming, going and NaN") {
     for (int step = 0; step < 120; ++step) {
       const float speed = step % 3 == 0 ? 0.5f : 0.02f;
       for (std::uint32_t i = 0; i < 150; ++i)
-        if (w.here[i] && w.moves[i]) shift(w.tight[i], random(-speed, speed), random(-speed, speed), random(-speed, speed));
+        if (w.here[i] && w.moves[i])
+          shift(w.tight[i], random(-speed, speed), random(-speed, speed), random(-speed, speed));
       if (step % 4 == 1) {
         const std::uint32_t i = random.below(170);
         if (i < w.here.size() && w.here[i]) w.remove(i);

@@ -187,7 +187,8 @@ TEST_CASE("tree: queries are those of brute force") {
 
 TEST_CASE("tree: no pairs of two still objects, nor of two immobile ones") {
   Boxes boxes = cloud(600, 31, 6, 6, 6, 0.6f);
-  for (int i = 0; i < 10; ++i) boxes[60 * i] = {{-50, static_cast<float>(-i), -50}, {50, 0, i < 5 ? 50 : infinity}};  // large
+  // large
+  for (int i = 0; i < 10; ++i) boxes[60 * i] = {{-50, static_cast<float>(-i), -50}, {50, 0, i < 5 ? 50 : infinity}};
   for (const float moved_share : {0.0f, 0.05f, 0.3f, 1.0f}) {  // few and many are answered in different ways
     CAPTURE(moved_share);
     std::vector<std::uint8_t> flags;

@@ -1,4 +1,5 @@
-// Pins that what stands stays where it is when the length of the step changes: stiffness of contacts goes by the sub-step, and would pump.
+// Pins that what stands stays where it is when the length of the step changes: stiffness of contacts goes by the
+// sub-step, and would pump.
 #include <functional>
 #include <random>
 
@@ -31,13 +32,16 @@ double most_moved(Precision precision, const std::function<double(int)>& dt) {
     time += dt(i);
   }
   double most = 0;
-  for (std::size_t i = 0; i < cubes.size(); i++) most = std::max(most, length(world.pose(cubes[i])->position - places[i]));
+  for (std::size_t i = 0; i < cubes.size(); i++)
+    most = std::max(most, length(world.pose(cubes[i])->position - places[i]));
   return most;
 }
 
 }  // namespace
 
-TEST_CASE("changing steps: a pyramid stands in steps of 1/60 and 1/30 s by turns, and of any length between 1/144 and 1/30 s") {
+TEST_CASE(
+    "changing steps: a pyramid stands in steps of 1/60 and 1/30 s by turns, and of any length between 1/144 and 1/30 "
+    "s") {
   std::mt19937 draw(1);
   std::vector<double> lengths(2000);
   for (double& length : lengths) length = std::uniform_real_distribution(1 / 144.0, 1 / 30.0)(draw);

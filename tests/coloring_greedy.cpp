@@ -48,7 +48,9 @@ std::vector<std::uint32_t> naive_greedy(const Graph& graph) {
   std::vector<std::uint32_t> order(graph.priorities.size()), colours(order.size());
   std::iota(order.begin(), order.end(), 0u);
   std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return graph.priorities[i]; });
-  const auto is_fixed = [&](std::uint32_t i) { return graph.units[2 * i] == fixed_unit || graph.units[2 * i + 1] == fixed_unit; };
+  const auto is_fixed = [&](std::uint32_t i) {
+    return graph.units[2 * i] == fixed_unit || graph.units[2 * i + 1] == fixed_unit;
+  };
   std::uint32_t first = 0;
   for (const bool with_fixed : {false, true}) {
     std::vector<std::set<std::uint32_t>> taken(graph.unit_count);

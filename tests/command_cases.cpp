@@ -50,8 +50,8 @@ TEST_CASE("accuracy: a second-order variant tells its order") {
   const Ran ran = command("accuracy A8 --precision double --json -");
   CHECK(ran.code == 0);
   const Json rows = ran.json();
-  const auto order =
-      std::find_if(rows.begin(), rows.end(), [](const Json& row) { return row["metric"] == "2 - order of position until 2 s"; });
+  const auto order = std::find_if(rows.begin(), rows.end(),
+                                  [](const Json& row) { return row["metric"] == "2 - order of position until 2 s"; });
   REQUIRE(order != rows.end());
   CHECK((*order)["order"].get<double>() > 1.9);
 }

@@ -24,7 +24,8 @@ TEST_CASE("compare: the JSON has every key of the contract, and a row for each e
   const Ran ran = command("compare stack:3 chain:4 --steps 40 --json -");
   REQUIRE_MESSAGE(ran.code == 0, ran.error);
   const Json report = ran.json();
-  for (const char* key : {"steps", "dt", "substeps", "precision", "backend", "peers", "rows"}) CHECK(report.contains(key));
+  for (const char* key : {"steps", "dt", "substeps", "precision", "backend", "peers", "rows"})
+    CHECK(report.contains(key));
   CHECK(report["peers"].size() == pcphys::peers::variants().size());
   CHECK(report["rows"].size() == 10);  // pcphys, bullet, ode, ode-dantzig, mujoco
   for (const char* scene : {"stack", "chain"}) {
@@ -95,8 +96,8 @@ TEST_CASE("compare: the JSON has every key of the contract, and a row for each e
 TEST_CASE("compare: pcphys's row says what `run` says") {
   const Json compared = command("compare ragdolls --count 1 --steps 60 --peers none --json -").json()["rows"][0];
   const Json ran = command("run ragdolls --count 1 --steps 60 --json -").json();
-  for (const char* key : {"max_penetration", "mean_penetration", "max_joint_separation", "limit_excess_degrees", "energy_start",
-                          "energy_end", "nonfinite", "escaped"}) {
+  for (const char* key : {"max_penetration", "mean_penetration", "max_joint_separation", "limit_excess_degrees",
+                          "energy_start", "energy_end", "nonfinite", "escaped"}) {
     CAPTURE(key);
     CHECK(compared[key].get<double>() == doctest::Approx(ran[key].get<double>()).epsilon(1e-6));
   }
@@ -114,7 +115,8 @@ TEST_CASE("compare: a table for people, a CSV, and peers that stop or are refuse
   CHECK(csv.out.starts_with("scene,count,"));
   CHECK(std::count(csv.out.begin(), csv.out.end(), '\n') == 7);
   const auto variants = pcphys::peers::variants();
-  const bool ode = std::any_of(variants.begin(), variants.end(), [](const auto& v) { return v.name == "ode" && v.found; });
+  const bool ode =
+      std::any_of(variants.begin(), variants.end(), [](const auto& v) { return v.name == "ode" && v.found; });
   if (!ode) return;
   const Json stopped = command("compare stack:3 --steps 60 --peers ode --budget 1e-9 --json -").json()["rows"][1];
   CHECK(stopped["problem"].get<std::string>().find("--budget") != std::string::npos);

@@ -95,9 +95,7 @@ const Refused cases[] = {
 
 }  // namespace
 
-TEST_CASE("errors: one line, the right code, nothing on standard output") {
-  check_refused(cases);
-}
+TEST_CASE("errors: one line, the right code, nothing on standard output") { check_refused(cases); }
 
 TEST_CASE("errors: every option that takes a number refuses what is none, or has no place in 64 bits") {
   std::size_t tried = 0;

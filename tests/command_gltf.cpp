@@ -93,7 +93,8 @@ void check_mesh(const Gltf& gltf, const Json& primitive) {
   REQUIRE(index.size() >= 36);
   double volume = 0, alignment = 1;
   for (std::size_t t = 0; t < index.size(); t += 3) {
-    const std::size_t a = 3 * std::size_t(index[t]), b = 3 * std::size_t(index[t + 1]), c = 3 * std::size_t(index[t + 2]);
+    const std::size_t a = 3 * std::size_t(index[t]), b = 3 * std::size_t(index[t + 1]),
+                      c = 3 * std::size_t(index[t + 2]);
     REQUIRE(std::max({a, b, c}) + 2 < p.size());
     double u[3], v[3];
     for (std::size_t k = 0; k < 3; ++k) u[k] = p[b + k] - p[a + k], v[k] = p[c + k] - p[a + k];
@@ -106,7 +107,8 @@ void check_mesh(const Gltf& gltf, const Json& primitive) {
   }
   CHECK(volume > 0);
   CHECK(alignment > 0.7);
-  for (std::size_t i = 0; i < n.size(); i += 3) CHECK(std::hypot(n[i], n[i + 1], n[i + 2]) == doctest::Approx(1).epsilon(1e-5));
+  for (std::size_t i = 0; i < n.size(); i += 3)
+    CHECK(std::hypot(n[i], n[i + 1], n[i + 2]) == doctest::Approx(1).epsilon(1e-5));
 }
 
 }  // namespace

@@ -19,13 +19,14 @@ TEST_CASE("run: the JSON has every key of the contract") {
     CAPTURE(std::string(key));
     CHECK(json[key].is_string());
   }
-  for (const char* key : {"count", "bodies", "joints", "steps", "substeps", "lanes", "threads", "transfers_bytes", "contacts",
-                          "escaped", "nonfinite"}) {
+  for (const char* key : {"count", "bodies", "joints", "steps", "substeps", "lanes", "threads", "transfers_bytes",
+                          "contacts", "escaped", "nonfinite"}) {
     CAPTURE(std::string(key));
     CHECK(json[key].is_number_integer());
   }
-  for (const char* key : {"dt", "median_ms", "p99_ms", "max_fps", "min_fps", "max_penetration", "mean_penetration",
-                          "max_joint_separation", "mean_joint_separation", "energy_start", "energy_end", "kinetic_energy_end"}) {
+  for (const char* key :
+       {"dt", "median_ms", "p99_ms", "max_fps", "min_fps", "max_penetration", "mean_penetration",
+        "max_joint_separation", "mean_joint_separation", "energy_start", "energy_end", "kinetic_energy_end"}) {
     CAPTURE(std::string(key));
     CHECK(json[key].is_number());
   }
@@ -190,7 +191,8 @@ TEST_CASE("plan: friction, restitution and drag of all bodies, as asked, and wha
     for (const Json& item : plan["left_out"]) all += item["what"].get<std::string>() + ", ";
     return all;
   };
-  const std::string own = left_out(""), bare = left_out("--friction 0 --restitution 0"), dragged = left_out("--drag 0.25");
+  const std::string own = left_out(""), bare = left_out("--friction 0 --restitution 0"),
+                    dragged = left_out("--drag 0.25");
   CHECK(own.find(", friction,") == std::string::npos);
   CHECK(bare.find(", friction,") != std::string::npos);
   CHECK(bare.find("restitution,") != std::string::npos);
@@ -200,7 +202,8 @@ TEST_CASE("plan: friction, restitution and drag of all bodies, as asked, and wha
   const auto moves = [](const std::string& options) {
     return command("run ragdolls --count 1 --steps 600 --json - " + options).json()["kinetic_energy_end"].get<double>();
   };
-  const double damped = moves(""), dragged_doll = moves("--joint-damping 0 --drag 0.5"), free_doll = moves("--joint-damping 0");
+  const double damped = moves(""), dragged_doll = moves("--joint-damping 0 --drag 0.5"),
+               free_doll = moves("--joint-damping 0");
   CHECK(damped < 1e-4);
   CHECK(dragged_doll < free_doll);
 }

@@ -46,9 +46,7 @@ const Json& measure(const Json& summary, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("wild: errors are one line with the right code, and nothing on standard output") {
-  check_refused(cases);
-}
+TEST_CASE("wild: errors are one line with the right code, and nothing on standard output") { check_refused(cases); }
 
 TEST_CASE("wild: every key of the contract") {
   const Ran ran = command("wild encounter passing --count 20 --precision both --json -");

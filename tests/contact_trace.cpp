@@ -60,7 +60,8 @@ struct Lanes {
   Precision precision;
   std::uint32_t lanes;
 };
-constexpr Lanes all_lanes[] = {{Precision::f32, 1}, {Precision::f32, 4}, {Precision::f32, 8}, {Precision::f64, 1}, {Precision::f64, 4}};
+constexpr Lanes all_lanes[] = {
+    {Precision::f32, 1}, {Precision::f32, 4}, {Precision::f32, 8}, {Precision::f64, 1}, {Precision::f64, 4}};
 
 }  // namespace
 

@@ -1,6 +1,7 @@
-// Pins events: who touched, let go, was hit and moved is told once, in stable order, with the numbers that mechanics gives; the lists are
-// the same to the bit in all lanes and threads, on GL and in all mixes of places; asking changes no bit of the motion; what is not asked
-// for is not told; a failed step tells nothing; ids of what is gone are told once more, as ended.
+// Pins events: who touched, let go, was hit and moved is told once, in stable order, with the numbers that mechanics
+// gives; the lists are the same to the bit in all lanes and threads, on GL and in all mixes of places; asking changes
+// no bit of the motion; what is not asked for is not told; a failed step tells nothing; ids of what is gone are told
+// once more, as ended.
 #include <algorithm>
 #include <cmath>
 #include <cstring>

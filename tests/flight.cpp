@@ -1,7 +1,7 @@
-// Pins flight, where one kernel makes all sub-steps of a body: its bits are those of begin, integrate, advance and synchronise one
-// after the other, with drag and without, for equal moments and others, in both precisions, and a world goes from one to the other
-// and back; a body that would leave the range of numbers is frozen while all others fly on; what of a step it needs not is not
-// there; and only what acts in each sub-step keeps a world from it.
+// Pins flight, where one kernel makes all sub-steps of a body: its bits are those of begin, integrate, advance and
+// synchronise one after the other, with drag and without, for equal moments and others, in both precisions, and a world
+// goes from one to the other and back; a body that would leave the range of numbers is frozen while all others fly on;
+// what of a step it needs not is not there; and only what acts in each sub-step keeps a world from it.
 #include <algorithm>
 
 #include "pcphys/write_kernel.h"
@@ -135,7 +135,8 @@ TEST_CASE("a body that would leave the range of numbers is frozen in flight, and
 }
 
 // On the CPU such a step was made anew from the velocities that it had left, and only where bodies may sleep.
-TEST_CASE("a body that a force sends past what it was not looked for has the step of its flight made anew, in all places") {
+TEST_CASE(
+    "a body that a force sends past what it was not looked for has the step of its flight made anew, in all places") {
   require_gl();
   std::vector<BodyState> wanted;
   for (const bool sleep : {false, true})
@@ -181,7 +182,8 @@ TEST_CASE("a world in flight has no buffer of joints, contacts, sub-steps or col
     run(world, stepper, 3);
     for (const BufferUse& use : stepper.memory(world)) {
       CAPTURE(std::string(use.name));
-      CHECK((use.table == "body" || use.table == "shape" || use.name == "bodies" || use.name == "objects" || use.name == "schedule"));
+      CHECK((use.table == "body" || use.table == "shape" || use.name == "bodies" || use.name == "objects" ||
+             use.name == "schedule"));
       CHECK(use.name != "inertia");
       CHECK(use.name != "delta");
       CHECK(use.name != "drag_terms");

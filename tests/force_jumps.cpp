@@ -1,6 +1,7 @@
-// Pins that a force whose parameter the host changes between two steps jumps there: the old force until then, the new one from then
-// on, as where the host changes gravity or a constant force; on every place with the same bits, and without a second run of what
-// kernels do besides. Until it was so, the speed was off by half a sub-step times the jump of the acceleration.
+// Pins that a force whose parameter the host changes between two steps jumps there: the old force until then, the new
+// one from then on, as where the host changes gravity or a constant force; on every place with the same bits, and
+// without a second run of what kernels do besides. Until it was so, the speed was off by half a sub-step times the jump
+// of the acceleration.
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
@@ -11,15 +12,18 @@ using namespace worldtest;
 namespace {
 
 PCPHYS_KERNEL(push,
-              (PC_IN(Real) mass, PC_INOUT(Vec3) force, PC_INOUT(Vec3) torque, PC_PARAM(Vec3) acceleration, PC_PARAM(Vec3) twist),
+              (PC_IN(Real) mass, PC_INOUT(Vec3) force, PC_INOUT(Vec3) torque, PC_PARAM(Vec3) acceleration,
+               PC_PARAM(Vec3) twist),
               {
                 force = pc_madd(force, acceleration, mass);
                 torque = pc_add(torque, twist);
               })
-PCPHYS_KERNEL(burn, (PC_INOUT(Real) fuel, PC_INOUT(Vec3) force, PC_PARAM(Real) flow, PC_PARAM(Real) speed, PC_PARAM(Real) h), {
-  fuel = fuel - flow * h;
-  force.y = force.y + flow * speed;
-})
+PCPHYS_KERNEL(burn,
+              (PC_INOUT(Real) fuel, PC_INOUT(Vec3) force, PC_PARAM(Real) flow, PC_PARAM(Real) speed, PC_PARAM(Real) h),
+              {
+                fuel = fuel - flow * h;
+                force.y = force.y + flow * speed;
+              })
 PCPHYS_KERNEL(pull_home, (PC_IN(Vec3) position, PC_IN(Real) mass, PC_INOUT(Vec3) force, PC_PARAM(Real) stiffness),
               { force = pc_madd(force, position, -stiffness * mass); })
 

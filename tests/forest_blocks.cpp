@@ -13,10 +13,12 @@ TreeShapes shapes_of(const Forest& forest) {
   return shapes;
 }
 
-/// What a work group goes by that shares a tree: spans cover all nodes in their order, each of one level that has several, or of levels of one
-/// each, of which as many as follow each other; groups are all children of a node, and begin where spans do.
+/// What a work group goes by that shares a tree: spans cover all nodes in their order, each of one level that has
+/// several, or of levels of one each, of which as many as follow each other; groups are all children of a node, and
+/// begin where spans do.
 void check_levels(const TreeBlocks& blocks, std::uint32_t block) {
-  const std::uint32_t first = blocks.blocks[3 * block], count = blocks.blocks[3 * block + 1], at = blocks.blocks[3 * block + 2];
+  const std::uint32_t first = blocks.blocks[3 * block], count = blocks.blocks[3 * block + 1],
+                      at = blocks.blocks[3 * block + 2];
   REQUIRE(at >= 3 * blocks.count());
   const std::uint32_t spans = blocks.blocks.at(at), groups = blocks.blocks.at(at + 2 + 2 * spans) >> 1;
   const auto node = [&](std::uint32_t s) { return blocks.blocks.at(at + 1 + 2 * s); };

@@ -1,6 +1,6 @@
-// Pins StepSettings::order = 4: chains move in fourth order, over a long run too, under steps that change and in any number of sub-steps; the
-// same bits in lanes, threads and on GL, in all mixes; what is not smooth stays at second order, with its reason in the plan, and trees may go
-// from the one to the other.
+// Pins StepSettings::order = 4: chains move in fourth order, over a long run too, under steps that change and in any
+// number of sub-steps; the same bits in lanes, threads and on GL, in all mixes; what is not smooth stays at second
+// order, with its reason in the plan, and trees may go from the one to the other.
 #include <cmath>
 #include <functional>
 
@@ -51,7 +51,8 @@ TEST_CASE("order 4: errors fall with the fourth power of the step") {
     const auto error = [&](double dt, StepSettings settings, bool changing = false) {
       return length(Swing(free).end(dt, settings, changing) - exact);
     };
-    const double coarse = error(1.0 / 120, fourth()), fine = error(1.0 / 240, fourth()), finer = error(1.0 / 480, fourth());
+    const double coarse = error(1.0 / 120, fourth()), fine = error(1.0 / 240, fourth()),
+                 finer = error(1.0 / 480, fourth());
     INFO(free << ": " << coarse << ", " << fine << ", " << finer);
     CHECK(std::log2(coarse / fine) > 3.5);
     CHECK(std::log2(fine / finer) > 3.5);
@@ -73,8 +74,8 @@ TEST_CASE("order 4: energy and gaps over 100 s, momenta of a free chain") {
     run(swing.world, stepper, 1, 1.0 / 240);
     most = std::max(most, std::fabs(energy(swing.world) - start));
     const Pose a = *swing.world.pose(swing.links[0]), b = *swing.world.pose(swing.links[1]);
-    gap =
-        std::max(gap, length(a.position + rotate(a.orientation, {0, 0, -0.2}) - b.position - rotate(b.orientation, {0, 0, 0.2})));
+    gap = std::max(gap, length(a.position + rotate(a.orientation, {0, 0, -0.2}) - b.position -
+                               rotate(b.orientation, {0, 0, 0.2})));
   }
   MESSAGE("energy " << most << " of " << std::fabs(start) << ", gap " << gap);
   CHECK(most < 2e-3 * std::fabs(start));
@@ -136,7 +137,8 @@ TEST_CASE("order 4: a chain that meets a floor goes on at second order, and back
     REQUIRE(report);
     CHECK(report.fourth_order == (report.contacts > 0 ? 0 : 4));
     touched |= report.contacts > 0;
-    if (report.contacts > 0) CHECK(reason(stepper.plan(), "fourth order of what is touched") == "contacts act once a sub-step");
+    if (report.contacts > 0)
+      CHECK(reason(stepper.plan(), "fourth order of what is touched") == "contacts act once a sub-step");
   }
   CHECK(touched);
   for (const BodyId link : links) CHECK(world.pose(link)->position.z > -2.05);
@@ -199,7 +201,8 @@ TEST_CASE("order 4: what stays at second order, and why") {
   cart.velocity = {1, 0, 0};
   const BodyId rider = must(carried.create_body(cart)), first = must(carried.create_body(link_at({0, 0, -0.2})));
   (void)must(carried.create_joint(pin(rider, {0, 0, -0.2}, first, {0, 0, 0.2})));
-  (void)must(carried.create_joint(pin(first, {0, 0, -0.2}, must(carried.create_body(link_at({0, 0, -0.6}))), {0, 0, 0.2})));
+  (void)must(
+      carried.create_joint(pin(first, {0, 0, -0.2}, must(carried.create_body(link_at({0, 0, -0.6}))), {0, 0, 0.2})));
   Stepper driver(fourth());
   CHECK(driver.step(carried, frame).fourth_order == 0);
   CHECK(reason(driver.plan(), "what is carried") != "");

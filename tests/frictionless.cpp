@@ -1,4 +1,5 @@
-// Where nothing that touches has friction, its part of the rows is neither stored nor solved; where no body rotates, no rotation is
+// Where nothing that touches has friction, its part of the rows is neither stored nor solved; where no body rotates, no
+// rotation is
 #include <cmath>
 #include <string>
 
@@ -8,8 +9,8 @@ using namespace worldtest;
 
 namespace {
 
-/// Balls and boxes that fall into a heap on a floor, with a restitution for every third; in the second world one more ball rolls
-/// on a rough slab far away, so that whole rows are used for all.
+/// Balls and boxes that fall into a heap on a floor, with a restitution for every third; in the second world one more
+/// ball rolls on a rough slab far away, so that whole rows are used for all.
 World heap(Precision precision, bool something_rough, double e) {
   World world({precision, {0, -9.81, 0}});
   Material smooth;
@@ -128,7 +129,8 @@ TEST_CASE("bodies that do not rotate: no rotation is computed, with the bits of 
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const bool on_floor : {false, true})
       for (const bool drag : {false, true}) {
-        World still = still_bodies(precision, on_floor, drag, false), mixed = still_bodies(precision, on_floor, drag, true);
+        World still = still_bodies(precision, on_floor, drag, false),
+              mixed = still_bodies(precision, on_floor, drag, true);
         Stepper a, b;
         run(still, a, 90);
         run(mixed, b, 90);
@@ -183,7 +185,9 @@ TEST_CASE("what a body that does not rotate is not asked for") {
   def.rotates = false;
   const BodyId body = must(world.create_body(def)), other = must(world.create_body(ball({2, 0, 0})));
   CHECK(world.mass_properties(body)->moments == Vec3{});
-  const auto refused = [](const Status& status, ErrorCode code) { check_refused(bool(status), status.error(), code, "rotate"); };
+  const auto refused = [](const Status& status, ErrorCode code) {
+    check_refused(bool(status), status.error(), code, "rotate");
+  };
   refused(world.set_angular_velocity(body, {1, 0, 0}), ErrorCode::bad_argument);
   const Result<JointId> joint = world.create_joint(pin(body, {1, 0, 0}, other, {-1, 0, 0}));
   check_refused(bool(joint), joint.error(), ErrorCode::bad_joint, "rotate");

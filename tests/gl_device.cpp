@@ -22,7 +22,8 @@ constexpr Precision precisions[] = {Precision::f32, Precision::f64};
 
 std::unique_ptr<GlContext> require_context() {
   Result<std::unique_ptr<GlContext>> made = GlContext::open(-1);
-  if (!made) FAIL("This test needs OpenGL 4.3 (scripts/install-dependencies brings llvmpipe): " << made.error().message);
+  if (!made)
+    FAIL("This test needs OpenGL 4.3 (scripts/install-dependencies brings llvmpipe): " << made.error().message);
   return std::move(*made);
 }
 
@@ -70,7 +71,8 @@ bool remember_works(Backend& gl) {
   parity::require(gl.attach(Buffer::bodies, bodies.data(), bodies.size() * 4));
   parity::require(gl.attach(Buffer::motion, motion.data(), motion.size() * 4));
   parity::require(gl.attach(Buffer::velocity_parts, parts.data(), parts.size() * 4));
-  for (const Buffer buffer : {Buffer::bodies, Buffer::motion, Buffer::velocity_parts}) parity::require(gl.upload(buffer));
+  for (const Buffer buffer : {Buffer::bodies, Buffer::motion, Buffer::velocity_parts})
+    parity::require(gl.upload(buffer));
   parity::require(gl.set_infos(&info, 1));
   const KernelRun run{Kernel::remember, false, 0, gl.width(), {&all, 1}};
   parity::require(gl.run({&run, 1}));
@@ -95,8 +97,8 @@ TEST_CASE("the report names the device, its limits and its arithmetic") {
   CHECK(report.f64.parity());
   for (const GlArithmetic& found : {report.f32, report.f64})
     MESSAGE(report.renderer << ": division " << std::string(name(found.division)) << ", square root "
-                            << std::string(name(found.square_root)) << ", fma fused " << found.fma_fused << ", subnormals kept "
-                            << found.subnormals_kept);
+                            << std::string(name(found.square_root)) << ", fma fused " << found.fma_fused
+                            << ", subnormals kept " << found.subnormals_kept);
 }
 
 TEST_CASE("a device that does not exist is a named error") {
@@ -140,7 +142,8 @@ TEST_CASE("every kernel passes glslangValidator") {
       text.insert(text.find('\n') + 1, "#define precise\n");
       std::ofstream(file) << text;
       const std::string command = "(ulimit -v 4000000; glslangValidator " + file + " > " + file + ".log 2>&1)";
-      if (std::system(command.c_str()) != 0) FAIL_CHECK(std::string(schema(Kernel(k)).name) << ": " << text_of(file + ".log"));
+      if (std::system(command.c_str()) != 0)
+        FAIL_CHECK(std::string(schema(Kernel(k)).name) << ": " << text_of(file + ".log"));
     }
 }
 
@@ -150,7 +153,8 @@ TEST_CASE("constants are rounded as C++ rounds them") {
   REQUIRE(bool(single));
   REQUIRE(bool(twice));
   CHECK(single->text.find("0.63661975f") != std::string::npos);
-  CHECK(twice->text.find("packDouble2x32(uvec2(0x6dc9c883u, 0x3fe45f30u))") != std::string::npos);  // 2 / pi by its bits
+  // 2 / pi by its bits
+  CHECK(twice->text.find("packDouble2x32(uvec2(0x6dc9c883u, 0x3fe45f30u))") != std::string::npos);
   CHECK(twice->text.find("(0.25lf)") != std::string::npos);
   CHECK(single->text.find("PC_REAL(") == std::string::npos);
 }

@@ -1,5 +1,6 @@
-// Pins: division and square root on the device are those of the CPU, bit for bit, for more operands than the probe asks for: every
-// mantissa of a float's root, millions of quotients, sizes from the easiest to the last that is a normal number.
+// Pins: division and square root on the device are those of the CPU, bit for bit, for more operands than the probe asks
+// for: every mantissa of a float's root, millions of quotients, sizes from the easiest to the last that is a normal
+// number.
 #include <doctest/doctest.h>
 #include <epoxy/gl.h>
 
@@ -37,7 +38,8 @@ template <class Real> class Device {
   static constexpr std::size_t most = std::size_t{1} << 20;
   Device() {
     Result<std::unique_ptr<GlContext>> made = GlContext::open(-1);
-    if (!made) FAIL("This test needs OpenGL 4.3 (scripts/install-dependencies brings llvmpipe): " << made.error().message);
+    if (!made)
+      FAIL("This test needs OpenGL 4.3 (scripts/install-dependencies brings llvmpipe): " << made.error().message);
     context_ = std::move(*made);
     REQUIRE(bool(context_->enter()));
     const ProgramCache cache(context_->identity());
@@ -64,7 +66,8 @@ template <class Real> class Device {
     glDeleteProgram(program_);
     context_->leave();
   }
-  /// How many of the quotients x[2 i] / x[2 i + 1] and roots of |x[2 i]| are not those of the CPU; `x` has 2 `most` numbers.
+  /// How many of the quotients x[2 i] / x[2 i + 1] and roots of |x[2 i]| are not those of the CPU; `x` has 2 `most`
+  /// numbers.
   long wrong(const std::vector<Real>& x) {
     results_.resize(2 * most);
     const GLsizeiptr bytes = GLsizeiptr(2 * most * sizeof(Real));

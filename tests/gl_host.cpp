@@ -1,5 +1,6 @@
-// Pins what a host with GL of its own sees of pcphys: after every call the context, surfaces and API that were current are so again, and
-// a GL error that the host has not read yet is still there to read, whether pcphys has a context of its own or uses the host's.
+// Pins what a host with GL of its own sees of pcphys: after every call the context, surfaces and API that were current
+// are so again, and a GL error that the host has not read yet is still there to read, whether pcphys has a context of
+// its own or uses the host's.
 #include <doctest/doctest.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -45,7 +46,8 @@ class HostContext {
   void open(EGLDisplay display, bool surface) {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) return;
     eglBindAPI(EGL_OPENGL_API);
-    const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, surface ? EGL_PBUFFER_BIT : 0, EGL_NONE};
+    const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, surface ? EGL_PBUFFER_BIT : 0,
+                             EGL_NONE};
     EGLConfig config{};
     EGLint count = 0;
     if (!eglChooseConfig(display, wanted, &config, 1, &count) || count == 0) return;
@@ -80,7 +82,8 @@ void leave_error(GLenum code) {
   }
 }
 constexpr GLenum errors[] = {
-    GL_NO_ERROR, GL_INVALID_ENUM, GL_INVALID_VALUE, GL_INVALID_OPERATION, GL_INVALID_FRAMEBUFFER_OPERATION, GL_OUT_OF_MEMORY};
+    GL_NO_ERROR,     GL_INVALID_ENUM, GL_INVALID_VALUE, GL_INVALID_OPERATION, GL_INVALID_FRAMEBUFFER_OPERATION,
+    GL_OUT_OF_MEMORY};
 
 StepSettings on_gl(bool host_context) {
   StepSettings settings;

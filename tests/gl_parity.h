@@ -20,7 +20,8 @@ namespace parity {
 inline std::unique_ptr<Backend> require_gl(Precision precision) {
   Result<std::unique_ptr<Backend>> made = make_gl_backend(precision, -1, false);
   if (!made)
-    FAIL("The GL backend is needed by this test (scripts/install-dependencies brings llvmpipe): " << made.error().message);
+    FAIL("The GL backend is needed by this test (scripts/install-dependencies brings llvmpipe): "
+         << made.error().message);
   return std::move(*made);
 }
 
@@ -33,11 +34,13 @@ inline std::size_t place(std::size_t slot, std::size_t f, std::size_t reals, std
 
 inline std::vector<std::uint32_t> pack_ends(const std::vector<std::uint32_t>& logical, std::size_t width) {
   std::vector<std::uint32_t> packed(logical.size());
-  for (std::size_t i = 0; i < logical.size(); i++) packed[(i / 2 / width * 2 + i % 2) * width + i / 2 % width] = logical[i];
+  for (std::size_t i = 0; i < logical.size(); i++)
+    packed[(i / 2 / width * 2 + i % 2) * width + i / 2 % width] = logical[i];
   return packed;
 }
 template <class Scalar>
-std::uint32_t paths_of(Buffer buffer, const State<Scalar>& state, std::size_t width, std::vector<std::uint32_t>& paths) {
+std::uint32_t paths_of(Buffer buffer, const State<Scalar>& state, std::size_t width,
+                       std::vector<std::uint32_t>& paths) {
   const bool contacts = buffer == Buffer::contact_paths;
   const std::vector<Range>& colours = contacts ? state.contact_colours : state.joint_colours;
   const Buffer ends = contacts ? Buffer::contact_ends : Buffer::joint_ends;
@@ -45,7 +48,8 @@ std::uint32_t paths_of(Buffer buffer, const State<Scalar>& state, std::size_t wi
                     pack_ends(state.indices[std::size_t(ends)], width), paths);
 }
 template <class Scalar>
-std::vector<std::uint32_t> pack_indices(Buffer buffer, const State<Scalar>& state, std::size_t width, const TreeLayout& trees) {
+std::vector<std::uint32_t> pack_indices(Buffer buffer, const State<Scalar>& state, std::size_t width,
+                                        const TreeLayout& trees) {
   const std::vector<std::uint32_t>& logical = state.indices[std::size_t(buffer)];
   if (buffer == Buffer::tree_blocks) return trees.lists.blocks;
   if (buffer == Buffer::tree_parents) return trees.lists.parents;
@@ -59,8 +63,8 @@ std::vector<std::uint32_t> pack_indices(Buffer buffer, const State<Scalar>& stat
   return is_ends(buffer) ? pack_ends(logical, width) : logical;
 }
 
-/// Where the logical slots of a buffer of rows stand, and how many places there are: with the lanes that pad blocks of trees, and the
-/// ways that are shorter than others of their block.
+/// Where the logical slots of a buffer of rows stand, and how many places there are: with the lanes that pad blocks of
+/// trees, and the ways that are shorter than others of their block.
 struct SlotLayout {
   std::vector<std::size_t> slots;  // empty: as they come
   std::size_t size = 0;
@@ -73,9 +77,13 @@ template <class Scalar> SlotLayout lay_out_reach(const State<Scalar>& state, std
   layout.size = paths_of(Buffer::contact_paths, state, width, packed) * width;
   const std::uint32_t count = state.contact_colours[state.tree_colours - 1].end;
   for (std::uint32_t slot = 0; slot < count; slot++) {
-    const std::uint32_t *own = &single[single[slot]], *block = &packed[packed[slot / width]];  // heads: see tree_path.inl
-    const auto count = [](const std::uint32_t* head, std::size_t side) { return std::size_t{2} * head[4 + side] + head[side]; };
-    for (std::size_t k = 0; k < 2; k++) layout.slots.push_back((block[7] + k) * width + slot % width);  // of how the sides meet
+    // heads: see tree_path.inl
+    const std::uint32_t *own = &single[single[slot]], *block = &packed[packed[slot / width]];
+    const auto count = [](const std::uint32_t* head, std::size_t side) {
+      return std::size_t{2} * head[4 + side] + head[side];
+    };
+    // of how the sides meet
+    for (std::size_t k = 0; k < 2; k++) layout.slots.push_back((block[7] + k) * width + slot % width);
     for (std::size_t turns = 0; turns < 2; turns++)
       for (std::size_t side = 0; side < 2; side++)
         for (std::size_t k = 0; k < count(own, side); k++) {
@@ -94,8 +102,8 @@ SlotLayout layout_of(Buffer buffer, const State<Scalar>& state, std::size_t widt
 
 /// Copies between logical order and a backend's, for rows of the solver; tables are the same in both.
 template <class Scalar>
-void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width, const SlotLayout& layout,
-                bool pack) {
+void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count, std::size_t width,
+                const SlotLayout& layout, bool pack) {
   const std::size_t reals = schema(buffer).reals;
   for (std::size_t i = 0; i < count; i++) {
     const std::size_t slot = layout.slots.empty() ? i / reals : layout.slots[i / reals];
@@ -107,7 +115,8 @@ void copy_reals(Buffer buffer, const Scalar* from, Scalar* to, std::size_t count
 template <class Scalar> std::vector<Range> ranges_of(Kernel kernel, const State<Scalar>& state, std::uint32_t width) {
   const Domain domain = schema(kernel).domain;
   if (of_trees(domain)) return {{0, lay_out(state.trees, width).lists.count()}};
-  if (domain == Domain::net) return {};  // whole scenes compare them (tests/joint_drives.cpp, pcphys wild springs --bits-gl)
+  // whole scenes compare them (tests/joint_drives.cpp, pcphys wild springs --bits-gl)
+  if (domain == Domain::net) return {};
   if (domain == Domain::body) return {{0, std::uint32_t(state.indices[std::size_t(Buffer::bodies)].size())}};
   const bool joints = domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint;
   std::vector<Range> ranges = joints ? state.joint_colours : state.contact_colours;
@@ -136,8 +145,8 @@ template <class Scalar> void run_cpu(const CpuKernels& kernels, Kernel kernel, s
     if (is_index(access.buffer))
       std::memcpy(buffers[i], indices.data(), indices.size() * 4);
     else
-      copy_reals(access.buffer, state.reals[i].data(), static_cast<Scalar*>(buffers[i]), state.reals[i].size(), kernels.lanes,
-                 layouts[i], true);
+      copy_reals(access.buffer, state.reals[i].data(), static_cast<Scalar*>(buffers[i]), state.reals[i].size(),
+                 kernels.lanes, layouts[i], true);
   }
   {
     const FlushSubnormals flush;  // as stepping does, and some GPUs
@@ -157,7 +166,8 @@ inline void require(const Status& status) {
 }
 
 /// `width`: slots side by side, gl.width() or 1.
-template <class Scalar> void run_gl(Backend& gl, std::uint32_t width, Kernel kernel, std::size_t info, State<Scalar>& state) {
+template <class Scalar>
+void run_gl(Backend& gl, std::uint32_t width, Kernel kernel, std::size_t info, State<Scalar>& state) {
   std::array<std::vector<Scalar>, buffer_count> reals;
   std::array<std::vector<std::uint32_t>, buffer_count> indices;
   std::array<SlotLayout, buffer_count> layouts;
@@ -194,7 +204,8 @@ std::size_t differences(Kernel kernel, const State<Scalar>& a, const State<Scala
   std::size_t count = 0;
   for (const Access& access : schema(kernel).accesses) {
     const std::size_t i = std::size_t(access.buffer), reals = schema(access.buffer).reals;
-    // of contact_reach lanes fill what they have no use for where others of their block have: what they use shows in what comes of it
+    // of contact_reach lanes fill what they have no use for where others of their block have: what they use shows in
+    // what comes of it
     for (std::size_t k = 0; access.write && access.buffer != Buffer::contact_reach && k < a.reals[i].size(); k++) {
       if (same(a.reals[i][k], b.reals[i][k])) continue;
       char text[200];

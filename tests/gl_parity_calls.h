@@ -59,8 +59,9 @@ inline constexpr Call step_calls[] = {
 inline constexpr Call last_calls[] = {
     {Kernel::contact_restitution, 1}, {Kernel::contact_touch, 1}, {Kernel::contact_store, 1}, {Kernel::synchronise, 1},
     {Kernel::restagger, 1},           {Kernel::joint_keep, 1},    {Kernel::tree_keep, 1}};
-inline constexpr Call drag_calls[] = {{Kernel::begin_drag, 0},    {Kernel::integrate_drag, 0},   {Kernel::remember, 0},
-                                      {Kernel::advance_round, 0}, {Kernel::synchronise_drag, 1}, {Kernel::restagger_drag, 1}};
+inline constexpr Call drag_calls[] = {{Kernel::begin_drag, 0},       {Kernel::integrate_drag, 0},
+                                      {Kernel::remember, 0},         {Kernel::advance_round, 0},
+                                      {Kernel::synchronise_drag, 1}, {Kernel::restagger_drag, 1}};
 inline constexpr Call seed_calls[] = {
     {Kernel::begin_seed, 0}, {Kernel::integrate_seed, 0}, {Kernel::advance_seed, 0}, {Kernel::synchronise_seed, 1}};
 
@@ -85,7 +86,8 @@ inline constexpr Call frictionless_calls[] = {{Kernel::inertia, 0},
                                               {Kernel::contact_touch_frictionless, 1},
                                               {Kernel::contact_store_frictionless, 1}};
 
-inline constexpr Call smooth_calls[] = {{Kernel::smooth_prepare, 0}, {Kernel::smooth_step, 0}, {Kernel::smooth_step, 0}};
+inline constexpr Call smooth_calls[] = {
+    {Kernel::smooth_prepare, 0}, {Kernel::smooth_step, 0}, {Kernel::smooth_step, 0}};
 
 /// The kernel that stands in where joints have motors or springs.
 inline Kernel driven(Kernel kernel) {
@@ -110,7 +112,8 @@ inline std::vector<Call> calls(int sub_steps) {
   return all;
 }
 
-/// What runs one after the other: of second order, and from the start of fourth where trees turn by no more than it is for.
+/// What runs one after the other: of second order, and from the start of fourth where trees turn by no more than it is
+/// for.
 inline std::vector<std::vector<Call>> sequences(const Mood& mood) {
   std::vector<std::vector<Call>> all{calls(3),
                                      {std::begin(flight_calls), std::end(flight_calls)},
@@ -121,7 +124,8 @@ inline std::vector<std::vector<Call>> sequences(const Mood& mood) {
 
 template <class Scalar> State<Scalar> made(const Mood& mood) {
   State<Scalar> state = Maker<Scalar>(8, mood).make();
-  state.reals[std::size_t(Buffer::contact_reach)].resize(lay_out_reach(state, 1).size * schema(Buffer::contact_reach).reals);
+  state.reals[std::size_t(Buffer::contact_reach)].resize(lay_out_reach(state, 1).size *
+                                                         schema(Buffer::contact_reach).reals);
   return state;
 }
 
@@ -154,8 +158,9 @@ inline void require_parity(Precision precision) {
 template <class Scalar> void compare_gl(Precision precision, const CpuKernels& reference) {
   require_parity(precision);
   const std::unique_ptr<Backend> gl = require_gl(precision);
-  compare<Scalar>(reference, "GL",
-                  [&](Kernel kernel, std::size_t info, State<Scalar>& state) { run_gl(*gl, gl->width(), kernel, info, state); });
+  compare<Scalar>(reference, "GL", [&](Kernel kernel, std::size_t info, State<Scalar>& state) {
+    run_gl(*gl, gl->width(), kernel, info, state);
+  });
 }
 
 }  // namespace parity

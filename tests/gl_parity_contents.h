@@ -27,8 +27,8 @@ inline Table table_of(Buffer buffer) { return schema(buffer).table; }
 inline bool is_index(Buffer buffer) { return schema(buffer).reals == 0; }
 inline bool is_tree_rows(Buffer buffer) { return buffer == Buffer::tree_rows || buffer == Buffer::tree_drive_rows; }
 inline bool is_rows(Buffer buffer) {
-  return buffer == Buffer::contact_rows || buffer == Buffer::frictionless_rows || buffer == Buffer::contact_impulses || buffer == Buffer::joint_rows ||
-         is_tree_rows(buffer) || buffer == Buffer::contact_reach;
+  return buffer == Buffer::contact_rows || buffer == Buffer::frictionless_rows || buffer == Buffer::contact_impulses ||
+         buffer == Buffer::joint_rows || is_tree_rows(buffer) || buffer == Buffer::contact_reach;
 }
 inline bool is_ends(Buffer buffer) { return buffer == Buffer::contact_ends || buffer == Buffer::joint_ends; }
 
@@ -50,10 +50,11 @@ inline constexpr Mood moods[] = {
 template <class Scalar> struct State {
   std::array<std::vector<Scalar>, buffer_count> reals;
   std::array<std::vector<std::uint32_t>, buffer_count> indices;  // ends: a and b of slot 0, of slot 1, ...
-  std::array<InfoOf<Scalar>, 3> infos;                           // biased of a step's first sub-step, relax, biased of others
-  std::vector<Range> contact_colours, joint_colours;             // in slots
-  std::uint32_t tree_colours = 0;                                // of contacts and joints with trees, which come first
-  Forest trees;                                                  // of joints of their own
+  // biased of a step's first sub-step, relax, biased of others
+  std::array<InfoOf<Scalar>, 3> infos;
+  std::vector<Range> contact_colours, joint_colours;  // in slots
+  std::uint32_t tree_colours = 0;                     // of contacts and joints with trees, which come first
+  Forest trees;                                       // of joints of their own
   TreeNodes nodes;
 };
 
@@ -117,11 +118,12 @@ template <class Scalar> void Maker<Scalar>::body(std::uint32_t row) {
       {either(speed), either(speed), either(speed), dynamic ? 1 / mass : 0, either(spin), either(spin), either(spin),
        dynamic ? double(int(below(3)) - 1) : 0});
   const auto q = ground || rarely() ? std::array<double, 4>{0, 0, 0, 1} : turn(4);
-  const double far = ground ? 0 : mood_.distance, near = ground ? 0 : 3, low = far * std::numeric_limits<Scalar>::epsilon() / 4,
+  const double far = ground ? 0 : mood_.distance, near = ground ? 0 : 3,
+               low = far * std::numeric_limits<Scalar>::epsilon() / 4,
                unit_low = ground ? 0 : std::numeric_limits<Scalar>::epsilon() / 4;
   put(Buffer::pose, row,
-      {far + either(near), either(near), either(near) - far, 0, q[0], q[1], q[2], q[3], either(low), either(low), either(low), 0,
-       either(unit_low), either(unit_low), either(unit_low), either(unit_low)});
+      {far + either(near), either(near), either(near) - far, 0, q[0], q[1], q[2], q[3], either(low), either(low),
+       either(low), 0, either(unit_low), either(unit_low), either(unit_low), either(unit_low)});
   const double change = speed / 100, lost = speed * std::numeric_limits<Scalar>::epsilon() / 4;
   put(Buffer::velocity_parts, row,
       {either(change), either(change), either(change), 0, either(change), either(change), either(change), 0,  //
@@ -132,12 +134,14 @@ template <class Scalar> void Maker<Scalar>::body(std::uint32_t row) {
   const double drags[] = {0, 0.25, 5, 300};
   const double push = ground || rarely() ? 0 : mood_.mass * 10;
   put(Buffer::force, row,
-      {either(push), either(push), either(push), drags[below(4)], either(push), either(push), either(push), drags[below(4)]});
+      {either(push), either(push), either(push), drags[below(4)], either(push), either(push), either(push),
+       drags[below(4)]});
   const double moved = ground ? 0 : speed / 1000;
   put(Buffer::inertia, row,
-      {x / moments[0], x * either(0.1) / moments[2], x * either(0.1) / moments[2], x / moments[1], x * either(0.1) / moments[2],
-       x / moments[2], x, 0});
-  put(Buffer::delta, row, {either(moved), either(moved), either(moved), 0, either(moved), either(moved), either(moved), 0});
+      {x / moments[0], x * either(0.1) / moments[2], x * either(0.1) / moments[2], x / moments[1],
+       x * either(0.1) / moments[2], x / moments[2], x, 0});
+  put(Buffer::delta, row,
+      {either(moved), either(moved), either(moved), 0, either(moved), either(moved), either(moved), 0});
 }
 
 template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
@@ -145,7 +149,8 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   const auto n = rarely() ? std::array<double, 4>{0, 1, 0, 0} : turn(3);
   put(Buffer::contact, row, {n[0], n[1], n[2], double(below(5))});
   for (std::uint32_t point = 0; point < 4; point++) {
-    Scalar* at = state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals + 4 + point * 4;
+    Scalar* at =
+        state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals + 4 + point * 4;
     for (int i = 0; i < 3; i++) at[i] = Scalar(either(0.5));
     at[3] = Scalar(rarely() ? 0 : either(0.01));
   }
@@ -156,7 +161,8 @@ template <class Scalar> void Maker<Scalar>::contact(std::uint32_t row) {
   at[8] = Scalar(rarely() ? 0 : real(0, 1.2));
   at[9] = Scalar(at[8] * Scalar(real(0.5, 1)));
   at[10] = Scalar(rarely() ? 0 : real(0.5, 1));
-  at[11] = Scalar(rarely() ? real(0, 1.0 / 240) : -double(below(2)));  // meets within the sub-step, rests, hangs on joints
+  // meets within the sub-step, rests, hangs on joints
+  at[11] = Scalar(rarely() ? real(0, 1.0 / 240) : -double(below(2)));
   Scalar* const contact = state_.reals[std::size_t(Buffer::contact)].data() + row * schema(Buffer::contact).reals;
   for (int i = 0; i < 3; i++) contact[place::apart + i] = Scalar(either(1));  // from one body to the other
   contact[place::found_anew] = Scalar(rarely() ? 2 : below(2));  // its rows act no longer, stand, were found anew
@@ -189,19 +195,22 @@ template <class Scalar> void Maker<Scalar>::joint(std::uint32_t row) {
   for (const Buffer b : {Buffer::joint_frame, Buffer::joint_solved}) put(b, row, frame);
   const double push = rarely() ? 0 : mood_.impulse;
   const auto axes = turn(4);
-  const double light = 1 / mood_.mass;  // principal moments about the pin, the middle one in the middle; a hinge has one alone
+  // principal moments about the pin, the middle one in the middle; a hinge has one alone
+  const double light = 1 / mood_.mass;
   const bool hinge = rarely();
   put(Buffer::joint_pivot, row,
-      {light * real(3, 5), hinge ? 0 : light * real(2, 3), hinge ? 0 : light * real(1, 2), 1, axes[0], axes[1], axes[2], axes[3],
-       either(0.5), either(0.5), either(0.5), mood_.mass * real(0.1, 3)});
-  put(Buffer::joint_impulse, row, {either(push), either(push), either(push), 0, either(push), either(push), either(push), 0});
+      {light * real(3, 5), hinge ? 0 : light * real(2, 3), hinge ? 0 : light * real(1, 2), 1, axes[0], axes[1], axes[2],
+       axes[3], either(0.5), either(0.5), either(0.5), mood_.mass * real(0.1, 3)});
+  put(Buffer::joint_impulse, row,
+      {either(push), either(push), either(push), 0, either(push), either(push), either(push), 0});
 }
 
 /// Motors and springs, strong and weak, on every second joint; some coloured ones are springs between two points.
 template <class Scalar> void Maker<Scalar>::drive(std::uint32_t row) {
   const std::uint32_t kind = below(2) == 0 ? 0 : row <= coloured_joints && below(3) == 0 ? 2 : 1;
   const auto rest = rarely() ? std::array<double, 4>{0, 0, 0, 1} : turn(4);
-  const double strength = mood_.impulse * std::pow(10, either(4)), turning = kind == 1 && !rarely() ? 10 * mood_.impulse : 0;
+  const double strength = mood_.impulse * std::pow(10, either(4)),
+               turning = kind == 1 && !rarely() ? 10 * mood_.impulse : 0;
   put(Buffer::joint_drive, row,
       {rest[0], rest[1], rest[2], rest[3], either(mood_.tree_spin), turning * real(0, 1), rarely() ? 0 : strength,
        rarely() ? 0 : strength * real(0, 0.1), double(kind), rarely() ? 0 : real(0, 1), 0, 0});
@@ -223,18 +232,20 @@ void Maker<Scalar>::slots(Buffer ends, Buffer order, std::vector<Range>& colours
       std::uint32_t a = bodies[2 * slot], b = bodies[2 * slot + 1];
       if (below(4) == 0) (below(2) ? a : b) = free_bodies + 1 + below(fixed_bodies + kinematic_bodies);
       if (mood_.distance < 10 && rarely()) a = 0;  // the ground stands at the origin
-      for (const std::uint32_t end : {padding ? 0 : a, padding ? 0 : b}) state_.indices[std::size_t(ends)].push_back(end);
+      for (const std::uint32_t end : {padding ? 0 : a, padding ? 0 : b})
+        state_.indices[std::size_t(ends)].push_back(end);
       state_.indices[std::size_t(order)].push_back(padding ? 0 : record++);
     }
     colours.push_back({begin, begin + count});
   }
 }
 
-/// Contacts or joints with bodies of trees, in colours of their own before all others: within one, no tree and no free body stands in
-/// two slots. Between two bodies of a tree, with something fixed, with a free body, between two trees.
+/// Contacts or joints with bodies of trees, in colours of their own before all others: within one, no tree and no free
+/// body stands in two slots. Between two bodies of a tree, with something fixed, with a free body, between two trees.
 template <class Scalar> void Maker<Scalar>::tree_slots(Buffer ends_of, Buffer order_of, std::vector<Range>& colours) {
   std::uint32_t record = 1;
-  std::vector<std::uint32_t>&ends = state_.indices[std::size_t(ends_of)], &order = state_.indices[std::size_t(order_of)];
+  std::vector<std::uint32_t>&ends = state_.indices[std::size_t(ends_of)],
+  &order = state_.indices[std::size_t(order_of)];
   for (std::uint32_t c = 0; c < tree_colour_count; c++) {
     std::vector<std::size_t> trees(state_.trees.trees());
     for (std::size_t i = 0; i < trees.size(); i++) trees[i] = i;
@@ -279,7 +290,8 @@ template <class Scalar> void Maker<Scalar>::assemble(std::span<const TreeNode> t
   };
   for (const TreeNode& node : tree.subspan(1)) {
     const Scalar *frame = row(Buffer::joint_frame, node.joint), *b = frame + 8;
-    const pcphys::Vec3 gap = pin(tree[node.parent].body, node.flipped ? b : frame) - pin(node.body, node.flipped ? frame : b);
+    const pcphys::Vec3 gap =
+        pin(tree[node.parent].body, node.flipped ? b : frame) - pin(node.body, node.flipped ? frame : b);
     Scalar* at = row(Buffer::pose, node.body);
     at[0] += Scalar(gap.x + either(0.02)), at[1] += Scalar(gap.y + either(0.02)), at[2] += Scalar(gap.z + either(0.02));
   }
@@ -297,7 +309,8 @@ template <class Scalar> void Maker<Scalar>::trees() {
   }
   state_.trees.build(tree_links(1 + coloured_joints, 1 + loose_bodies, anchors, random_), masses, ids);
   for (std::size_t tree = 0; tree < state_.trees.trees(); tree++)
-    if (state_.trees.tree(tree).size() == 2 && masses[state_.trees.tree(tree)[0].body] == 0) state_.trees.set_pivot(tree);
+    if (state_.trees.tree(tree).size() == 2 && masses[state_.trees.tree(tree)[0].body] == 0)
+      state_.trees.set_pivot(tree);
   state_.nodes.build(state_.trees, masses);
   for (const Buffer buffer : {Buffer::node_operator, Buffer::node_response, Buffer::node_pending})
     state_.reals[std::size_t(buffer)].resize(state_.nodes.rows() * schema(buffer).reals);
@@ -339,7 +352,7 @@ template <class Scalar> void Maker<Scalar>::infos() {
     info.restitution_threshold = Scalar(mood_.speed / 10);
     info.rounding = Scalar(1e-3);
     info.substeps = Scalar(3);
-    info.largest_state = Scalar(1e4);  // some bodies are beyond it
+    info.largest_state = Scalar(1e4);   // some bodies are beyond it
     info.largest_momentum = Scalar(1);  // some contacts are
     state_.infos[std::size_t(phase)] = info;
   }
@@ -355,15 +368,18 @@ template <class Scalar> State<Scalar> Maker<Scalar>::make() {
     const Buffer buffer = Buffer(i);
     if (is_tree_rows(buffer) || table_of(buffer) == Table::node) continue;  // as many as nodes, below
     if (buffer == Buffer::contact_reach) continue;                          // when the contacts' bodies are known
-    const std::uint32_t slots = buffer == Buffer::joint_rows ? coloured_joints : rows[std::size_t(table_of(buffer))] - 1;
+    const std::uint32_t slots =
+        buffer == Buffer::joint_rows ? coloured_joints : rows[std::size_t(table_of(buffer))] - 1;
     if (!is_index(buffer))
-      state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) * schema(buffer).reals);
+      state_.reals[i].resize(std::size_t(is_rows(buffer) ? slots : rows[std::size_t(table_of(buffer))]) *
+                             schema(buffer).reals);
   }
   for (std::uint32_t row = 0; row < rows[std::size_t(Table::body)]; row++) body(row);
   for (std::uint32_t row = 0; row < rows[std::size_t(Table::contact)]; row++) contact(row);
   for (std::uint32_t row = 0; row < rows[std::size_t(Table::joint)]; row++) joint(row);
   for (std::uint32_t row = 1; row < body_count; row++) state_.indices[std::size_t(Buffer::bodies)].push_back(row);
-  while (state_.indices[std::size_t(Buffer::bodies)].size() % 32 != 0) state_.indices[std::size_t(Buffer::bodies)].push_back(0);
+  while (state_.indices[std::size_t(Buffer::bodies)].size() % 32 != 0)
+    state_.indices[std::size_t(Buffer::bodies)].push_back(0);
   trees();
   tree_slots(Buffer::contact_ends, Buffer::contact_order, state_.contact_colours);
   tree_slots(Buffer::joint_ends, Buffer::joint_order, state_.joint_colours);

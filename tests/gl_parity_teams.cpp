@@ -1,5 +1,5 @@
-// As gl_parity.cpp, of trees of which few are of a shape: trees of several shapes side by side in one work group, and one shared by a group,
-// in two orders; what a barrier parts is the same in both precisions.
+// As gl_parity.cpp, of trees of which few are of a shape: trees of several shapes side by side in one work group, and
+// one shared by a group, in two orders; what a barrier parts is the same in both precisions.
 #include <utility>
 
 #include "gl_parity_calls.h"
@@ -8,7 +8,8 @@ using namespace parity;
 
 namespace {
 
-template <class Scalar> void compare_trees(Precision precision, const CpuKernels& reference, GlTeam wanted, const char* what) {
+template <class Scalar>
+void compare_trees(Precision precision, const CpuKernels& reference, GlTeam wanted, const char* what) {
   require_parity(precision);
   const GlTeam before = std::exchange(gl_team(), wanted);
   const std::unique_ptr<Backend> at = require_gl(precision);

@@ -35,7 +35,8 @@ inline const std::vector<TreeShape>& tree_shapes() {
       {6, true, {0, 1, 1, 2, 0}},
       {37, true, {0}},
       {1, true, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}},
-      // for work groups: more nodes in a level than invocations, with brothers and without; a chain below a bush; many children of one body
+      // for work groups: more nodes in a level than invocations, with brothers and without; a chain below a bush; many
+      // children of one body
       {1, false, wide_tree()},
       {1, true, {0, 1, 1, 1, 2, 2, 3, 4, 5, 5, 9, 11, 12, 13}},
       {1, false, std::vector<std::uint32_t>(200, 0)},
@@ -55,8 +56,8 @@ inline std::uint32_t tree_bodies() {
 }
 
 /// Joints of rows `first_joint` on, between bodies from `body` on in turn; what hangs does so from one of `anchors`.
-inline std::vector<JointLink> tree_links(std::uint32_t first_joint, std::uint32_t body, const std::vector<std::uint32_t>& anchors,
-                                         std::mt19937_64& random) {
+inline std::vector<JointLink> tree_links(std::uint32_t first_joint, std::uint32_t body,
+                                         const std::vector<std::uint32_t>& anchors, std::mt19937_64& random) {
   std::vector<JointLink> links;
   for (const TreeShape& shape : tree_shapes())
     for (std::uint32_t tree = 0; tree < shape.trees; tree++) {

@@ -31,7 +31,8 @@ int error = 0;
 template <class R> R spoiled(R exact) {
   if (!std::isfinite(exact) || exact == 0) return exact;
   R value = exact;
-  for (int i = 0; i < std::abs(error); i++) value = std::nextafter(value, error < 0 ? R(0) : std::numeric_limits<R>::infinity());
+  for (int i = 0; i < std::abs(error); i++)
+    value = std::nextafter(value, error < 0 ? R(0) : std::numeric_limits<R>::infinity());
   return value;
 }
 template <class R> R pc_device_div(R a, R b) { return spoiled<R>(a / b); }

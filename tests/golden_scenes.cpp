@@ -21,8 +21,9 @@ struct Case {
   const char* scene;
   int count;
 };
-constexpr Case cases[] = {{"balls", 60}, {"ragdolls", 8}, {"pyramid", 10},  {"stack", 10}, {"chain", 20},  {"chainswing", 20},
-                          {"heavy", 2},  {"door", 1},     {"dominoes", 20}, {"hulls", 40}, {"magnets", 72}};
+constexpr Case cases[] = {{"balls", 60},    {"ragdolls", 8},    {"pyramid", 10}, {"stack", 10},
+                          {"chain", 20},    {"chainswing", 20}, {"heavy", 2},    {"door", 1},
+                          {"dominoes", 20}, {"hulls", 40},      {"magnets", 72}};
 
 constexpr const char* header =
     "# Hashes of scenes on the CPU: scene,count,precision,steps,hash (steps of 1/60 s, 4 sub-steps).\n"
@@ -42,8 +43,9 @@ std::vector<std::string> table() {
         run(s.world, stepper, steps - made);
         made = steps;
         char row[96];
-        std::snprintf(row, sizeof row, "%s,%d,%s,%d,%016llx", c.scene, c.count, precision == Precision::f32 ? "float" : "double",
-                      steps, static_cast<unsigned long long>(s.world.hash()));
+        std::snprintf(row, sizeof row, "%s,%d,%s,%d,%016llx", c.scene, c.count,
+                      precision == Precision::f32 ? "float" : "double", steps,
+                      static_cast<unsigned long long>(s.world.hash()));
         rows.push_back(row);
       }
     }
@@ -68,7 +70,7 @@ TEST_CASE("golden hashes") {
   REQUIRE_MESSAGE(found.size() == wanted.size(),
                   "the table has other rows than the test; write it anew with PCPHYS_WRITE_GOLDEN=1");
   for (std::size_t i = 0; i < wanted.size(); i++)
-    CHECK_MESSAGE(
-        found[i] == wanted[i],
-        "if this change of physics was meant, write the table anew with PCPHYS_WRITE_GOLDEN=1 (see tests/golden_scenes.cpp)");
+    CHECK_MESSAGE(found[i] == wanted[i],
+                  "if this change of physics was meant, write the table anew with PCPHYS_WRITE_GOLDEN=1 (see "
+                  "tests/golden_scenes.cpp)");
 }

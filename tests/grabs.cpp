@@ -1,5 +1,6 @@
-// Pins what a pin with a largest force does (JointDef::largest_force, World::grab): what it holds it holds closed, what it cannot hold it
-// pulls by that force and no more, so that no drag tears a ragdoll; momentum stays; equal bits on every backend.
+// Pins what a pin with a largest force does (JointDef::largest_force, World::grab): what it holds it holds closed, what
+// it cannot hold it pulls by that force and no more, so that no drag tears a ragdoll; momentum stays; equal bits on
+// every backend.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -83,7 +84,8 @@ TEST_CASE("grab: no drag tears a ragdoll, whatever it is dragged through") {
 
 namespace {
 
-/// How far the point that was grabbed is from the hand, after each of 240 steps: of a hand that goes round at 2 m/s with one of ten bones [m].
+/// How far the point that was grabbed is from the hand, after each of 240 steps: of a hand that goes round at 2 m/s
+/// with one of ten bones [m].
 std::vector<double> gaps_of_grip(int draw) {
   World world({.precision = draw % 2 == 0 ? Precision::f64 : Precision::f32});
   const Ragdoll doll = must(world.create_ragdoll(RagdollDef::human(), {{0, 2, 0}, {}}));
@@ -119,8 +121,9 @@ TEST_CASE("grab: what a hand can hold follows it, on the point that it grabbed")
     widest = std::max(widest, most);
     wide += most > 0.03;
   }
-  MESSAGE("open by more than a millimetre after " << open << " steps of 240; at most by " << mean << " m in the mean of " << draws
-                                                  << " draws, " << widest << " m in the worst");
+  MESSAGE("open by more than a millimetre after " << open << " steps of 240; at most by " << mean
+                                                  << " m in the mean of " << draws << " draws, " << widest
+                                                  << " m in the worst");
   CHECK(open < 18);
   CHECK(mean < 0.005);
   CHECK(wide <= 1);
@@ -190,7 +193,8 @@ TEST_CASE("grab: the same bits in lanes, in threads, on GL and in all mixes") {
 
 TEST_CASE("grab: what is refused") {
   World world;
-  const BodyId free = must(world.create_body(ball({0, 1, 0}))), fixed = must(world.create_body(fixed_box({0, 5, 0}, {1, 1, 1})));
+  const BodyId free = must(world.create_body(ball({0, 1, 0}))),
+               fixed = must(world.create_body(fixed_box({0, 5, 0}, {1, 1, 1})));
   BodyDef def = ball({0, 2, 0});
   def.kind = BodyKind::kinematic;
   const BodyId hand = must(world.create_body(def));

@@ -118,12 +118,13 @@ TEST_CASE("hull: as deep as the axis of least overlap, of all faces and pairs of
         const auto made = make_hull(random.points());
         if (made) hulls[k] = *made;
       } while (!hulls[k] || hulls[k].inner_radius() < 0.02);
-      shapes[k] = narrow_test::shape(ShapeKind::hull, {hulls[k].radius(), hulls[k].inner_radius(), 0}, {}, random.rotation());
+      shapes[k] =
+          narrow_test::shape(ShapeKind::hull, {hulls[k].radius(), hulls[k].inner_radius(), 0}, {}, random.rotation());
       shapes[k].hull = hulls[k].data();
     }
     const Vec3 d = random.direction();
-    narrow_test::place(shapes[1],
-                       random.between(0, 1) * (narrow_test::reach(shapes[0], d) + narrow_test::reach(shapes[1], -d)) * d);
+    narrow_test::place(
+        shapes[1], random.between(0, 1) * (narrow_test::reach(shapes[0], d) + narrow_test::reach(shapes[1], -d)) * d);
     const double depth = scenes::overlap(hulls[0], {{}, narrow_test::turn(shapes[0])}, hulls[1],
                                          {narrow_test::centre(shapes[1]), narrow_test::turn(shapes[1])});
     if (!(depth > 1e-3)) continue;
@@ -152,7 +153,8 @@ TEST_CASE("hull: the features of four corners on a floor stay") {
       CHECK(first.count == (points.size() == 6 ? 3 : 4));
       for (int i = 0; i < 50; i++) {
         const Quat q = axis_angle(random.direction(), 1e-4);
-        const auto m = narrow_test::find(narrow_test::posed(base, Vec3{0, 0.499, 0} + random.ball(1e-4), q), floor, 0.02);
+        const auto m =
+            narrow_test::find(narrow_test::posed(base, Vec3{0, 0.499, 0} + random.ball(1e-4), q), floor, 0.02);
         CHECK(narrow_test::features(m) == narrow_test::features(first));
         for (std::uint32_t k = 0; k < m.count; k++) CHECK(std::fabs(m.points[k].separation + 0.001) < 3e-4);
       }
@@ -211,8 +213,8 @@ TEST_CASE("hull: stacks of ten stay where they are, of many corners too") {
     const std::string name = c.name;
     CAPTURE(name);
     const Rest rest = stacked(c.shape, c.floor, c.precision);
-    MESSAGE(name, ": sideways ", 1000 * rest.sideways, " mm (boxes ", 1000 * boxes.sideways, "), down ", 1000 * rest.down,
-            " mm (", 1000 * boxes.down, "), ", rest.speed, " m/s");
+    MESSAGE(name, ": sideways ", 1000 * rest.sideways, " mm (boxes ", 1000 * boxes.sideways, "), down ",
+            1000 * rest.down, " mm (", 1000 * boxes.down, "), ", rest.speed, " m/s");
     CHECK(rest.sideways < 0.008);
     CHECK(rest.down < 0.02);
     CHECK(rest.speed < 2e-3);
@@ -223,8 +225,9 @@ TEST_CASE("hull: parts of a compound touch where they stand") {
   World world;
   add(world, ShapeDef::plane(), {}, BodyKind::fixed);
   BodyDef table;  // a top and two feet, of hulls that were given where they are
-  for (const auto& [size, at] :
-       {std::pair<Vec3, Vec3>{{1, 0.1, 0.5}, {0, 0.9, 0}}, {{0.1, 0.4, 0.5}, {-0.8, 0.4, 0}}, {{0.1, 0.4, 0.5}, {0.8, 0.4, 0}}}) {
+  for (const auto& [size, at] : {std::pair<Vec3, Vec3>{{1, 0.1, 0.5}, {0, 0.9, 0}},
+                                 {{0.1, 0.4, 0.5}, {-0.8, 0.4, 0}},
+                                 {{0.1, 0.4, 0.5}, {0.8, 0.4, 0}}}) {
     std::vector<Vec3> points = box_corners(size);
     for (Vec3& p : points) p = p + at;
     table.shapes.push_back(ShapeDef::hull(must(make_hull(points))));
@@ -241,7 +244,8 @@ TEST_CASE("hull: parts of a compound touch where they stand") {
   const Pose pose = must(world.pose(id));
   double lowest = 1e9;
   for (const ShapeDef& shape : must(world.shapes(id)))
-    for (const Vec3& v : shape.convex.vertices()) lowest = std::min(lowest, transform(pose, transform(shape.local, v)).y);
+    for (const Vec3& v : shape.convex.vertices())
+      lowest = std::min(lowest, transform(pose, transform(shape.local, v)).y);
   CHECK(std::fabs(lowest) < 2e-3);
 }
 

@@ -21,8 +21,8 @@ struct Dice : wild::Dice {
   explicit Dice(unsigned seed) : wild::Dice("hulls", seed) {}
 };
 
-/// Points of a body of the extents `size` about the origin: corners of its box, or points in it, on an ellipsoid, on the
-/// two sides of a plate, or of a wedge that ends in an edge.
+/// Points of a body of the extents `size` about the origin: corners of its box, or points in it, on an ellipsoid, on
+/// the two sides of a plate, or of a wedge that ends in an edge.
 Points some_points(Dice& dice, Vec3 size) {
   const int kind = dice.one_of(5), count = 4 + dice.one_of(kind == 2 ? 40 : 60);
   Points points;
@@ -38,7 +38,8 @@ Points some_points(Dice& dice, Vec3 size) {
     const Vec3 copy = points[std::size_t(dice.one_of(int(points.size())))];
     points.push_back(copy);
   }
-  for (std::size_t i = points.size() - 1; i > 0; i--) std::swap(points[i], points[std::size_t(dice.one_of(int(i + 1)))]);
+  for (std::size_t i = points.size() - 1; i > 0; i--)
+    std::swap(points[i], points[std::size_t(dice.one_of(int(i + 1)))]);
   return points;
 }
 
@@ -94,7 +95,8 @@ double sticks_out(const Hull& hull, const Points& points) {
   for (const Vec3& p : points) {
     const Vec3 own = rotate(conjugate(frame.orientation), p - frame.position);
     for (std::size_t f = 0; f < hull.face_count(); f++)
-      most = std::max(most, dot(own - hull.vertices()[hull.face(f)[0]], hull.data()->normals[f]) - 1e-14 * length(frame.position));
+      most = std::max(
+          most, dot(own - hull.vertices()[hull.face(f)[0]], hull.data()->normals[f]) - 1e-14 * length(frame.position));
   }
   return most / hull.radius();
 }
@@ -104,8 +106,9 @@ bool made_or_refused(const Points& points) {
   const auto hull = make_hull(points);
   if (!hull) {
     const ErrorCode code = hull.error().code;
-    CHECK_MESSAGE((code == ErrorCode::degenerate_shape || code == ErrorCode::buffer_full || code == ErrorCode::not_finite),
-                  hull.error().message);
+    CHECK_MESSAGE(
+        (code == ErrorCode::degenerate_shape || code == ErrorCode::buffer_full || code == ErrorCode::not_finite),
+        hull.error().message);
     return false;
   }
   const char* const fault = fault_of(*hull);
@@ -129,8 +132,17 @@ TEST_CASE("hull: thin, small, large and distant points make a sound hull or none
 }
 
 TEST_CASE("hull: points that each lie near what is left of the others are not cut off one after the other") {
-  CHECK(made_or_refused({{0, 0, 0}, {1000, 0, 0}, {0, 1000, 0}, {0, 0, 2}, {1000, 0, 3}, {0, -256, -1}, {-1, -1, -1}, {-1, 1, 0},
-                         {-1, 0, 0}, {0, 0, -6143}, {2560, 3, 0}}));
+  CHECK(made_or_refused({{0, 0, 0},
+                         {1000, 0, 0},
+                         {0, 1000, 0},
+                         {0, 0, 2},
+                         {1000, 0, 3},
+                         {0, -256, -1},
+                         {-1, -1, -1},
+                         {-1, 1, 0},
+                         {-1, 0, 0},
+                         {0, 0, -6143},
+                         {2560, 3, 0}}));
 }
 
 TEST_CASE("hull: points in a plane, on a line or in one place make none, however they are turned") {

@@ -15,8 +15,8 @@ using namespace worldtest;
 
 namespace {
 
-/// A world that has one of everything: a stack that sleeps, two balls on a joint that never do, one on a spring, forces,
-/// a hand, a table and properties.
+/// A world that has one of everything: a stack that sleeps, two balls on a joint that never do, one on a spring,
+/// forces, a hand, a table and properties.
 struct Yard {
   World world;
   Stepper stepper;

@@ -1,6 +1,6 @@
-// Pins islands: label propagation, run on the CPU's kernels with threads, on GL and on a device that visits edges in any order, gives
-// exactly the labels of the union-find; a world whose islands a device finds falls asleep and wakes with the same bits; the plan says
-// where, with which bytes, and when it is left out.
+// Pins islands: label propagation, run on the CPU's kernels with threads, on GL and on a device that visits edges in
+// any order, gives exactly the labels of the union-find; a world whose islands a device finds falls asleep and wakes
+// with the same bits; the plan says where, with which bytes, and when it is left out.
 #include <algorithm>
 #include <numeric>
 #include <random>

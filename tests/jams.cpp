@@ -1,5 +1,5 @@
-// Bodies made in a place that is too small for them press on each other from all sides. What their contacts remember is no
-// load there, and repeated it would be energy (docs/decisions/what-contacts-remember.md).
+// Bodies made in a place that is too small for them press on each other from all sides. What their contacts remember is
+// no load there, and repeated it would be energy (docs/decisions/what-contacts-remember.md).
 #include <algorithm>
 #include <vector>
 
@@ -25,7 +25,8 @@ World jam(unsigned seed) {
     const double radius = dice.by_ratio(0.03, 0.3), room = std::max(half - radius, 0.0);
     def.shapes = {i % 2 ? ShapeDef::sphere(radius) : ShapeDef::box({radius * 0.8, radius * 0.6, radius * 0.5})};
     def.density = 500;
-    def.pose = {{dice.between(-room, room), radius + dice.between(0, filled), dice.between(-room, room)}, dice.orientation()};
+    def.pose = {{dice.between(-room, room), radius + dice.between(0, filled), dice.between(-room, room)},
+                dice.orientation()};
     must(world.create_body(def));
   }
   return world;

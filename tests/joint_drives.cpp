@@ -1,5 +1,6 @@
-// Pins motors and springs: what their torques do, on joints in trees and beside them, on every lane width and on GL; that stiff ones
-// make no energy and both momenta stay; that they may change between steps; what is refused; and that worlds without run as before.
+// Pins motors and springs: what their torques do, on joints in trees and beside them, on every lane width and on GL;
+// that stiff ones make no energy and both momenta stay; that they may change between steps; what is refused; and that
+// worlds without run as before.
 #include <algorithm>
 
 #include "support_physics.h"
@@ -34,9 +35,12 @@ SpringDef spring_between(BodyId a, BodyId b, double length, double stiffness) {
   def.stiffness = stiffness;
   return def;
 }
-double total_energy(const World& world) { return world.kinetic_energy() + world.potential_energy() + world.spring_energy(); }
+double total_energy(const World& world) {
+  return world.kinetic_energy() + world.potential_energy() + world.spring_energy();
+}
 
-/// A motor, a spring on a joint, a spring between points, in a tree, on a loop and between free bodies; something of everything.
+/// A motor, a spring on a joint, a spring between points, in a tree, on a loop and between free bodies; something of
+/// everything.
 void workshop(World& world) {
   std::vector<BodyId> arm;
   for (int i = 0; i < 4; i++) {
@@ -57,7 +61,8 @@ void workshop(World& world) {
   held.anchor_a = {1.2, 3.5, 0};
   held.anchor_b = {0.1, 0.05, 0};
   must(world.create_spring(held));
-  JointDef closing = hinge(arm[3], must(world.create_body(worldtest::ball({2.2, 2, 0}, 0.1))), {0.25, 0, 0}, {0.05, 0, 0});
+  JointDef closing =
+      hinge(arm[3], must(world.create_body(worldtest::ball({2.2, 2, 0}, 0.1))), {0.25, 0, 0}, {0.05, 0, 0});
   must(world.create_joint(closing));
   closing.motor = {-2, 1};
   closing.spring = {5, 0.1, {}};
@@ -266,7 +271,8 @@ TEST_CASE("motors and springs: the plan holds their kernels where there are any,
   };
   World world;
   workshop(world);
-  for (const char* kernel : {"tree_drives", "tree_solve_driven", "joint_drives", "joint_solve_driven", "tree_joint_solve_driven"})
+  for (const char* kernel :
+       {"tree_drives", "tree_solve_driven", "joint_drives", "joint_solve_driven", "tree_joint_solve_driven"})
     CHECK(text(world).find(kernel) != std::string::npos);
   for (const JointId joint : world.joints()) {
     must(world.set_motor(joint, {}));
@@ -279,15 +285,18 @@ TEST_CASE("motors and springs: the plan holds their kernels where there are any,
 
 TEST_CASE("motors and springs: what is refused, and by which name") {
   World world;
-  const BodyId a = must(world.create_body(worldtest::ball({0, 0, 0}))), b = must(world.create_body(worldtest::ball({2, 0, 0})));
+  const BodyId a = must(world.create_body(worldtest::ball({0, 0, 0}))),
+               b = must(world.create_body(worldtest::ball({2, 0, 0})));
   JointDef joint = hinge(a, b);
   const JointId id = must(world.create_joint(joint));
   const double bad = not_a_number;
   CHECK_REFUSED(world, world.set_motor(id, {bad, 1}), ErrorCode::not_finite, "speed of a motor");
   CHECK_REFUSED(world, world.set_motor(id, {1, -1}), ErrorCode::bad_joint, "torque of a motor");
   CHECK_REFUSED(world, world.set_motor(id, {1, infinite}), ErrorCode::not_finite, "torque of a motor");
-  CHECK_REFUSED(world, world.set_spring(id, AngularSpring{-1, 0, {}}), ErrorCode::bad_joint, "stiffness of an angular spring");
-  CHECK_REFUSED(world, world.set_spring(id, AngularSpring{1, bad, {}}), ErrorCode::not_finite, "damping of an angular spring");
+  CHECK_REFUSED(world, world.set_spring(id, AngularSpring{-1, 0, {}}), ErrorCode::bad_joint,
+                "stiffness of an angular spring");
+  CHECK_REFUSED(world, world.set_spring(id, AngularSpring{1, bad, {}}), ErrorCode::not_finite,
+                "damping of an angular spring");
   CHECK_REFUSED(world, world.set_spring(id, AngularSpring{1, 0, {0, 0, 0, 2}}), ErrorCode::not_unit_quaternion,
                 "rest orientation");
   joint.motor.torque = -2;
@@ -304,7 +313,8 @@ TEST_CASE("motors and springs: what is refused, and by which name") {
 
 TEST_CASE("springs between points: ids of their own, which stale ones and those of joints are not") {
   World world;
-  const BodyId a = must(world.create_body(worldtest::ball({0, 0, 0}))), b = must(world.create_body(worldtest::ball({2, 0, 0})));
+  const BodyId a = must(world.create_body(worldtest::ball({0, 0, 0}))),
+               b = must(world.create_body(worldtest::ball({2, 0, 0})));
   const SpringId spring = must(world.create_spring(spring_between(a, b, 1, 10)));
   const JointId joint = must(world.create_joint(hinge(a, b, {1, 0, 0}, {-1, 0, 0})));
   CHECK(world.springs() == std::vector{spring});

@@ -1,5 +1,6 @@
-// Pins limits of joints that throw back (AngleFreedom::restitution): the rate that a limit is met with comes back e times, both momenta
-// are kept and no energy comes, of hinges and cones, of free trees and of one that hangs; slow meetings stop; CPU and GL agree to the bit.
+// Pins limits of joints that throw back (AngleFreedom::restitution): the rate that a limit is met with comes back e
+// times, both momenta are kept and no energy comes, of hinges and cones, of free trees and of one that hangs; slow
+// meetings stop; CPU and GL agree to the bit.
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// Joints that the host makes far open, or far beyond their limits, on bodies that move or rest: as where a ragdoll takes over from an
-// animation. They close by places alone, so no energy is made.
+// Joints that the host makes far open, or far beyond their limits, on bodies that move or rest: as where a ragdoll
+// takes over from an animation. They close by places alone, so no energy is made.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -69,7 +69,8 @@ void build(World& world, const Scene& scene, unsigned seed) {
     if (scene.closed) {
       const Pose a = must(world.pose(def.a));
       Pose b = must(world.pose(def.b));
-      b.position = a.position + rotate(a.orientation, def.frame_a.position) - rotate(b.orientation, def.frame_b.position);
+      b.position =
+          a.position + rotate(a.orientation, def.frame_a.position) - rotate(b.orientation, def.frame_b.position);
       must(world.set_pose(def.b, b));
     }
     (void)must(world.create_joint(def));
@@ -108,13 +109,14 @@ Gains of_all(const Scene& scene, double much) {
 
 }  // namespace
 
-TEST_CASE("joints made open: chains that move and stand open by metres, beyond their limits, close and make no energy") {
+TEST_CASE(
+    "joints made open: chains that move and stand open by metres, beyond their limits, close and make no energy") {
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const Freedom freedom : {Freedom::ball, Freedom::cone, Freedom::hinge})
       for (const int bodies : {2, 3}) {
         const Gains gains = of_all({.freedom = freedom, .bodies = bodies, .moves = true, .precision = precision}, 0.1);
-        MESSAGE("freedom " << int(freedom) << ", " << bodies << " bodies: the worst of 100 gains " << gains.worst << " J/kg, "
-                           << gains.above << " more than 0.1");
+        MESSAGE("freedom " << int(freedom) << ", " << bodies << " bodies: the worst of 100 gains " << gains.worst
+                           << " J/kg, " << gains.above << " more than 0.1");
         CHECK(gains.worst <= 1);
         CHECK(gains.above <= 5);
       }
@@ -126,8 +128,8 @@ TEST_CASE("joints made open: closed chains that rest beyond their limits turn ba
       for (const int bodies : {2, 3, 8}) {
         if (freedom == Freedom::hinge && bodies == 8) continue;  // see docs/joint-trees.md, "What the host opens"
         const Gains gains = of_all({.freedom = freedom, .bodies = bodies, .closed = true, .precision = precision}, 0.3);
-        MESSAGE("freedom " << int(freedom) << ", " << bodies << " bodies: the worst of 100 gains " << gains.worst << " J/kg, "
-                           << gains.above << " more than 0.3");
+        MESSAGE("freedom " << int(freedom) << ", " << bodies << " bodies: the worst of 100 gains " << gains.worst
+                           << " J/kg, " << gains.above << " more than 0.3");
         CHECK(gains.worst <= 1);
         CHECK(gains.above <= 5);
       }

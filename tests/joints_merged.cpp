@@ -1,4 +1,5 @@
-// Several joints between the same two bodies: they are solved as one (src/plan/solved_joints.h), and stay what they were to the host.
+// Several joints between the same two bodies: they are solved as one (src/plan/solved_joints.h), and stay what they
+// were to the host.
 #include "support_physics.h"
 
 using namespace physics;
@@ -48,7 +49,8 @@ TEST_CASE("merged joints: two pins swing as a hinge does") {
     CHECK(rows(pins) == 0);
     CHECK(rows(hinge) == 0);
     CHECK(length(pins.position(a) - hinge.position(b)) <= (mode.is_double() ? 1e-12 : 2e-5));
-    for (const JointId joint : {top, low}) CHECK(*pins.world.joint_separation(joint) <= (mode.is_double() ? 1e-12 : 2e-6));
+    for (const JointId joint : {top, low})
+      CHECK(*pins.world.joint_separation(joint) <= (mode.is_double() ? 1e-12 : 2e-6));
     CHECK((pins.world.joint(top)->frame_b.position == Vec3{-0.5, 0, 0.9}));
   }
 }
@@ -84,7 +86,8 @@ TEST_CASE("merged joints: pins in one place are one pin, and what does not match
     const JointId top = pin(uneven, uneven.world.ground(), {0, 0, 1}, c, {-0.5, 0, 0.9});
     const JointId low = pin(uneven, uneven.world.ground(), {0, 0, -1}, c, {-0.5, 0, -0.9});
     uneven.step(1.0 / 240, 480);
-    for (const JointId joint : {top, low}) CHECK(*uneven.world.joint_separation(joint) == doctest::Approx(0.1).epsilon(1e-4));
+    for (const JointId joint : {top, low})
+      CHECK(*uneven.world.joint_separation(joint) == doctest::Approx(0.1).epsilon(1e-4));
   }
 }
 
@@ -93,7 +96,8 @@ TEST_CASE("merged joints: joints with angles of their own stay as they are") {
     Run run(mode, {0, -9.81, 0}, 4);
     const BodyId a = run.add(plate({0.5, 0, 0}));
     pin(run, run.world.ground(), {0, 0, 0.9}, a, {-0.5, 0, 0.9});
-    const JointId second = pin(run, run.world.ground(), {0, 0, -0.9}, a, {-0.5, 0, -0.9}, AngleFreedom::cone_and_twist(1, 1));
+    const JointId second =
+        pin(run, run.world.ground(), {0, 0, -0.9}, a, {-0.5, 0, -0.9}, AngleFreedom::cone_and_twist(1, 1));
     CHECK(rows(run) == 1);
     REQUIRE(run.world.destroy(second));
     pin(run, run.world.ground(), {0, 0, -0.9}, a, {-0.5, 0, -0.9});
@@ -124,7 +128,8 @@ TEST_CASE("merged joints: a hinge and a pin beside its axis hold as a weld") {
   for (const Mode& mode : precisions()) {
     Run run(mode, {0, -9.81, 0}, 4);
     const BodyId a = run.add(plate({0.5, 0, 0}));
-    pin(run, run.world.ground(), {}, a, {-0.5, 0, 0}, AngleFreedom::hinge(-1, 1), axis_angle({0, 1, 0}, -std::acos(0.0)));
+    pin(run, run.world.ground(), {}, a, {-0.5, 0, 0}, AngleFreedom::hinge(-1, 1),
+        axis_angle({0, 1, 0}, -std::acos(0.0)));
     pin(run, run.world.ground(), {0.4, 0, 0}, a, {-0.1, 0, 0});
     run.step(1.0 / 240, 480);
     CHECK(rows(run) == 0);
@@ -132,8 +137,8 @@ TEST_CASE("merged joints: a hinge and a pin beside its axis hold as a weld") {
   }
 }
 
-/// Two bodies at rest without gravity, held by a hinge and a pin whose distances differ by centimetres. When the second was a row 2,600 times
-/// the energy of such a scene came of it in one step.
+/// Two bodies at rest without gravity, held by a hinge and a pin whose distances differ by centimetres. When the second
+/// was a row 2,600 times the energy of such a scene came of it in one step.
 TEST_CASE("merged joints: what contradicts comes to rest in the middle, and makes no energy") {
   for (const Mode& mode : precisions()) {
     Run run(mode, {});
@@ -148,8 +153,11 @@ TEST_CASE("merged joints: what contradicts comes to rest in the middle, and make
   }
 }
 
-/// A snapshot of when a motor kept them apart has impulses of both; of joints that are one again the second stands back.
-TEST_CASE("merged joints: a snapshot of when they were two goes on the same for a stepper that knows them and for a new one") {
+/// A snapshot of when a motor kept them apart has impulses of both; of joints that are one again the second stands
+/// back.
+TEST_CASE(
+    "merged joints: a snapshot of when they were two goes on the same for a stepper that knows them and for a new "
+    "one") {
   for (const Mode& mode : precisions()) {
     Run run(mode, {0, -9.81, 0}, 4);
     const BodyId a = run.add(plate({0.5, 0, 0}));

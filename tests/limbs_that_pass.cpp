@@ -1,5 +1,6 @@
-// A limb that passes something keeps its motion: rows of what its tree might have sent together let go where the shapes have not met. (Without
-// that 16 of 200 are struck. What is left is foreseen to meet, as limbs fly before their joints draw them round.)
+// A limb that passes something keeps its motion: rows of what its tree might have sent together let go where the shapes
+// have not met. (Without that 16 of 200 are struck. What is left is foreseen to meet, as limbs fly before their joints
+// draw them round.)
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,8 +12,8 @@ using namespace worldtest;
 
 namespace {
 
-/// Two boxes on a ball joint that fly free and turn about their common centre at 2 to 20 rad/s; a fixed ball stands 0.3 to 5 mm beyond the circle of
-/// their ends.
+/// Two boxes on a ball joint that fly free and turn about their common centre at 2 to 20 rad/s; a fixed ball stands 0.3
+/// to 5 mm beyond the circle of their ends.
 Vec3 velocity_after(unsigned seed, bool with_ball) {
   std::mt19937 dice(seed * 17 + 9);
   const auto between = [&](double low, double high) { return low + (high - low) * (double(dice()) / 4294967296.0); };

@@ -1,7 +1,7 @@
-// Limits of joints in trees hold where they are met. Those of pitch and yaw wherever the joint has swung: their axes lean with the swing
-// (joint_angles.inl; with the axes of no swing 33 of these 100 pairs go beyond by more than a degree, the worst by 12). Those that throw back within
-// a narrow range: what is thrown crosses no other limit within the sub-step (tree_rebound.inl; without, the fastest of these hinges goes beyond by 2.4
-// degrees).
+// Limits of joints in trees hold where they are met. Those of pitch and yaw wherever the joint has swung: their axes
+// lean with the swing (joint_angles.inl; with the axes of no swing 33 of these 100 pairs go beyond by more than a
+// degree, the worst by 12). Those that throw back within a narrow range: what is thrown crosses no other limit within
+// the sub-step (tree_rebound.inl; without, the fastest of these hinges goes beyond by 2.4 degrees).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -55,7 +55,8 @@ TEST_CASE("limits of roll, pitch and yaw: the joint goes no further, wherever it
   for (unsigned seed = 0; seed < 100; seed++) {
     Dice dice{std::mt19937(seed)};
     const Vec3 upper{dice.between(0.1, 1), dice.between(0.1, 1.3), dice.between(0.1, 1.3)};
-    Pair pair(seed % 2 == 0 ? Precision::f32 : Precision::f64, AngleFreedom::between(-1 * upper, upper), dice.vector(8));
+    Pair pair(seed % 2 == 0 ? Precision::f32 : Precision::f64, AngleFreedom::between(-1 * upper, upper),
+              dice.vector(8));
     Stepper stepper;
     double most = 0;
     for (int i = 0; i < 120; i++) {
@@ -69,7 +70,8 @@ TEST_CASE("limits of roll, pitch and yaw: the joint goes no further, wherever it
   CHECK(beyond <= 2);
 }
 
-TEST_CASE("a hinge that is thrown back from limit to limit within a sub-step stays between them, and keeps its energy") {
+TEST_CASE(
+    "a hinge that is thrown back from limit to limit within a sub-step stays between them, and keeps its energy") {
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const double speed : {10.0, 20.0, 40.0}) {
       CAPTURE(speed);

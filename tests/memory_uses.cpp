@@ -1,5 +1,5 @@
-// Pins Stepper::memory: the host's own properties and tables are listed beside the library's, in each place, and leave with them; what
-// kernels sum up is counted.
+// Pins Stepper::memory: the host's own properties and tables are listed beside the library's, in each place, and leave
+// with them; what kernels sum up is counted.
 #include "pcphys/write_kernel.h"
 #include "support_world.h"
 
@@ -13,7 +13,8 @@ PCPHYS_KERNEL(momentum, (PC_IN(Real) mass, PC_IN(Vec3) displacement_rate, PC_SUM
               { total = pc_scale(displacement_rate, mass); })
 
 /// Bytes of what has that name there; 0 where it is not listed.
-std::size_t bytes(const World& world, const Stepper& stepper, std::string_view name, Place place, std::string_view table) {
+std::size_t bytes(const World& world, const Stepper& stepper, std::string_view name, Place place,
+                  std::string_view table) {
   std::size_t sum = 0;
   for (const BufferUse& use : stepper.memory(world))
     if (use.name == name && use.place == place) {

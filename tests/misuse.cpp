@@ -1,5 +1,5 @@
-// Pins what plain misuse gives: an error that names it, and where no error can, an end of the process with a sentence; never a memory
-// error.
+// Pins what plain misuse gives: an error that names it, and where no error can, an end of the process with a sentence;
+// never a memory error.
 #include <functional>
 #include <stdexcept>
 
@@ -85,9 +85,12 @@ std::vector<ErrorCode> change_all(World& world, const Objects& of) {
 }
 /// And those that need no id.
 std::vector<ErrorCode> change_without_ids(World& world) {
-  return {code(world.create_body(ball({0, 9, 0}))), code(world.create_ragdoll(RagdollDef::human(), {})),
-          code(world.set_gravity({})),              code(world.add_property<Real>("other")),
-          code(world.remove_property("heat")),      code(world.add_table("more")),
+  return {code(world.create_body(ball({0, 9, 0}))),
+          code(world.create_ragdoll(RagdollDef::human(), {})),
+          code(world.set_gravity({})),
+          code(world.add_property<Real>("other")),
+          code(world.remove_property("heat")),
+          code(world.add_table("more")),
           code(world.restore({}))};
 }
 
@@ -104,7 +107,8 @@ TEST_CASE("misuse: an id of another world names nothing") {
   for (const ErrorCode answer :
        {code(here.world.pose(there.a)), code(here.world.velocity(there.a)), code(here.world.kind(there.a)),
         code(here.world.joint(there.joint)), code(here.world.spring(there.spring)), code(here.world.row_of(there.a)),
-        code(here.world.rows(there.table)), code(here.world.get(there.heat, here.a)), code(here.world.get(here.heat, there.a))})
+        code(here.world.rows(there.table)), code(here.world.get(there.heat, here.a)),
+        code(here.world.get(here.heat, there.a))})
     CHECK(answer == ErrorCode::stale_id);
 }
 
@@ -126,13 +130,16 @@ TEST_CASE("misuse: a callback sees a world that it cannot change") {
   Stepper stepper, other;
   std::vector<ErrorCode> answers;
   (void)must(o.world.add_force(o.a, [&](const World&, BodyId) {
-    const auto add = [&](const std::vector<ErrorCode>& more) { answers.insert(answers.end(), more.begin(), more.end()); };
+    const auto add = [&](const std::vector<ErrorCode>& more) {
+      answers.insert(answers.end(), more.begin(), more.end());
+    };
     add(change_all(o.world, o));
     add(change_without_ids(o.world));
     add({stepper.step(o.world, frame).error.code, other.step(o.world, frame).error.code, code(stepper.configure({})),
-         code(stepper.remove_kernels()), code(stepper.remove_kernel(o.world, "none")), code(stepper.add_kernel(o.world, {})),
-         code(stepper.set_parameter("none", {"x", 1.0})), code(other.remove_kernel(o.world, "none")),
-         code(other.add_kernel(o.world, {})), code(stepper.plan_for(o.world, frame))});
+         code(stepper.remove_kernels()), code(stepper.remove_kernel(o.world, "none")),
+         code(stepper.add_kernel(o.world, {})), code(stepper.set_parameter("none", {"x", 1.0})),
+         code(other.remove_kernel(o.world, "none")), code(other.add_kernel(o.world, {})),
+         code(stepper.plan_for(o.world, frame))});
     return Wrench{{1, 0, 0}, {}};
   }));
   run(o.world, stepper, 1);
@@ -184,7 +191,8 @@ TEST_CASE("misuse: what a step needs cannot be destroyed or moved by a callback"
 TEST_CASE("misuse: a world and a stepper that were moved from say so, and can be assigned to") {
   World world;
   const World taken(std::move(world));
-  CHECK(says([&] { (void)world.create_body(BodyDef{}); }, "World::create_body was called on a World that was moved from"));
+  CHECK(says([&] { (void)world.create_body(BodyDef{}); },
+             "World::create_body was called on a World that was moved from"));
   CHECK(says([&] { (void)world.hash(); }, "World::hash was called"));
   CHECK(says([&] { (void)world.body_count(); }, "World::body_count was called"));
   Stepper stepper;

@@ -1,5 +1,5 @@
-// Pins scenes in which what is solved in different ways meets: ragdolls, which are joint trees, with a heavy body that lies on them,
-// and on a chain bridge, whose joints close a loop. They hold, and have the same bits on every backend.
+// Pins scenes in which what is solved in different ways meets: ragdolls, which are joint trees, with a heavy body that
+// lies on them, and on a chain bridge, whose joints close a loop. They hold, and have the same bits on every backend.
 #include <numbers>
 
 #include "cases/parts.h"
@@ -65,7 +65,8 @@ void on_a_bridge(scenes::Builder& builder) {
     before = id;
     pin = pin + along;
   }
-  for (const double y : ends) cases::add_pin(builder, before, {0.5 * plank, y, 0}, builder.world().ground(), {span, y, 0});
+  for (const double y : ends)
+    cases::add_pin(builder, before, {0.5 * plank, y, 0}, builder.world().ground(), {span, y, 0});
   builder.add_ragdoll(RagdollDef::human(), {{0.5 * span, -0.9, 0.2}, {}}, {}, 1);
 }
 
@@ -74,7 +75,8 @@ struct Case {
   void (*build)(scenes::Builder&);
   int before;  // steps until they touch
 };
-constexpr Case cases_mixed[] = {{"a ragdoll under a box of 1 t", under_a_box, 20}, {"a ragdoll on a bridge", on_a_bridge, 10}};
+constexpr Case cases_mixed[] = {{"a ragdoll under a box of 1 t", under_a_box, 20},
+                                {"a ragdoll on a bridge", on_a_bridge, 10}};
 
 }  // namespace
 
@@ -93,7 +95,8 @@ TEST_CASE("mixed: a ragdoll under a box of 1 t, and one on a chain bridge, keep 
       }
       INFO(std::string(c.name) << std::string(precision == Precision::f32 ? ", single" : ", double"));
       MESSAGE(std::string(c.name) << ": gaps " << peak / millimetre << " mm at most, " << m.gap() / millimetre
-                                  << " mm at the end; deepest overlap " << cases::deepest_contact(m.world) / millimetre << " mm");
+                                  << " mm at the end; deepest overlap " << cases::deepest_contact(m.world) / millimetre
+                                  << " mm");
       CHECK(peak <= 5 * millimetre);
       CHECK(m.gap() <= 1 * millimetre);
     }

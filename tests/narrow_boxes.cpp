@@ -20,7 +20,8 @@ TEST_CASE("narrow: a box on a floor of 200 m has its four corners to a millionth
   for (int i = 0; i < 20000; i++) {
     const Vec3 h{random.between(0.1, 0.5), random.between(0.1, 0.5), random.between(0.1, 0.5)};
     const float gap = float(random.between(-0.01, 0.01));
-    const Quat turn_box = axis_angle({0, 1, 0}, random.between(-3, 3)) * axis_angle(random.direction(), random.between(0, 0.01));
+    const Quat turn_box =
+        axis_angle({0, 1, 0}, random.between(-3, 3)) * axis_angle(random.direction(), random.between(0, 0.01));
     const View a = box(h, {}, turn_box);
     View b = box({100, 0.5, 100}, {random.between(-95, 95), 0, random.between(-95, 95)});
     b.p[1] = -float(h.y) - 0.5f - gap;
@@ -36,8 +37,9 @@ TEST_CASE("narrow: a box on a floor of 200 m has its four corners to a millionth
       int which = 0;
       for (int c = 0; c < 8; c++) {
         const Shape exact = to_double(a);
-        const Vec3 v = rotate(turn(exact), {c & 1 ? exact.size[0] : -exact.size[0], c & 2 ? exact.size[1] : -exact.size[1],
-                                            c & 4 ? exact.size[2] : -exact.size[2]});
+        const Vec3 v =
+            rotate(turn(exact), {c & 1 ? exact.size[0] : -exact.size[0], c & 2 ? exact.size[1] : -exact.size[1],
+                                 c & 4 ? exact.size[2] : -exact.size[2]});
         if (length(v - corner) < best) {
           best = length(v - corner);
           which = c;

@@ -67,7 +67,8 @@ TEST_CASE("narrow: boxes") {
   expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {0, -0.95, 0}), {0, -1, 0}, 4, -0.05);
   expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {0.5, -0.95, 0}), {0, -1, 0}, 4, -0.05);
   expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {0, -1.02, 0}), {0, -1, 0}, 4, 0.02);
-  expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {0, -0.95, 0}, axis_angle({0, 1, 0}, pi / 4)), {0, -1, 0}, 4, -0.05);
+  expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {0, -0.95, 0}, axis_angle({0, 1, 0}, pi / 4)), {0, -1, 0}, 4,
+         -0.05);
   // standing on an edge, on a corner
   expect(box({0.5, 0.5, 0.5}, {}, axis_angle({0, 0, 1}, pi / 4)), box({2, 0.5, 2}, {0, -1.15, 0}), {0, -1, 0}, 2,
          0.65 - std::sqrt(0.5));
@@ -75,7 +76,8 @@ TEST_CASE("narrow: boxes") {
   expect(box({0.5, 0.5, 0.5}, {}, corner), box({2, 0.5, 2}, {0, -1.34, 0}), {0, -1, 0}, 1, 0.84 - std::sqrt(0.75));
   // two edges across: x edge of a over z edge of b
   const Quat about_x = axis_angle({1, 0, 0}, pi / 4), about_z = axis_angle({0, 0, 1}, pi / 4);
-  expect(box({0.5, 0.5, 0.5}, {}, about_x), box({0.5, 0.5, 0.5}, {0, 1.4, 0}, about_z), {0, 1, 0}, 1, 1.4 - std::sqrt(2.0));
+  expect(box({0.5, 0.5, 0.5}, {}, about_x), box({0.5, 0.5, 0.5}, {0, 1.4, 0}, about_z), {0, 1, 0}, 1,
+         1.4 - std::sqrt(2.0));
   // corners apart: the distance of two corners
   const double r = std::sqrt(1.0 / 3);
   expect(box({0.5, 0.5, 0.5}), box({0.5, 0.5, 0.5}, {1.02, 1.02, 1.02}), {r, r, r}, 1, 0.02 / r);

@@ -22,8 +22,8 @@ std::string with_includes(const std::filesystem::path& path) {
   const std::string directive = "#include \"";
   while (std::getline(lines, line)) {
     if (line.starts_with(directive))
-      out +=
-          with_includes(path.parent_path() / line.substr(directive.size(), line.find('"', directive.size()) - directive.size()));
+      out += with_includes(path.parent_path() /
+                           line.substr(directive.size(), line.find('"', directive.size()) - directive.size()));
     else
       out += line + "\n";
   }
@@ -32,7 +32,8 @@ std::string with_includes(const std::filesystem::path& path) {
 std::string program(bool twofold) {
   const std::filesystem::path kernels = std::filesystem::path(PCPHYS_SOURCE_DIR) / "src/kernels";
   std::string text = "#version 430\n";
-  text += twofold ? "#define PC_DOUBLE\n#define Real double\n#define Vec3 dvec3\n" : "#define Real float\n#define Vec3 vec3\n";
+  text += twofold ? "#define PC_DOUBLE\n#define Real double\n#define Vec3 dvec3\n"
+                  : "#define Real float\n#define Vec3 vec3\n";
   text += R"(
 #define Mask bool
 #define Index uint

@@ -1,5 +1,6 @@
-// Pins that what the detector does in lanes has the bits of the same text one by one: manifolds of every kind of pair that goes in
-// lanes, of batches of any length, beside what `narrow` finds; motions of bodies; boxes, which hold their shapes.
+// Pins that what the detector does in lanes has the bits of the same text one by one: manifolds of every kind of pair
+// that goes in lanes, of batches of any length, beside what `narrow` finds; motions of bodies; boxes, which hold their
+// shapes.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -65,15 +66,16 @@ template <class Scalar> struct Batch {
   PairBatch<Scalar> padded() {
     for (std::uint32_t i = count; i < count + 8; i++) a.push_back(0), b.push_back(1);
     margins.resize((count + 8) * sizeof(Scalar));
-    return {reinterpret_cast<const Scalar*>(rows.data()), a.data(), b.data(), reinterpret_cast<const Scalar*>(margins.data()),
-            count};
+    return {reinterpret_cast<const Scalar*>(rows.data()), a.data(), b.data(),
+            reinterpret_cast<const Scalar*>(margins.data()), count};
   }
 
  private:
   void write(std::uint32_t row, const ShapeView<Scalar>& s, Vec3 body) {
     Scalar* out = reinterpret_cast<Scalar*>(rows.data()) + row * round_reals;
     const double at[3] = {body.x, body.y, body.z};
-    for (int k = 0; k < 3; k++) out[k] = s.p[k], out[8 + k] = Scalar(at[k]), out[12 + k] = row % 2 ? Scalar(1e-9) : Scalar(0);
+    for (int k = 0; k < 3; k++)
+      out[k] = s.p[k], out[8 + k] = Scalar(at[k]), out[12 + k] = row % 2 ? Scalar(1e-9) : Scalar(0);
     for (int k = 0; k < 4; k++) out[4 + k] = s.q[k];
     out[3] = s.size[0], out[11] = s.size[1], out[15] = s.size[2];
   }
@@ -127,8 +129,8 @@ template <class Scalar> void check_widths(PairKind kind, const std::vector<Sampl
       for (std::size_t i = at; i < at + count; i++) batch.add(pairs[i].a, pairs[i].b, pairs[i].apart, pairs[i].margin);
       check_batch(batch, lanes, std::size_t(kind), tally);
     }
-    MESSAGE(lanes, " lanes: ", tally.pairs, " pairs, ", tally.touching, " touch, ", tally.two, " in two points, ", tally.open,
-            " left open");
+    MESSAGE(lanes, " lanes: ", tally.pairs, " pairs, ", tally.touching, " touch, ", tally.two, " in two points, ",
+            tally.open, " left open");
     CHECK(tally.touching > 50);
   }
 }
@@ -155,11 +157,13 @@ TEST_CASE("narrow: parallel capsules, and capsules that lie on boxes, keep their
     Batch<float> on_boxes, beside;
     for (int i = 0; i < 300; i++) {
       const double radius = random.between(0.05, 0.2), half = random.between(0.1, 0.6);
-      const Quat q = random.rotation(), along = Quat{0, 0, std::sin(0.25 * 3.14159265358979), std::cos(0.25 * 3.14159265358979)};
+      const Quat q = random.rotation(),
+                 along = Quat{0, 0, std::sin(0.25 * 3.14159265358979), std::cos(0.25 * 3.14159265358979)};
       const Vec3 up = rotate(q, {0, 1, 0});
       const Shape box = shape(ShapeKind::box, {3, 0.5, 3}, {}, q);
-      on_boxes.add(shape(ShapeKind::capsule, {radius, half, 0}, (0.5 + radius + random.between(-0.01, 0.02)) * up, q * along),
-                   box, random.ball(1), 0.05);
+      on_boxes.add(
+          shape(ShapeKind::capsule, {radius, half, 0}, (0.5 + radius + random.between(-0.01, 0.02)) * up, q * along),
+          box, random.ball(1), 0.05);
       const Vec3 side = rotate(q, {1, 0, 0});
       beside.add(shape(ShapeKind::capsule, {radius, half, 0}, {}, q),
                  shape(ShapeKind::capsule, {radius, half, 0}, (2 * radius + random.between(-0.01, 0.02)) * side, q),
@@ -202,7 +206,8 @@ template <class Scalar> struct Motions {
   std::vector<std::uint32_t> rows;
   explicit Motions(unsigned seed) {
     Pairs random(seed);
-    motion.resize(room * 8 * sizeof(Scalar)), mass.resize(room * 8 * sizeof(Scalar)), pose.resize(room * 16 * sizeof(Scalar));
+    motion.resize(room * 8 * sizeof(Scalar)), mass.resize(room * 8 * sizeof(Scalar)),
+        pose.resize(room * 16 * sizeof(Scalar));
     for (std::uint32_t row = 1; row < bodies; row++) {
       for (int k = 0; k < 8; k++)
         at(motion)[row * 8 + k] = Scalar(random.between(-3, 3)), at(mass)[row * 8 + k] = Scalar(random.between(0.1, 4));
@@ -226,14 +231,17 @@ template <class Scalar> void check_motions(double tolerance) {
   AlignedBytes alone;
   alone.resize(room * sizeof(TwistOf<Scalar>));
   std::memcpy(alone.data(), motions.find(1), alone.size());
-  for (const std::uint32_t lanes : widths<Scalar>()) CHECK(std::memcmp(alone.data(), motions.find(lanes), alone.size()) == 0);
+  for (const std::uint32_t lanes : widths<Scalar>())
+    CHECK(std::memcmp(alone.data(), motions.find(lanes), alone.size()) == 0);
   const auto* twists = reinterpret_cast<const TwistOf<Scalar>*>(alone.data());
   for (std::uint32_t row = 1; row < bodies; row++) {
     const Scalar *m = motions.at(motions.motion) + row * 8, *i = motions.at(motions.mass) + row * 8 + 4,
                  *q = motions.at(motions.pose) + row * 16 + 4;
     const Quat turn{double(q[0]), double(q[1]), double(q[2]), double(q[3])};
-    const Vec3 l = rotate(conjugate(turn), {double(m[4]), double(m[5]), double(m[6])}), local{i[0] * l.x, i[1] * l.y, i[2] * l.z};
-    const Vec3 w = rotate(turn, local), found{double(twists[row].w[0]), double(twists[row].w[1]), double(twists[row].w[2])};
+    const Vec3 l = rotate(conjugate(turn), {double(m[4]), double(m[5]), double(m[6])}),
+               local{i[0] * l.x, i[1] * l.y, i[2] * l.z};
+    const Vec3 w = rotate(turn, local),
+               found{double(twists[row].w[0]), double(twists[row].w[1]), double(twists[row].w[2])};
     CHECK(length(found - w) < tolerance);
     CHECK(std::abs(double(twists[row].turn) - length(w)) < tolerance);
     CHECK(std::abs(double(twists[row].across) - std::hypot(local.x, local.z)) < tolerance);
@@ -258,9 +266,11 @@ TEST_CASE("broad: boxes in lanes have the bits of one alone and hold their shape
   std::vector<std::uint32_t> body(room, 0);
   for (std::uint32_t i = 0; i < count; i++, row += round_reals) {
     const ShapeKind kind = ShapeKind(i % 4);
-    const Vec3 size{random.between(0.1, 1), random.between(0.1, 1), random.between(0.1, 1)}, at = random.ball(i % 2 ? 2 : 1e4);
+    const Vec3 size{random.between(0.1, 1), random.between(0.1, 1), random.between(0.1, 1)},
+        at = random.ball(i % 2 ? 2 : 1e4);
     const Quat q = random.rotation();
-    const float turn[4] = {float(q.x), float(q.y), float(q.z), float(q.w)}, place[3] = {float(at.x), float(at.y), float(at.z)};
+    const float turn[4] = {float(q.x), float(q.y), float(q.z), float(q.w)},
+                place[3] = {float(at.x), float(at.y), float(at.z)};
     shapes.push_back(to_double(ShapeView<float>{kind,
                                                 {float(size.x), float(size.y), float(size.z)},
                                                 {place[0], place[1], place[2]},
@@ -276,8 +286,8 @@ TEST_CASE("broad: boxes in lanes have the bits of one alone and hold their shape
   std::vector<Aabb> alone(room), boxes(room);
   const auto find = [&](std::uint32_t lanes, std::vector<Aabb>& out) {
     narrow_lanes<float>(lanes).boxes({reinterpret_cast<const float*>(rows.data()), column,
-                                      reinterpret_cast<const float*>(twists.data()), body.data(), count, room, 1.0f / 60, 0.0f,
-                                      largest_turn, reach.data(), out.data()});
+                                      reinterpret_cast<const float*>(twists.data()), body.data(), count, room,
+                                      1.0f / 60, 0.0f, largest_turn, reach.data(), out.data()});
   };
   find(1, alone);
   for (const std::uint32_t lanes : widths<float>()) {

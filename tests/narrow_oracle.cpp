@@ -24,7 +24,8 @@ struct Worst {
   int missed = 0, ghosts = 0, broken = 0;
 };
 
-template <class M> void judge(const Shape& a, const Shape& b, const Bounds& known, const M& m, double margin, Worst& worst) {
+template <class M>
+void judge(const Shape& a, const Shape& b, const Bounds& known, const M& m, double margin, Worst& worst) {
   const double size = scale(a, b), slop = preference(a, b);
   const bool apart = known.high > 1e-7;
   if (!finite(m)) {
@@ -77,8 +78,11 @@ TEST_CASE("narrow: no normal separates more, and the deepest point is that deep"
         // coincident cylinders are as near to the surface all around: the polytope runs out of vertices
         const double coincident = stratum == Stratum::coincident ? 1e-2 : 0;
         // four of many corners: another one may be deeper by PC_FLAT_SLOP of the reach; caps are clipped as octagons
-        const auto many = [](int kind) { return ShapeKind(kind) == ShapeKind::cylinder || ShapeKind(kind) == ShapeKind::hull; };
-        const double depth = kb > int(ShapeKind::capsule) && ka > int(ShapeKind::capsule) && (many(ka) || many(kb)) ? 2e-3 : 2e-4;
+        const auto many = [](int kind) {
+          return ShapeKind(kind) == ShapeKind::cylinder || ShapeKind(kind) == ShapeKind::hull;
+        };
+        const double depth =
+            kb > int(ShapeKind::capsule) && ka > int(ShapeKind::capsule) && (many(ka) || many(kb)) ? 2e-3 : 2e-4;
         CHECK(twofold.normal < 2e-4 + coincident);
         CHECK(twofold.separation < depth);
         CHECK(twofold.degrees < 2);
@@ -120,8 +124,8 @@ TEST_CASE("narrow: never shallower than FCL, and as far apart") {
         }
       }
       MESSAGE(pair_name(ShapeKind(ka), ShapeKind(kb)), ": ", apart, " apart, ", equal, " of them equal; ", overlapping,
-              " overlapping, FCL's way out longer by over 1 % in ", deeper, ", ours in ", shallower, "; FCL gave up on ",
-              gave_up);
+              " overlapping, FCL's way out longer by over 1 % in ", deeper, ", ours in ", shallower,
+              "; FCL gave up on ", gave_up);
       CHECK(far_off <= apart / 1000);
       CHECK(shallower <= overlapping / 1000);
     }

@@ -21,7 +21,9 @@ using namespace pcphys;
 using Shape = ShapeView<double>;
 
 inline const std::array<const char*, 6> kind_names{"sphere", "capsule", "box", "cylinder", "hull", "plane"};
-inline std::string pair_name(ShapeKind a, ShapeKind b) { return std::string(kind_names[int(a)]) + "-" + kind_names[int(b)]; }
+inline std::string pair_name(ShapeKind a, ShapeKind b) {
+  return std::string(kind_names[int(a)]) + "-" + kind_names[int(b)];
+}
 
 inline Vec3 vec(const double* p) { return {p[0], p[1], p[2]}; }
 inline Vec3 centre(const Shape& s) { return vec(s.p); }
@@ -75,9 +77,15 @@ inline ShapeView<float> to_float(const Shape& s) {
 inline Shape to_double(const ShapeView<float>& s) {
   const Quat q{s.q[0], s.q[1], s.q[2], s.q[3]};
   const double n = 1 / length(q);  // a float's quaternion is a unit to 1e-7 only
-  return {s.kind, {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, {n * q.x, n * q.y, n * q.z, n * q.w}, s.hull};
+  return {s.kind,
+          {s.size[0], s.size[1], s.size[2]},
+          {s.p[0], s.p[1], s.p[2]},
+          {n * q.x, n * q.y, n * q.z, n * q.w},
+          s.hull};
 }
-template <class S> Vec3 normal(const Manifold<S>& m) { return {double(m.normal[0]), double(m.normal[1]), double(m.normal[2])}; }
+template <class S> Vec3 normal(const Manifold<S>& m) {
+  return {double(m.normal[0]), double(m.normal[1]), double(m.normal[2])};
+}
 template <class S> Vec3 point(const Manifold<S>& m, std::uint32_t i) {
   return {double(m.points[i].p[0]), double(m.points[i].p[1]), double(m.points[i].p[2])};
 }
@@ -94,7 +102,8 @@ template <class S> std::set<std::uint32_t> features(const Manifold<S>& m) {
 template <class S> bool finite(const Manifold<S>& m) {
   bool ok = m.count <= 4;
   if (m.count > 0) ok = ok && pcphys::finite(normal(m)) && std::abs(length(normal(m)) - 1) < 1e-5;
-  for (std::uint32_t i = 0; ok && i < m.count; i++) ok = pcphys::finite(point(m, i)) && std::isfinite(m.points[i].separation);
+  for (std::uint32_t i = 0; ok && i < m.count; i++)
+    ok = pcphys::finite(point(m, i)) && std::isfinite(m.points[i].separation);
   return ok;
 }
 inline Manifold<double> find(const Shape& a, const Shape& b, double margin) {
@@ -195,7 +204,8 @@ inline Vec3 nearest_in_hull(const HullData& hull, Vec3 x) {
     if (dot(x - hull.vertices[face[0]], hull.normals[f]) <= 0) continue;
     inside = false;
     for (std::size_t k = 1; k + 1 < face.size(); k++) {
-      const Vec3 on = nearest_on_triangle(hull.vertices[face[0]], hull.vertices[face[k]], hull.vertices[face[k + 1]], x);
+      const Vec3 on =
+          nearest_on_triangle(hull.vertices[face[0]], hull.vertices[face[k]], hull.vertices[face[k + 1]], x);
       if (length(on - x) < least) {
         least = length(on - x);
         best = on;
@@ -215,7 +225,8 @@ inline Vec3 nearest(const Shape& s, Vec3 x) {
   if (s.kind == ShapeKind::sphere) l = shrink({}, s.size[0]);
   if (s.kind == ShapeKind::capsule) l = shrink({0, std::clamp(l.y, -s.size[1], s.size[1]), 0}, s.size[0]);
   if (s.kind == ShapeKind::box)
-    l = {std::clamp(l.x, -s.size[0], s.size[0]), std::clamp(l.y, -s.size[1], s.size[1]), std::clamp(l.z, -s.size[2], s.size[2])};
+    l = {std::clamp(l.x, -s.size[0], s.size[0]), std::clamp(l.y, -s.size[1], s.size[1]),
+         std::clamp(l.z, -s.size[2], s.size[2])};
   if (s.kind == ShapeKind::cylinder) {
     const double rho = std::hypot(l.x, l.z), k = rho > s.size[0] ? s.size[0] / rho : 1;
     l = {k * l.x, std::clamp(l.y, -s.size[1], s.size[1]), k * l.z};

@@ -27,7 +27,8 @@ double apart(const Manifold<double>& m, const Manifold<double>& o) {
   for (std::uint32_t i = 0; i < m.count; i++) {
     double best = 1e30;
     for (std::uint32_t k = 0; k < o.count; k++)
-      best = std::min(best, length(point(m, i) - point(o, k)) + std::abs(m.points[i].separation - o.points[k].separation));
+      best =
+          std::min(best, length(point(m, i) - point(o, k)) + std::abs(m.points[i].separation - o.points[k].separation));
     worst = std::max(worst, best);
   }
   return worst;
@@ -47,38 +48,40 @@ template <class Body> void for_pairs(std::initializer_list<Stratum> wanted, int 
 
 TEST_CASE("narrow: swapping the shapes flips the normal and keeps the points") {
   int pairs = 0, differ = 0;
-  for_pairs(
-      {Stratum::anywhere, Stratum::near_touching, Stratum::uneven}, per_stratum, [&](const Shape& a, const Shape& b, Pairs&) {
-        const Manifold<double> m = find(a, b, margin), s = find(b, a, margin);
-        pairs++;
-        // two cylinders: the search starts from the other side and stops within its tolerance
-        const double tolerance = a.kind == ShapeKind::cylinder && b.kind == ShapeKind::cylinder ? 5e-4 : 1e-6;
-        const bool same = apart(m, s) < tolerance * scale(a, b) && (m.count == 0 || length(normal(m) + normal(s)) < tolerance);
-        differ += !same;
-        if (a.kind != b.kind) CHECK(same);
-      });
+  for_pairs({Stratum::anywhere, Stratum::near_touching, Stratum::uneven}, per_stratum,
+            [&](const Shape& a, const Shape& b, Pairs&) {
+              const Manifold<double> m = find(a, b, margin), s = find(b, a, margin);
+              pairs++;
+              // two cylinders: the search starts from the other side and stops within its tolerance
+              const double tolerance = a.kind == ShapeKind::cylinder && b.kind == ShapeKind::cylinder ? 5e-4 : 1e-6;
+              const bool same =
+                  apart(m, s) < tolerance * scale(a, b) && (m.count == 0 || length(normal(m) + normal(s)) < tolerance);
+              differ += !same;
+              if (a.kind != b.kind) CHECK(same);
+            });
   MESSAGE(pairs, " pairs, ", differ, " differ");
   CHECK(differ <= pairs / 200);
 }
 
 TEST_CASE("narrow: turning and moving both shapes turns and moves the manifold") {
   int pairs = 0, differ = 0;
-  for_pairs({Stratum::anywhere, Stratum::near_touching}, per_stratum, [&](const Shape& a, const Shape& b, Pairs& random) {
-    const Quat q = random.rotation();
-    const Vec3 shift = random.ball(1);
-    const Manifold<double> m = find(a, b, margin);
-    Manifold<double> t = find(turned(a, q, shift), turned(b, q, shift), margin);
-    const double off = m.count > 0 && t.count > 0 ? length(rotate(q, normal(m)) - normal(t)) : 0;
-    for (std::uint32_t i = 0; i < t.count; i++) {
-      const Vec3 back = rotate(conjugate(q), point(t, i) - shift);
-      t.points[i].p[0] = back.x;
-      t.points[i].p[1] = back.y;
-      t.points[i].p[2] = back.z;
-    }
-    pairs++;
-    // a cap is an octagon that turns with the cylinder; nothing may depend on the axes of the world
-    differ += off > 1e-3 || apart(m, t) > 1e-3 * scale(a, b);
-  });
+  for_pairs({Stratum::anywhere, Stratum::near_touching}, per_stratum,
+            [&](const Shape& a, const Shape& b, Pairs& random) {
+              const Quat q = random.rotation();
+              const Vec3 shift = random.ball(1);
+              const Manifold<double> m = find(a, b, margin);
+              Manifold<double> t = find(turned(a, q, shift), turned(b, q, shift), margin);
+              const double off = m.count > 0 && t.count > 0 ? length(rotate(q, normal(m)) - normal(t)) : 0;
+              for (std::uint32_t i = 0; i < t.count; i++) {
+                const Vec3 back = rotate(conjugate(q), point(t, i) - shift);
+                t.points[i].p[0] = back.x;
+                t.points[i].p[1] = back.y;
+                t.points[i].p[2] = back.z;
+              }
+              pairs++;
+              // a cap is an octagon that turns with the cylinder; nothing may depend on the axes of the world
+              differ += off > 1e-3 || apart(m, t) > 1e-3 * scale(a, b);
+            });
   MESSAGE(pairs, " pairs, ", differ, " differ");
   CHECK(differ <= pairs / 100);
 }
@@ -123,17 +126,18 @@ TEST_CASE("narrow: features stay under tiny motion") {
 
 TEST_CASE("narrow: float and double agree") {
   int pairs = 0, counts = 0;
-  for_pairs({Stratum::anywhere, Stratum::near_touching, Stratum::deep}, per_stratum, [&](const Shape& x, const Shape& y, Pairs&) {
-    const auto fa = to_float(x), fb = to_float(y);
-    const Shape a = to_double(fa), b = to_double(fb);
-    const Manifold<float> f = find(fa, fb, float(margin));
-    const Manifold<double> d = find(a, b, margin);
-    pairs++;
-    counts += f.count != d.count;
-    if (f.count > 0 && d.count > 0)
-      CHECK(std::abs(deepest(f) - deepest(d)) <
-            5e-4 * scale(a, b) + (a.kind == ShapeKind::box ? 6e-3 * std::min(smallest(a), smallest(b)) : 0));
-  });
+  for_pairs({Stratum::anywhere, Stratum::near_touching, Stratum::deep}, per_stratum,
+            [&](const Shape& x, const Shape& y, Pairs&) {
+              const auto fa = to_float(x), fb = to_float(y);
+              const Shape a = to_double(fa), b = to_double(fb);
+              const Manifold<float> f = find(fa, fb, float(margin));
+              const Manifold<double> d = find(a, b, margin);
+              pairs++;
+              counts += f.count != d.count;
+              if (f.count > 0 && d.count > 0)
+                CHECK(std::abs(deepest(f) - deepest(d)) <
+                      5e-4 * scale(a, b) + (a.kind == ShapeKind::box ? 6e-3 * std::min(smallest(a), smallest(b)) : 0));
+            });
   MESSAGE(pairs, " pairs, ", counts, " with another number of points");
   CHECK(counts <= pairs / 25);
 }
@@ -152,7 +156,8 @@ TEST_CASE("narrow: degenerate input gives finite output") {
   const std::vector<Quat> turns{{},           {s, 0, 0, s},         {0, s, 0, s},     {0, 0, s, s},
                                 {0, 1, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {1e-20, 0, 0, 1}, {1e-7, 0, 0, 1},
                                 {0, 0, 0, 0}};
-  const std::vector<Vec3> sizes{{0.5, 0.5, 0.5}, {0.5, 1e-6, 0.5}, {1e-6, 1e-6, 1e-6}, {0.5, 0, 0}, {100, 0.5, 100}, {0, 0, 0}};
+  const std::vector<Vec3> sizes{{0.5, 0.5, 0.5}, {0.5, 1e-6, 0.5}, {1e-6, 1e-6, 1e-6},
+                                {0.5, 0, 0},     {100, 0.5, 100},  {0, 0, 0}};
   // a hull is at least as large as make_hull lets it be
   std::vector<Shape> hulls;
   for (const Vec3& h : sizes) {
@@ -181,8 +186,8 @@ TEST_CASE("narrow: degenerate input gives finite output") {
               calls++;
               if (!good(d) || !good(f)) {
                 if (broken++ < 5)
-                  MESSAGE(pair_name(a.kind, b.kind), " sizes ", sa.x, " ", sa.y, " / ", sb.x, " ", sb.y, " at ", p.x, " ", p.y,
-                          " ", p.z, " turned ", q.x, " ", q.y, " ", q.z, " ", q.w);
+                  MESSAGE(pair_name(a.kind, b.kind), " sizes ", sa.x, " ", sa.y, " / ", sb.x, " ", sb.y, " at ", p.x,
+                          " ", p.y, " ", p.z, " turned ", q.x, " ", q.y, " ", q.z, " ", q.w);
               }
             }
   MESSAGE(calls, " calls");

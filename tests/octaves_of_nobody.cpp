@@ -1,5 +1,6 @@
-// Pins sub-step classes of a step in which nobody moves though some had asked for more: the class is octave 0, not none. (A try of a step
-// that asked for more sub-steps, and the bodies frozen since: the number of sub-steps was shifted by 2^32 - 1.)
+// Pins sub-step classes of a step in which nobody moves though some had asked for more: the class is octave 0, not
+// none. (A try of a step that asked for more sub-steps, and the bodies frozen since: the number of sub-steps was
+// shifted by 2^32 - 1.)
 #include <doctest/doctest.h>
 
 #include "plan/octaves.h"

@@ -1,5 +1,6 @@
-// Pins that a call for which there is no memory is ErrorCode::buffer_full, wherever in it the memory ends, and leaves the world as it was:
-// made again with memory, it gives what it gives in a world that never lacked any, and so do the steps that follow.
+// Pins that a call for which there is no memory is ErrorCode::buffer_full, wherever in it the memory ends, and leaves
+// the world as it was: made again with memory, it gives what it gives in a world that never lacked any, and so do the
+// steps that follow.
 #include <functional>
 #include <span>
 #include <vector>
@@ -75,7 +76,10 @@ std::vector<std::pair<const char*, Act>> acts() {
   return {
       {"create_body", [def = ball({0, 3, 0})](Host& h) { return code(h.world.create_body(def)); }},
       {"step", step},
-      {"create_joint", [](Host& h) { return code(h.world.create_joint(pin(h.balls[4], {}, h.balls[5], {-0.9, 0, 0}))); }},
+      {"create_joint",
+       [](Host& h) {
+         return code(h.world.create_joint(pin(h.balls[4], {}, h.balls[5], {-0.9, 0, 0})));
+       }},
       {"create_spring",
        [](Host& h) {
          SpringDef def;
@@ -85,21 +89,42 @@ std::vector<std::pair<const char*, Act>> acts() {
          return code(h.world.create_spring(def));
        }},
       {"step", step},
-      {"grab", [](Host& h) { return code(h.world.grab(h.hand, h.balls[2], {1.8, 0.45, 0})); }},
-      {"create_ragdoll", [human = RagdollDef::human()](Host& h) { return code(h.world.create_ragdoll(human, {{3, 1, 0}, {}})); }},
+      {"grab",
+       [](Host& h) {
+         return code(h.world.grab(h.hand, h.balls[2], {1.8, 0.45, 0}));
+       }},
+      {"create_ragdoll",
+       [human = RagdollDef::human()](Host& h) {
+         return code(h.world.create_ragdoll(human, {{3, 1, 0}, {}}));
+       }},
       {"step", step},
       {"set_collide", [](Host& h) { return code(h.world.set_collide(h.balls[2], h.balls[3], false)); }},
-      {"set_pose", [](Host& h) { return code(h.world.set_pose(h.balls[5], {{5, 2, 0}, {}})); }},
-      {"set_mass_properties", [](Host& h) { return code(h.world.set_mass_properties(h.balls[5], {3, {1, 1, 1}})); }},
-      {"add_force", [](Host& h) { return code(h.world.add_force(h.balls[3], Wrench{{0, 1, 0}, {}})); }},
+      {"set_pose",
+       [](Host& h) {
+         return code(h.world.set_pose(h.balls[5], {{5, 2, 0}, {}}));
+       }},
+      {"set_mass_properties",
+       [](Host& h) {
+         return code(h.world.set_mass_properties(h.balls[5], {3, {1, 1, 1}}));
+       }},
+      {"add_force",
+       [](Host& h) {
+         return code(h.world.add_force(h.balls[3], Wrench{{0, 1, 0}, {}}));
+       }},
       {"callback",
        [](Host& h) { return code(h.world.add_force(h.balls[2], [](const World&, BodyId) { return Wrench{}; })); }},
       {"remove force", [](Host& h) { return code(h.world.remove(h.force)); }},
-      {"add_property", [](Host& h) { return code(h.world.add_property<Vec3>("a_property_of_the_hosts_own", {1, 2, 3})); }},
+      {"add_property",
+       [](Host& h) {
+         return code(h.world.add_property<Vec3>("a_property_of_the_hosts_own", {1, 2, 3}));
+       }},
       {"add_table", [](Host& h) { return code(h.world.add_table("another_table_of_the_hosts_own", 9)); }},
       {"resize", [](Host& h) { return code(h.world.resize(h.table, 50)); }},
       {"step", step},
-      {"set_gravity", [](Host& h) { return code(h.world.set_gravity({0, -3, 0})); }},
+      {"set_gravity",
+       [](Host& h) {
+         return code(h.world.set_gravity({0, -3, 0}));
+       }},
       {"step", step},
       {"destroy body", [](Host& h) { return code(h.world.destroy(h.balls[3])); }},
       {"destroy joint", [](Host& h) { return code(h.world.destroy(h.joint)); }},

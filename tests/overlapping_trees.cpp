@@ -1,4 +1,5 @@
-// Overlaps of bodies on joints are undone by poses: what a host has set into each other comes apart, and no motion is left of it.
+// Overlaps of bodies on joints are undone by poses: what a host has set into each other comes apart, and no motion is
+// left of it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -12,8 +13,8 @@ namespace {
 
 constexpr double size = 0.05;  // half the width of limbs [m]
 
-/// Two limbs on a ball joint, at rest without gravity, the first held by the world or not. A fixed box, a free one, turned at
-/// random, or another such pair overlaps the second by 1 to 30 mm.
+/// Two limbs on a ball joint, at rest without gravity, the first held by the world or not. A fixed box, a free one,
+/// turned at random, or another such pair overlaps the second by 1 to 30 mm.
 struct Overlap {
   World world;
   std::mt19937 dice;
@@ -70,7 +71,8 @@ TEST_CASE("overlaps of 120 trees come apart, and nothing moves of it at any step
       for (int i = 0; i < 60; i++) {
         REQUIRE(stepper.step(scene.world, frame));
         energy = std::max(energy, scene.world.kinetic_energy());
-        for (const JointId joint : scene.world.joints()) open = std::max(open, must(scene.world.joint_separation(joint)));
+        for (const JointId joint : scene.world.joints())
+          open = std::max(open, must(scene.world.joint_separation(joint)));
       }
       left = std::max(left, scene.deepest());
       if (seed % 2 == 1 && seed % 3 != 0) momentum = std::max(momentum, length(scene.world.momentum()));

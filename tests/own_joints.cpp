@@ -1,7 +1,7 @@
-// Pins kernels of the host's own over joints with their bodies: forces that they give to both are those of the closed form and of the
-// library's springs; CPU (lanes, threads) and GPU agree to the bit wherever stages run, in octaves, with fixed and kinematic ends;
-// everything is read before anything is given; a body sums in the order of its joints' ids, wherever rows stand; what stands or sleeps
-// is given nothing.
+// Pins kernels of the host's own over joints with their bodies: forces that they give to both are those of the closed
+// form and of the library's springs; CPU (lanes, threads) and GPU agree to the bit wherever stages run, in octaves,
+// with fixed and kinematic ends; everything is read before anything is given; a body sums in the order of its joints'
+// ids, wherever rows stand; what stands or sleeps is given nothing.
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
@@ -14,9 +14,9 @@ namespace {
 
 /// Hooke's law and a damper between the centres of two bodies.
 PCPHYS_KERNEL(spring_damper,
-              (PC_A(Vec3) position_a, PC_A(Vec3) displacement_rate_a, PC_B(Vec3) position_b, PC_B(Vec3) displacement_rate_b,
-               PC_IN(Real) rest_length, PC_OUT(Real) stretch, PC_ADD_A(Vec3) force_a, PC_ADD_B(Vec3) force_b,
-               PC_PARAM(Real) stiffness, PC_PARAM(Real) damping),
+              (PC_A(Vec3) position_a, PC_A(Vec3) displacement_rate_a, PC_B(Vec3) position_b,
+               PC_B(Vec3) displacement_rate_b, PC_IN(Real) rest_length, PC_OUT(Real) stretch, PC_ADD_A(Vec3) force_a,
+               PC_ADD_B(Vec3) force_b, PC_PARAM(Real) stiffness, PC_PARAM(Real) damping),
               {
                 Vec3 way = pc_sub(position_b, position_a);
                 Real size = pc_length(way);
@@ -46,8 +46,8 @@ PCPHYS_KERNEL(pull_anchors,
 
 /// What is given is what is read.
 PCPHYS_KERNEL(conduction,
-              (PC_A(Real) heat_of_a, PC_B(Real) heat_of_b, PC_ADD_A(Real) heat_a, PC_ADD_B(Real) heat_b, PC_ADD_A(uint) joints_a,
-               PC_ADD_B(uint) joints_b, PC_ADD_B(Mat3) matter_b, PC_PARAM(Real) rate),
+              (PC_A(Real) heat_of_a, PC_B(Real) heat_of_b, PC_ADD_A(Real) heat_a, PC_ADD_B(Real) heat_b,
+               PC_ADD_A(uint) joints_a, PC_ADD_B(uint) joints_b, PC_ADD_B(Mat3) matter_b, PC_PARAM(Real) rate),
               {
                 heat_a = rate * (heat_of_b - heat_of_a);
                 heat_b = -heat_a;
@@ -104,7 +104,8 @@ void add_all(Stepper& stepper, World& world) {
                                   .parameters = {{"stiffness", 5.0}, {"damping", 0.1}}}));
   must(stepper.add_kernel(world, {.text = pull_anchors::text(), .over = joint_table}));
   must(stepper.add_kernel(
-      world, {.text = conduction::text(), .over = joint_table, .stage = Stage::impulses, .parameters = {{"rate", 0.01}}}));
+      world,
+      {.text = conduction::text(), .over = joint_table, .stage = Stage::impulses, .parameters = {{"rate", 0.01}}}));
 }
 
 PCPHYS_KERNEL(take_part, (PC_A(Real) part_of_a, PC_ADD_B(Real) taken_b), { taken_b = part_of_a; })
@@ -121,9 +122,9 @@ TEST_CASE("a spring-damper between two free bodies is the damped oscillator, of 
       const BodyId a = body(world, {}, mass_a), b = body(world, {1.3, 0, 0}, mass_b);
       (void)must(world.create_spring(link(a, b, 1)));
       Stepper stepper;
-      must(stepper.add_kernel(
-          world,
-          {.text = spring_damper::text(), .over = joint_table, .parameters = {{"stiffness", stiffness}, {"damping", 0.0}}}));
+      must(stepper.add_kernel(world, {.text = spring_damper::text(),
+                                      .over = joint_table,
+                                      .parameters = {{"stiffness", stiffness}, {"damping", 0.0}}}));
       const int steps = fine ? 120 : 60;
       run(world, stepper, steps, 1.0 / steps);
       const Vec3 at_a = must(world.pose(a)).position, at_b = must(world.pose(b)).position;
@@ -218,7 +219,8 @@ TEST_CASE("each joint of a body that moves gives once, everything is read before
       settings.set_all(place);
       Stepper stepper(settings);
       must(stepper.add_kernel(
-          world, {.text = conduction::text(), .over = joint_table, .once_a_step = true, .parameters = {{"rate", 0.01}}}));
+          world,
+          {.text = conduction::text(), .over = joint_table, .once_a_step = true, .parameters = {{"rate", 0.01}}}));
       run(world, stepper, 1);
       for (std::size_t i = 0; i < bodies.size(); i++) {
         const bool moves = must(world.kind(bodies[i])) != BodyKind::fixed;
@@ -253,7 +255,8 @@ TEST_CASE("the order is that of ids, wherever rows stand") {
     std::vector<SpringDef> links;
     for (int i = 0; i < 150; i++) {
       const double turn = 0.7 * i;
-      const BodyId rim = body(world, {(2 + 0.01 * i) * std::cos(turn), (1 + 0.02 * i) * std::sin(turn), 0.03 * i}, 1 + i % 4);
+      const BodyId rim =
+          body(world, {(2 + 0.01 * i) * std::cos(turn), (1 + 0.02 * i) * std::sin(turn), 0.03 * i}, 1 + i % 4);
       links.push_back(i % 2 == 0 ? link(hub, rim, 1) : link(rim, hub, 1));
     }
     for (int i = 0; i < 150; i++) (void)must(world.create_spring(links[std::size_t(moved && i == 20 ? 21 : i)]));
@@ -264,7 +267,8 @@ TEST_CASE("the order is that of ids, wherever rows stand") {
     }
     Stepper stepper;
     must(stepper.add_kernel(
-        world, {.text = spring_damper::text(), .over = joint_table, .parameters = {{"stiffness", 9.0}, {"damping", 0.5}}}));
+        world,
+        {.text = spring_damper::text(), .over = joint_table, .parameters = {{"stiffness", 9.0}, {"damping", 0.5}}}));
     run(world, stepper, 5);
     std::vector<Vec3> places;
     for (const BodyId id : world.bodies()) places.push_back(must(world.pose(id)).position);

@@ -1,5 +1,6 @@
-// Pins what is refused of kernels of a joint with its bodies, with which words, and that nothing is added then; that a number that is
-// none names the body that was given it, and a property that was removed the kernel; and that a kernel with one side runs there.
+// Pins what is refused of kernels of a joint with its bodies, with which words, and that nothing is added then; that a
+// number that is none names the body that was given it, and a property that was removed the kernel; and that a kernel
+// with one side runs there.
 #include "pcphys/write_kernel.h"
 #include "support_world.h"
 
@@ -27,7 +28,8 @@ struct Populated {
   }
 };
 
-PCPHYS_KERNEL(warm, (PC_A(Real) heat_of_a, PC_ADD_B(Real) heat_b, PC_PARAM(Real) by), { heat_b = pc_div(heat_of_a, by); })
+PCPHYS_KERNEL(warm, (PC_A(Real) heat_of_a, PC_ADD_B(Real) heat_b, PC_PARAM(Real) by),
+              { heat_b = pc_div(heat_of_a, by); })
 PCPHYS_CPU_KERNEL(here, (PC_A(Real) heat_of_a, PC_IN(Real) stretch, PC_ADD_B(Real) heat_b),
                   { heat_b = heat_of_a > stretch ? Real(1) : Real(5); })
 PCPHYS_PAIR_KERNEL(wrong_macro, (PC_A(Real) heat_of_a, PC_ADD_B(Real) heat_b), { heat_b = heat_of_a; })
@@ -46,16 +48,20 @@ TEST_CASE("what does not fit is refused with its reason") {
   refused(over_bodies, ErrorCode::bad_argument, "let it run over joints: .over = joint_table");
   refused(glsl("(PC_A(Real) heat, PC_ADD_B(Real) heat_b)"), ErrorCode::bad_argument,
           "says PC_A of \"heat\"; the name of such an argument ends in _a: heat_a");
-  refused(glsl("(PC_A(Real) heat_a, PC_ADD_B(Real) heat)"), ErrorCode::bad_argument, "says PC_ADD_B of \"heat\"; the name");
+  refused(glsl("(PC_A(Real) heat_a, PC_ADD_B(Real) heat)"), ErrorCode::bad_argument,
+          "says PC_ADD_B of \"heat\"; the name");
   refused(glsl("(PC_A(Real) oil_a, PC_ADD_B(Real) heat_b)"), ErrorCode::unknown_name, "uses the property \"oil\"");
   refused(glsl("(PC_A(Vec3) heat_a, PC_ADD_B(Real) heat_b)"), ErrorCode::wrong_type, "declares \"heat_a\" as vec3");
   refused(glsl("(PC_A(Real) stretch_a, PC_ADD_B(Real) heat_b)"), ErrorCode::bad_argument,
           "\"stretch\" is no property of bodies; the joint's own are PC_IN");
-  refused(glsl("(PC_A(Real) total_a, PC_ADD_B(Real) heat_b)"), ErrorCode::bad_argument, "\"total\" is no property of bodies");
+  refused(glsl("(PC_A(Real) total_a, PC_ADD_B(Real) heat_b)"), ErrorCode::bad_argument,
+          "\"total\" is no property of bodies");
   refused(glsl("(PC_IN(Real) heat, PC_ADD_B(Real) heat_b)"), ErrorCode::bad_argument,
           "a property of bodies; say of which body: PC_A(T) heat_a or PC_B(T) heat_b");
-  refused(glsl("(PC_IN(Real) heat, PC_INOUT(Real) stretch)"), ErrorCode::bad_argument, "say of which body: PC_A(T) heat_a");
-  refused(glsl("(PC_A(Real) heat_a, PC_INOUT(Vec3) force)"), ErrorCode::bad_argument, "PC_ADD_A(T) or PC_ADD_B(T) for what");
+  refused(glsl("(PC_IN(Real) heat, PC_INOUT(Real) stretch)"), ErrorCode::bad_argument,
+          "say of which body: PC_A(T) heat_a");
+  refused(glsl("(PC_A(Real) heat_a, PC_INOUT(Vec3) force)"), ErrorCode::bad_argument,
+          "PC_ADD_A(T) or PC_ADD_B(T) for what");
   refused(glsl("(PC_A(Real) heat_a, PC_SUM(Real) total)"), ErrorCode::bad_argument,
           "says PC_SUM of \"total\"; what bodies are given is PC_ADD_A or PC_ADD_B, and a total of all joints");
   refused(glsl("(PC_A(Real) heat_a, PC_ADD(Real) heat)"), ErrorCode::bad_argument, "says PC_ADD of \"heat\"");
@@ -63,7 +69,8 @@ TEST_CASE("what does not fit is refused with its reason") {
   refused(glsl("(PC_A(Real) heat_a, PC_ADD_B(Vec3) position_b)"), ErrorCode::bad_argument,
           "from which the library derives others");
   refused(glsl("(PC_A(Real) heat_a, PC_ADD_B(Quaternion) turn_b)"), ErrorCode::wrong_type, "\"turn_b\", of type quat");
-  refused(glsl("(PC_A(Real) heat_a, PC_B(Real) heat_b)"), ErrorCode::bad_argument, "declare what it gives to bodies as PC_ADD_A");
+  refused(glsl("(PC_A(Real) heat_a, PC_B(Real) heat_b)"), ErrorCode::bad_argument,
+          "declare what it gives to bodies as PC_ADD_A");
   KernelDef late = glsl("(PC_A(Real) heat_a, PC_ADD_B(Vec3) force_b)");
   late.stage = Stage::joints;
   refused(late, ErrorCode::bad_argument, "run it before that stage");
@@ -104,7 +111,8 @@ TEST_CASE("a property of bodies that was removed under it") {
   must(p.stepper.add_kernel(p.world, {.text = warm::text(), .over = joint_table, .parameters = {{"by", 2.0}}}));
   run(p.world, p.stepper, 1);
   must(p.world.remove_property("heat"));
-  CHECK_REFUSED(p.world, step_status(p.stepper, p.world), ErrorCode::stale_id, "uses the property \"heat\", which was removed");
+  CHECK_REFUSED(p.world, step_status(p.stepper, p.world), ErrorCode::stale_id,
+                "uses the property \"heat\", which was removed");
 }
 
 TEST_CASE("of one side alone it runs there, and the plan says where") {
@@ -114,8 +122,9 @@ TEST_CASE("of one side alone it runs there, and the plan says where") {
     StepSettings settings;
     settings.set_all(on_gl ? Place::cpu : Place::gl);
     must(p.stepper.configure(settings));
-    KernelDef def = on_gl ? glsl("(PC_A(Real) heat_of_a, PC_ADD_B(Real) heat_b)", "{ heat_b = heat_of_a + PC_REAL(3.0); }")
-                          : KernelDef{.text = here::text(), .over = joint_table};
+    KernelDef def =
+        on_gl ? glsl("(PC_A(Real) heat_of_a, PC_ADD_B(Real) heat_b)", "{ heat_b = heat_of_a + PC_REAL(3.0); }")
+              : KernelDef{.text = here::text(), .over = joint_table};
     def.once_a_step = true;
     must(p.stepper.add_kernel(p.world, def));
     run(p.world, p.stepper, 1);
@@ -128,7 +137,8 @@ TEST_CASE("of one side alone it runs there, and the plan says where") {
 
 TEST_CASE("what the GLSL compiler says comes with the host's own file and line") {
   Populated p;
-  KernelDef def = glsl("(PC_A(Real) heat_a, PC_ADD_B(Real) heat_b)", "{\n  Real x = heat_a;\n  heat_b = x + nothing;\n}");
+  KernelDef def =
+      glsl("(PC_A(Real) heat_a, PC_ADD_B(Real) heat_b)", "{\n  Real x = heat_a;\n  heat_b = x + nothing;\n}");
   def.text.line = 40;
   check_glsl_error(p.world, def, 42);
 }

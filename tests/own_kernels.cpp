@@ -1,6 +1,7 @@
-// Pins kernels of the host's own: forces and properties that they make are those of the same arithmetic done otherwise; CPU and GL
-// agree to the bit, in both precisions, for every type and wherever stages run; they run when and in the order that they ask for;
-// a kernel that does not fit is refused with its reason, and the world and its motion are as without it.
+// Pins kernels of the host's own: forces and properties that they make are those of the same arithmetic done otherwise;
+// CPU and GL agree to the bit, in both precisions, for every type and wherever stages run; they run when and in the
+// order that they ask for; a kernel that does not fit is refused with its reason, and the world and its motion are as
+// without it.
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
@@ -11,7 +12,8 @@ using namespace worldtest;
 
 namespace {
 
-PCPHYS_KERNEL(weight, (PC_IN(Real) mass, PC_INOUT(Vec3) force, PC_PARAM(Vec3) pull), { force = pc_madd(force, pull, mass); })
+PCPHYS_KERNEL(weight, (PC_IN(Real) mass, PC_INOUT(Vec3) force, PC_PARAM(Vec3) pull),
+              { force = pc_madd(force, pull, mass); })
 
 PCPHYS_KERNEL(tether, (PC_IN(Vec3) position, PC_IN(Vec3) home, PC_INOUT(Vec3) force, PC_PARAM(Real) stiffness), {
   Vec3 away = pc_sub(home, position);
@@ -31,8 +33,8 @@ PCPHYS_KERNEL(thruster,
               })
 
 PCPHYS_KERNEL(all_types,
-              (PC_INOUT(Real) r, PC_INOUT(Vec3) v, PC_INOUT(Quaternion) q, PC_INOUT(Sym3) s, PC_INOUT(Quad) f, PC_INOUT(Mat3) m,
-               PC_INOUT(uint) n, PC_PARAM(Vec3) by),
+              (PC_INOUT(Real) r, PC_INOUT(Vec3) v, PC_INOUT(Quaternion) q, PC_INOUT(Sym3) s, PC_INOUT(Quad) f,
+               PC_INOUT(Mat3) m, PC_INOUT(uint) n, PC_PARAM(Vec3) by),
               {
                 r = r + by.x;
                 v = pc_cross(v, by);
@@ -44,7 +46,9 @@ PCPHYS_KERNEL(all_types,
               })
 
 PCPHYS_KERNEL(all_numbers,
-              (PC_INOUT(float) single, PC_INOUT(double) twice, PC_INOUT(int) whole, PC_INOUT(uint) k, PC_PARAM(int) less), {
+              (PC_INOUT(float) single, PC_INOUT(double) twice, PC_INOUT(int) whole, PC_INOUT(uint) k,
+               PC_PARAM(int) less),
+              {
                 single = single * single;
                 twice = twice + double(single);
                 whole = whole - less;
@@ -149,8 +153,10 @@ TEST_CASE("every type is read and written alike on both sides") {
       StepSettings settings;
       if (gl) settings.set_all(Place::gl);
       Stepper stepper(settings);
-      must(stepper.add_kernel(world, {.text = all_types::text(), .over = table, .parameters = {{"by", Vec3{0.5, 0.75, 1}}}}));
-      must(stepper.add_kernel(world, {.text = all_numbers::text(), .over = table, .parameters = {{"less", std::int32_t(2)}}}));
+      must(stepper.add_kernel(world,
+                              {.text = all_types::text(), .over = table, .parameters = {{"by", Vec3{0.5, 0.75, 1}}}}));
+      must(stepper.add_kernel(world,
+                              {.text = all_numbers::text(), .over = table, .parameters = {{"less", std::int32_t(2)}}}));
       run(world, stepper, 3);
       CHECK(must(world.get(must(world.property<std::uint32_t>("n")), RowOf(100))) == 7 + 3 * 3 * 4);
       float square = 0.9f;
@@ -175,13 +181,15 @@ TEST_CASE("a kernel of GLSL alone, from a string: the bits of the one of both si
       StepSettings settings;
       settings.set_all(place);
       Stepper stepper(settings);
-      const std::string body = "{\n  Vec3 away = pc_sub(home, position);\n  force = pc_madd(force, away, stiffness);\n}";
+      const std::string body =
+          "{\n  Vec3 away = pc_sub(home, position);\n  force = pc_madd(force, away, stiffness);\n}";
       const KernelText glsl{
           .name = "tether",
           .signature = "(PC_IN(Vec3) position, PC_IN(Vec3) home, PC_INOUT(Vec3) force, PC_PARAM(Real) stiffness)",
           .body = body.c_str(),
           .file = nullptr};  // the library keeps what it needs of them
-      must(stepper.add_kernel(s.world, {.text = text_alone ? glsl : tether::text(), .parameters = {{"stiffness", 20.0}}}));
+      must(stepper.add_kernel(s.world,
+                              {.text = text_alone ? glsl : tether::text(), .parameters = {{"stiffness", 20.0}}}));
       run(s.world, stepper, 20);
       hashes.push_back(s.world.hash());
     }
@@ -192,7 +200,8 @@ TEST_CASE("forces made once a step are held: those of each sub-step begin with t
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     // beside a callback, which is asked once a step for the same force
     World asked(WorldDef{precision, {}}), made(WorldDef{precision, {}});
-    for (World* world : {&asked, &made}) must(world->add_property<Vec3>("home", {1, 2, 3}, "m", body_table, Role::input));
+    for (World* world : {&asked, &made})
+      must(world->add_property<Vec3>("home", {1, 2, 3}, "m", body_table, Role::input));
     const BodyId a = must(asked.create_body(ball({0, 5, 0}))), b = must(made.create_body(ball({0, 5, 0})));
     (void)must(asked.add_force(a, [](const World& w, BodyId id) {
       return Wrench{6.0 * (Vec3{1, 2, 3} - must(w.pose(id)).position), {}};
@@ -205,17 +214,21 @@ TEST_CASE("forces made once a step are held: those of each sub-step begin with t
     must(two.add_kernel(made, {.text = tether::text(), .once_a_step = true, .parameters = {{"stiffness", 6.0}}}));
     run(asked, one, 60);
     run(made, two, 60);
-    CHECK(length(must(made.pose(b)).position - must(asked.pose(a)).position) < (precision == Precision::f32 ? 1e-5 : 1e-13));
+    CHECK(length(must(made.pose(b)).position - must(asked.pose(a)).position) <
+          (precision == Precision::f32 ? 1e-5 : 1e-13));
     CHECK(length(must(made.velocity(b)) - must(asked.velocity(a))) < (precision == Precision::f32 ? 1e-5 : 1e-12));
     CHECK(length(must(made.velocity(b))) > 1);
   }
 }
 
-TEST_CASE("forces once a step and in each sub-step: the same bits everywhere, in any order of adding, and each alone as ever") {
+TEST_CASE(
+    "forces once a step and in each sub-step: the same bits everywhere, in any order of adding, and each alone as "
+    "ever") {
   require_gl();
   const auto add = [](Stepper& stepper, World& world, bool once) {
     if (once)
-      must(stepper.add_kernel(world, {.text = tether::text(), .once_a_step = true, .parameters = {{"stiffness", 20.0}}}));
+      must(stepper.add_kernel(world,
+                              {.text = tether::text(), .once_a_step = true, .parameters = {{"stiffness", 20.0}}}));
     else
       must(stepper.add_kernel(world, {.text = thruster::text(), .parameters = {{"thrust", 40.0}, {"flow", 1.5}}}));
   };
@@ -255,7 +268,8 @@ TEST_CASE("when: once a step, or in each sub-step") {
     for (const Stage stage : {Stage::integrate, Stage::joints, Stage::impulses})
       for (const bool after : {false, true}) {
         Stepper stepper;
-        must(stepper.add_kernel(s.world, {.text = count_steps::text(), .stage = stage, .after = after, .once_a_step = once}));
+        must(stepper.add_kernel(s.world,
+                                {.text = count_steps::text(), .stage = stage, .after = after, .once_a_step = once}));
         const std::uint32_t before = must(s.world.get(steps, body));
         run(s.world, stepper, 5);
         CHECK(must(s.world.get(steps, body)) - before == (once ? 5 : 5 * stepper.settings().substeps));
@@ -295,7 +309,8 @@ TEST_CASE("removed, the world moves as without it") {
 TEST_CASE("forces belong to the world's steps, whichever stepper makes them") {
   // made by one stepper, they are gone for the next; and that one may go first
   SceneWorld a = with_own(Precision::f32), b = with_own(Precision::f32);
-  for (World* world : {&a.world, &b.world}) (void)must(world->add_force(world->bodies()[1], Wrench{{1, 0, 0}, {0, 2, 0}}));
+  for (World* world : {&a.world, &b.world})
+    (void)must(world->add_force(world->bodies()[1], Wrench{{1, 0, 0}, {0, 2, 0}}));
   Stepper with, without, plain;
   add_forces(with, b.world);
   run(a.world, plain, 20);

@@ -1,5 +1,5 @@
-// Pins what is refused of a host's own kernels, with which words; that nothing is added then; and that a kernel whose property was
-// removed stops the step, not the world.
+// Pins what is refused of a host's own kernels, with which words; that nothing is added then; and that a kernel whose
+// property was removed stops the step, not the world.
 #include <optional>
 
 #include "glcompute/compile_log.h"
@@ -45,7 +45,8 @@ PCPHYS_KERNEL(no_glsl, (PC_INOUT(Real) fuel, PC_PARAM(Real) flow), {
   fuel = half;
 })
 
-// In C++ what is read only would be refused by the compiler, so these have no C++ side: the text as the preprocessor leaves it.
+// In C++ what is read only would be refused by the compiler, so these have no C++ side: the text as the preprocessor
+// leaves it.
 #define GLSL_ALONE(Name, signature, ...)                                                       \
   struct Name {                                                                                \
     static KernelText text() { return {#Name, #signature, #__VA_ARGS__, __FILE__, __LINE__}; } \
@@ -101,7 +102,8 @@ TEST_CASE("what does not fit is refused with its reason") {
   CHECK_REFUSED(w, s.add_kernel(w, glsl("", "(PC_INOUT(Real) fuel)")), ErrorCode::bad_argument, "has no name");
   CHECK_REFUSED(w, s.add_kernel(w, glsl("k", "(PC_INOUT(Real) fuel)", "")), ErrorCode::bad_argument,
                 "neither a C++ nor a GLSL side");
-  CHECK_REFUSED(w, s.add_kernel(w, glsl("k", "(PC_INOUT(Real) oil)")), ErrorCode::unknown_name, "uses the property \"oil\"");
+  CHECK_REFUSED(w, s.add_kernel(w, glsl("k", "(PC_INOUT(Real) oil)")), ErrorCode::unknown_name,
+                "uses the property \"oil\"");
   CHECK_REFUSED(w, s.add_kernel(w, glsl("k", "(PC_INOUT(Vec3) fuel)")), ErrorCode::wrong_type,
                 "declares \"fuel\" as vec3; the property is of type real");
   CHECK_REFUSED(w, s.add_kernel(w, glsl("k", "(PC_IN(Real) fuel)")), ErrorCode::bad_argument, "writes nothing");
@@ -113,15 +115,16 @@ TEST_CASE("what does not fit is refused with its reason") {
                 "no value is given for it");
   CHECK_REFUSED(w, s.add_kernel(w, {.text = drain::text(), .parameters = {{"flow", Vec3{}}}}), ErrorCode::wrong_type,
                 "parameter \"flow\" as real; the value given is of type vec3");
-  CHECK_REFUSED(w, s.add_kernel(w, {.text = drain::text(), .parameters = {{"flow", std::nan("")}}}), ErrorCode::not_finite,
-                "parameter \"flow\" is nan");
+  CHECK_REFUSED(w, s.add_kernel(w, {.text = drain::text(), .parameters = {{"flow", std::nan("")}}}),
+                ErrorCode::not_finite, "parameter \"flow\" is nan");
   CHECK_REFUSED(w, s.add_kernel(w, {.text = drain::text(), .parameters = {{"flow", 1.0}, {"flux", 1.0}}}),
                 ErrorCode::bad_argument, "is given the parameter \"flux\"");
-  CHECK_REFUSED(w,
-                s.add_kernel(w, glsl("k",
-                                     "(PC_INOUT(Real) fuel, PC_IN(Real) a, PC_IN(Real) b, PC_IN(Real) c, PC_IN(Real) d, "
-                                     "PC_IN(Real) e, PC_IN(Real) f, PC_IN(Real) g)")),
-                ErrorCode::bad_argument, "needs 9 storage blocks (fuel, a, b, c, d, e, f, g, and the list of bodies)");
+  CHECK_REFUSED(
+      w,
+      s.add_kernel(w, glsl("k",
+                           "(PC_INOUT(Real) fuel, PC_IN(Real) a, PC_IN(Real) b, PC_IN(Real) c, PC_IN(Real) d, "
+                           "PC_IN(Real) e, PC_IN(Real) f, PC_IN(Real) g)")),
+      ErrorCode::bad_argument, "needs 9 storage blocks (fuel, a, b, c, d, e, f, g, and the list of bodies)");
   CHECK_REFUSED(w, s.add_kernel(w, {.text = text("k", "(PC_INOUT(Vec3) force)", "{}"), .stage = Stage::joints}),
                 ErrorCode::bad_argument, "run it before that stage");
   run(w, s, 2);  // as if nothing had been asked for
@@ -163,12 +166,12 @@ TEST_CASE("order: a circle names those in it, and what does not exist is no orde
   };
   must(s.add_kernel(w, {.text = cpp("gauge", "(PC_IN(Real) heat, PC_INOUT(Vec3) force)")}));  // not to blame
   must(s.add_kernel(w, {.text = cpp("burn", "(PC_IN(Real) fuel, PC_INOUT(Real) heat)")}));
-  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("vent", "(PC_INOUT(Real) fuel, PC_IN(Real) heat)")}), ErrorCode::bad_argument,
-                "\"burn\" and \"vent\" each have to run before the other");
-  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("late", "(PC_INOUT(Real) heat)"), .follows = {"brun"}}), ErrorCode::unknown_name,
-                "is to follow \"brun\"");
-  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("late", "(PC_INOUT(Real) heat)"), .stage = Stage(9)}), ErrorCode::bad_argument,
-                "at stage 9");
+  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("vent", "(PC_INOUT(Real) fuel, PC_IN(Real) heat)")}),
+                ErrorCode::bad_argument, "\"burn\" and \"vent\" each have to run before the other");
+  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("late", "(PC_INOUT(Real) heat)"), .follows = {"brun"}}),
+                ErrorCode::unknown_name, "is to follow \"brun\"");
+  CHECK_REFUSED(w, s.add_kernel(w, {.text = cpp("late", "(PC_INOUT(Real) heat)"), .stage = Stage(9)}),
+                ErrorCode::bad_argument, "at stage 9");
 }
 
 TEST_CASE("a kernel that is refused for another world leaves those that there are") {
@@ -221,8 +224,9 @@ TEST_CASE("a table of one row that has another number of them: the step says so,
     must(stepper.add_kernel(world, {.text = sum_up::text()}));
     run(world, stepper, 1);
     must(world.resize(one, rows));
-    CHECK_REFUSED(world, step_status(stepper, world), ErrorCode::bad_argument,
-                  "The kernel \"sum_up\" uses \"total\" of a table of one row, which has " + std::to_string(rows) + " now");
+    CHECK_REFUSED(
+        world, step_status(stepper, world), ErrorCode::bad_argument,
+        "The kernel \"sum_up\" uses \"total\" of a table of one row, which has " + std::to_string(rows) + " now");
     must(world.resize(one, 1));
     must(world.set(must(world.property<Real>("fuel")), body, Real(4)));
     run(world, stepper, 1);
@@ -232,9 +236,10 @@ TEST_CASE("a table of one row that has another number of them: the step says so,
 
 TEST_CASE("a text that names the library's buffers is refused") {
   Populated p;
-  CHECK_REFUSED(p.world,
-                p.stepper.add_kernel(p.world, glsl("sly", "(PC_INOUT(Real) fuel)", "{ fuel = 1.0; io_pose[0].x = 2.0; }")),
-                ErrorCode::bad_argument, "The kernel \"sly\" uses \"io_pose\" in its text");
+  CHECK_REFUSED(
+      p.world,
+      p.stepper.add_kernel(p.world, glsl("sly", "(PC_INOUT(Real) fuel)", "{ fuel = 1.0; io_pose[0].x = 2.0; }")),
+      ErrorCode::bad_argument, "The kernel \"sly\" uses \"io_pose\" in its text");
 }
 
 TEST_CASE("GLSL that does not compile comes back with the host's own lines") {
@@ -244,8 +249,8 @@ TEST_CASE("GLSL that does not compile comes back with the host's own lines") {
   settings.set_all(Place::gl);
   Stepper stepper(settings);
   const char* wrong = "{\n  fuel = fuel - 1.0;\n  fuel = nonsense;\n}";
-  CHECK_REFUSED(p.world, stepper.add_kernel(p.world, glsl("leak", "(PC_INOUT(Real) fuel)", wrong)), ErrorCode::device_error,
-                "nonsense");
+  CHECK_REFUSED(p.world, stepper.add_kernel(p.world, glsl("leak", "(PC_INOUT(Real) fuel)", wrong)),
+                ErrorCode::device_error, "nonsense");
   check_glsl_error(p.world, glsl("leak", "(PC_INOUT(Real) fuel)", wrong), 3);
   const char* writes = "{\n  a = 1.0;\n  fuel = a;\n}";
   CHECK_REFUSED(p.world, stepper.add_kernel(p.world, glsl("leak", "(PC_INOUT(Real) fuel, PC_IN(Real) a)", writes)),
@@ -264,9 +269,9 @@ TEST_CASE("of a text that the preprocessor made one line of, errors name the lin
                           ": auto half = left * ") != said.npos,
                 said);
   const std::string constant = refusal(p.world, here(writes_what_it_reads::text()));
-  CHECK_MESSAGE(
-      constant.find(std::string("there: ") + this_file + ":" + std::to_string(writes_line + 5) + ": a =") != constant.npos,
-      constant);
+  CHECK_MESSAGE(constant.find(std::string("there: ") + this_file + ":" + std::to_string(writes_line + 5) + ": a =") !=
+                    constant.npos,
+                constant);
 }
 
 TEST_CASE("where that file is not at hand, or is another by now, the statement is quoted") {
@@ -293,7 +298,8 @@ TEST_CASE("what is refused of a signature names the line of the argument") {
 
 TEST_CASE("lines are found by the macro's first line and by its last, and what NVIDIA says comes with them") {
   const std::string file =
-      "\n// leak, of fuel\nMINE (leak,  // why\n  (PC_INOUT(Real) fuel,\n   PC_IN(Real) a), {\n  /* one\n  two */ fuel = b;\n"
+      "\n// leak, of fuel\nMINE (leak,  // why\n  (PC_INOUT(Real) fuel,\n   PC_IN(Real) a), {\n  /* one\n  two */ fuel "
+      "= b;\n"
       "  if (a > fuel) fuel =\n    a;\n})\nMINE(leak, (PC_IN(Real) a), {})\n";
   OwnKernel k;
   k.name = "leak";
@@ -328,12 +334,16 @@ TEST_CASE("lines are found by the macro's first line and by its last, and what N
 TEST_CASE("statements and what compilers say of them") {
   CHECK(by_statement("{ a = b; for (uint i = 0u; i < 3u; i++) { c(i); } }  // d; e") ==
         "{\na = b;\nfor (uint i = 0u; i < 3u; i++) {\nc(i);\n}\n}\n");
-  const ProgramSource source{"#version 430\n#line 1 0\nvoid f();\n#line 7 1\n{\n  x = y;\n}\n#line 1 0\nvoid main() {}\n", {}, 0};
-  CHECK(with_quotes("1:8(7): error: `y' undeclared", source) == "1:8(7): error: `y' undeclared\n  there: x = y;");  // Mesa
-  CHECK(with_quotes("1(8) : error C1503: undefined variable \"y\"\n0(2) : error", source) ==                        // NVIDIA
+  const ProgramSource source{
+      "#version 430\n#line 1 0\nvoid f();\n#line 7 1\n{\n  x = y;\n}\n#line 1 0\nvoid main() {}\n", {}, 0};
+  // Mesa
+  CHECK(with_quotes("1:8(7): error: `y' undeclared", source) == "1:8(7): error: `y' undeclared\n  there: x = y;");
+  // NVIDIA
+  CHECK(with_quotes("1(8) : error C1503: undefined variable \"y\"\n0(2) : error", source) ==
         "1(8) : error C1503: undefined variable \"y\"\n  there: x = y;\n0(2) : error");
   CHECK(with_quotes("out of memory", source) == "out of memory");
-  CHECK(with_quotes("0:3(1): warning: extension", source) == "0:3(1): warning: extension");  // nothing else is known then
+  // nothing else is known then
+  CHECK(with_quotes("0:3(1): warning: extension", source) == "0:3(1): warning: extension");
   CHECK(with_quotes("0:3(1): warning: extension\n1:8(7): error: `y' undeclared", source) ==
         "1:8(7): error: `y' undeclared\n  there: x = y;");
 }

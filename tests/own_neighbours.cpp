@@ -1,5 +1,6 @@
-// Pins pair kernels with a cut-off: who is within it is exactly those that plain loops find, in each sub-step; what is summed depends on
-// positions alone, not on how long lists of neighbours have stood or how fast bodies come; CPU and GPU agree to the bit.
+// Pins pair kernels with a cut-off: who is within it is exactly those that plain loops find, in each sub-step; what is
+// summed depends on positions alone, not on how long lists of neighbours have stood or how fast bodies come; CPU and
+// GPU agree to the bit.
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
@@ -38,9 +39,10 @@ World crowd(int count, Precision precision) {
   return world;
 }
 void add_kernels(Stepper& stepper, World& world, double cutoff) {
-  must(stepper.add_kernel(world, {.text = count_near::text(), .stage = Stage::impulses, .after = true, .cutoff = cutoff}));
   must(stepper.add_kernel(world,
-                          {.text = spring_apart::text(), .parameters = {{"stiffness", 30.0}, {"reach", 0.8}}, .cutoff = 0.8}));
+                          {.text = count_near::text(), .stage = Stage::impulses, .after = true, .cutoff = cutoff}));
+  must(stepper.add_kernel(
+      world, {.text = spring_apart::text(), .parameters = {{"stiffness", 30.0}, {"reach", 0.8}}, .cutoff = 0.8}));
 }
 void check_counts(const World& world, double cutoff) {
   const auto near = must(world.property<std::uint32_t>("near"));
@@ -122,7 +124,8 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
 
 TEST_CASE("the same bits whoever steps") {
   for (const Precision precision : {Precision::f32, Precision::f64})
-    check_same_ways({[&] { return crowd(150, precision); }, [](Stepper& s, World& w) { add_kernels(s, w, 0.7); }}, 12, 4);
+    check_same_ways({[&] { return crowd(150, precision); }, [](Stepper& s, World& w) { add_kernels(s, w, 0.7); }}, 12,
+                    4);
 }
 
 TEST_CASE("objects come and go") {

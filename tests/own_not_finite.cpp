@@ -1,6 +1,6 @@
-// Pins what happens when a kernel of the host's own writes a number that is none: the step is an error that names the kernel and the
-// object, on the CPU, on the GPU and where results stay there, and the world is as it was; once that is mended, steps go on. A body that leaves the range of
-// numbers by finite forces is frozen and named, as ever.
+// Pins what happens when a kernel of the host's own writes a number that is none: the step is an error that names the
+// kernel and the object, on the CPU, on the GPU and where results stay there, and the world is as it was; once that is
+// mended, steps go on. A body that leaves the range of numbers by finite forces is frozen and named, as ever.
 #include "pcphys/write_kernel.h"
 #include "support_world.h"
 
@@ -16,7 +16,9 @@ PCPHYS_KERNEL(quotient, (PC_IN(Vec3) home, PC_INOUT(Vec3) force, PC_PARAM(Real) 
 })
 PCPHYS_KERNEL(root, (PC_OUT(Real) fuel, PC_PARAM(Real) of), { fuel = pc_sqrt(of); })
 PCPHYS_PAIR_KERNEL(bare_gravity,
-                   (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force, PC_PARAM(Real) softening), {
+                   (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force,
+                    PC_PARAM(Real) softening),
+                   {
                      Vec3 d = pc_sub(position_other, position);
                      precise Real r2 = pc_dot(d, d) + softening;
                      force = pc_scale(d, pc_div(PC_REAL(1e-3), r2));
@@ -57,7 +59,8 @@ void check_named(Stepper& stepper, World& world, const std::string& words) {
 World three(Precision precision) {
   World world(WorldDef{precision, {}});
   const auto home = must(world.add_property<Vec3>("home", {}, "m", body_table, Role::input));
-  for (int i = 0; i < 3; i++) must(world.set(home, must(world.create_body(ball({3.0 * i, 5, 0}))), Vec3{3.0 * i, 5, 0}));
+  for (int i = 0; i < 3; i++)
+    must(world.set(home, must(world.create_body(ball({3.0 * i, 5, 0}))), Vec3{3.0 * i, 5, 0}));
   return world;
 }
 StepSettings at(Place place, bool resident = false) {
@@ -69,7 +72,8 @@ StepSettings at(Place place, bool resident = false) {
 void each_place(const std::function<void(const StepSettings&, Precision)>& check) {
   require_gl();
   for (const Precision precision : {Precision::f32, Precision::f64})
-    for (const StepSettings& settings : {at(Place::cpu), at(Place::gl), at(Place::gl, true)}) check(settings, precision);
+    for (const StepSettings& settings : {at(Place::cpu), at(Place::gl), at(Place::gl, true)})
+      check(settings, precision);
 }
 
 }  // namespace
@@ -82,7 +86,8 @@ TEST_CASE("a force that is no number names kernel and body, in sub-steps and whe
       must(stepper.add_kernel(world, {.text = good::text(), .once_a_step = once}));
       must(stepper.add_kernel(world, {.text = quotient::text(), .once_a_step = once, .parameters = {{"at", 1.0}}}));
       must(stepper.set_parameter("quotient", {"at", 3.0}));
-      const std::string words = "The kernel \"quotient\" gave body " + std::to_string(world.bodies()[1].index) + " a \"force\"";
+      const std::string words =
+          "The kernel \"quotient\" gave body " + std::to_string(world.bodies()[1].index) + " a \"force\"";
       check_named(stepper, world, words);
       check_named(stepper, world, words);
       must(stepper.set_parameter("quotient", {"at", 2.0}));
@@ -175,7 +180,8 @@ PCPHYS_KERNEL(burn, (PC_IN(Real) shoved, PC_INOUT(Real) fuel, PC_INOUT(Vec3) for
 struct Flight {
   World world;
   Stepper stepper;
-  Property<Real> shoved = must(world.add_property<Real>("shoved", 0)), fuel = must(world.add_property<Real>("fuel", 1000));
+  Property<Real> shoved = must(world.add_property<Real>("shoved", 0)),
+                 fuel = must(world.add_property<Real>("fuel", 1000));
   std::vector<BodyId> bodies;
 
   Flight(const StepSettings& settings, Precision precision, int steps) : world({precision}), stepper(settings) {

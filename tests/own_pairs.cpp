@@ -1,6 +1,7 @@
-// Pins pair kernels of the host's own: forces between all pairs are those of the same sum done plainly; they keep momentum; CPU (lanes,
-// threads) and GPU agree to the bit wherever stages run, for any number of bodies; everything is read before anything is written; the
-// order of sums is that of ids, wherever rows stand; bodies that act on each other have one octave.
+// Pins pair kernels of the host's own: forces between all pairs are those of the same sum done plainly; they keep
+// momentum; CPU (lanes, threads) and GPU agree to the bit wherever stages run, for any number of bodies; everything is
+// read before anything is written; the order of sums is that of ids, wherever rows stand; bodies that act on each other
+// have one octave.
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
@@ -12,8 +13,8 @@ using namespace worldtest;
 namespace {
 
 PCPHYS_PAIR_KERNEL(attraction,
-                   (PC_SELF(Vec3) position, PC_SELF(Real) mass, PC_OTHER(Vec3) position_other, PC_OTHER(Real) mass_other,
-                    PC_ADD(Vec3) force, PC_PARAM(Real) strength, PC_PARAM(Real) softening),
+                   (PC_SELF(Vec3) position, PC_SELF(Real) mass, PC_OTHER(Vec3) position_other,
+                    PC_OTHER(Real) mass_other, PC_ADD(Vec3) force, PC_PARAM(Real) strength, PC_PARAM(Real) softening),
                    {
                      Vec3 d = pc_sub(position_other, position);
                      precise Real r2 = pc_dot(d, d) + softening;
@@ -25,8 +26,8 @@ PCPHYS_PAIR_KERNEL(attraction,
 
 /// Heat goes from the warm to the cold: what is summed is what is read.
 PCPHYS_PAIR_KERNEL(conduction,
-                   (PC_SELF(Real) heat_self, PC_OTHER(Real) heat_other, PC_ADD(Real) heat, PC_SUM(uint) warmer, PC_SUM(Vec3) flow,
-                    PC_PARAM(Real) rate),
+                   (PC_SELF(Real) heat_self, PC_OTHER(Real) heat_other, PC_ADD(Real) heat, PC_SUM(uint) warmer,
+                    PC_SUM(Vec3) flow, PC_PARAM(Real) rate),
                    {
                      precise Real d = heat_other - heat_self;
                      heat = d * rate;
@@ -39,7 +40,8 @@ PCPHYS_KERNEL(tick, (PC_INOUT(Real) ticks), { ticks = ticks + PC_REAL(1.0); })
 
 constexpr double strength = 2, softening = 0.01;
 void add_attraction(Stepper& stepper, World& world) {
-  must(stepper.add_kernel(world, {.text = attraction::text(), .parameters = {{"strength", strength}, {"softening", softening}}}));
+  must(stepper.add_kernel(
+      world, {.text = attraction::text(), .parameters = {{"strength", strength}, {"softening", softening}}}));
 }
 
 /// Balls that never touch, at rest, of several masses; some of them fixed.
@@ -158,8 +160,8 @@ TEST_CASE("rows of a table of one's own; what is summed may be what is read") {
       StepSettings settings;
       if (gl) settings.set_all(Place::gl);
       Stepper stepper(settings);
-      must(stepper.add_kernel(world,
-                              {.text = conduction::text(), .over = table, .once_a_step = true, .parameters = {{"rate", 0.001}}}));
+      must(stepper.add_kernel(
+          world, {.text = conduction::text(), .over = table, .once_a_step = true, .parameters = {{"rate", 0.001}}}));
       run(world, stepper, 1);
       // every difference is of what was there before
       CHECK(must(world.get(heat, RowOf(1))) == doctest::Approx(1 + 0.001 * (150 * 149 / 2)));
@@ -235,7 +237,8 @@ TEST_CASE("where nothing moves: the same on CPU and GL, of bodies in pairs, by t
           StepSettings settings;
           if (gl) settings.set_all(Place::gl);
           Stepper stepper(settings);
-          must(stepper.add_kernel(world, {.text = conduction::text(), .parameters = {{"rate", 0.1}}, .cutoff = cutoff}));
+          must(
+              stepper.add_kernel(world, {.text = conduction::text(), .parameters = {{"rate", 0.1}}, .cutoff = cutoff}));
           must(stepper.add_kernel(world, {.text = warm_total::text()}));
           must(stepper.add_kernel(world, {.text = tick::text(), .over = cells}));
           add_attraction(stepper, world);

@@ -1,6 +1,6 @@
-// Pins one value of all rows: sums, least and most are those of the same rows; CPU (lanes, threads) and GPU agree to the bit for any
-// number of rows, in both precisions and for every type; they are of the step's end, in the order of ids; other kernels may read them;
-// of nothing the sum is zero.
+// Pins one value of all rows: sums, least and most are those of the same rows; CPU (lanes, threads) and GPU agree to
+// the bit for any number of rows, in both precisions and for every type; they are of the step's end, in the order of
+// ids; other kernels may read them; of nothing the sum is zero.
 #include <cmath>
 
 #include "pcphys/write_kernel.h"
@@ -11,8 +11,8 @@ using namespace worldtest;
 namespace {
 
 PCPHYS_KERNEL(totals,
-              (PC_IN(Real) mass, PC_IN(Vec3) position, PC_IN(Vec3) displacement_rate, PC_SUM(Real) kinetic, PC_SUM(Vec3) momentum,
-               PC_MIN(Vec3) low, PC_MAX(Vec3) high, PC_SUM(uint) bodies),
+              (PC_IN(Real) mass, PC_IN(Vec3) position, PC_IN(Vec3) displacement_rate, PC_SUM(Real) kinetic,
+               PC_SUM(Vec3) momentum, PC_MIN(Vec3) low, PC_MAX(Vec3) high, PC_SUM(uint) bodies),
               {
                 precise Real v2 = pc_dot(displacement_rate, displacement_rate);
                 precise Real twice = mass * v2;
@@ -22,7 +22,9 @@ PCPHYS_KERNEL(totals,
                 high = position;
                 bodies = 1u;
               })
-PCPHYS_KERNEL(spread, (PC_IN(Real) x, PC_IN(int) n, PC_SUM(Real) sum, PC_MIN(Real) least, PC_MAX(int) most, PC_SUM(double) fine),
+PCPHYS_KERNEL(spread,
+              (PC_IN(Real) x, PC_IN(int) n, PC_SUM(Real) sum, PC_MIN(Real) least, PC_MAX(int) most,
+               PC_SUM(double) fine),
               {
                 sum = x;
                 least = x;
@@ -80,8 +82,10 @@ TEST_CASE("the same bits in lanes, threads, on the GPU and wherever stages run")
           add_totals(s.world);
           Stepper stepper(settings);
           must(stepper.add_kernel(s.world, {.text = totals::text()}));
-          must(stepper.add_kernel(
-              s.world, {.text = brake::text(), .stage = Stage::impulses, .once_a_step = true, .parameters = {{"limit", 200.0}}}));
+          must(stepper.add_kernel(s.world, {.text = brake::text(),
+                                            .stage = Stage::impulses,
+                                            .once_a_step = true,
+                                            .parameters = {{"limit", 200.0}}}));
           const std::vector<std::uint64_t> hashes = hash_each_step(s.world, stepper, steps);
           CHECK(double(total<Real>(s.world, "kinetic")) > 0);
           return hashes;

@@ -1,5 +1,6 @@
-// Pins whose a property of the host's own is: the host's alone until a kernel of some stepper names it. Until then another value wakes
-// nobody and is in no hash; from then on it is in the hash, whichever steppers come and go; snapshots hold it all the same. Role::state is in the hash always, Role::input never.
+// Pins whose a property of the host's own is: the host's alone until a kernel of some stepper names it. Until then
+// another value wakes nobody and is in no hash; from then on it is in the hash, whichever steppers come and go;
+// snapshots hold it all the same. Role::state is in the hash always, Role::input never.
 #include "pcphys/write_kernel.h"
 #include "support_sleep.h"
 

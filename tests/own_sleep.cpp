@@ -1,6 +1,6 @@
-// Pins sleeping beside kernels of the host's own: what such a kernel depends on wakes the bodies that it acts on, and what it carries on
-// from step to step keeps them awake; what no force follows from, what it makes anew, and a force that stays as it is, do not. The same on the CPU and on the
-// GPU, by their hashes.
+// Pins sleeping beside kernels of the host's own: what such a kernel depends on wakes the bodies that it acts on, and
+// what it carries on from step to step keeps them awake; what no force follows from, what it makes anew, and a force
+// that stays as it is, do not. The same on the CPU and on the GPU, by their hashes.
 #include "pcphys/write_kernel.h"
 #include "support_sleep.h"
 
@@ -8,18 +8,20 @@ using namespace worldtest;
 
 namespace {
 
-PCPHYS_KERNEL(hover, (PC_IN(Real) mass, PC_INOUT(Real) fuel, PC_INOUT(Vec3) force, PC_PARAM(Vec3) gravity, PC_PARAM(Real) h), {
-  Real on = pc_select(fuel > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
-  precise Real lift = mass * on;
-  force = pc_madd(force, gravity, -lift);
-  precise Real left = fuel - h;
-  fuel = pc_max(left, PC_REAL(0.0));
-})
+PCPHYS_KERNEL(hover,
+              (PC_IN(Real) mass, PC_INOUT(Real) fuel, PC_INOUT(Vec3) force, PC_PARAM(Vec3) gravity, PC_PARAM(Real) h), {
+                Real on = pc_select(fuel > PC_REAL(0.0), PC_REAL(1.0), PC_REAL(0.0));
+                precise Real lift = mass * on;
+                force = pc_madd(force, gravity, -lift);
+                precise Real left = fuel - h;
+                fuel = pc_max(left, PC_REAL(0.0));
+              })
 PCPHYS_KERNEL(push, (PC_INOUT(Vec3) force, PC_PARAM(Vec3) by), { force = pc_add(force, by); })
 PCPHYS_KERNEL(push_each, (PC_IN(Vec3) by, PC_INOUT(Vec3) force), { force = pc_add(force, by); })
 PCPHYS_KERNEL(push_all, (PC_IN(Vec3) gust, PC_INOUT(Vec3) force), { force = pc_add(force, gust); })
 PCPHYS_KERNEL(rise, (PC_INOUT(Vec3) gust), { gust.y = gust.y + PC_REAL(0.25); })
-PCPHYS_KERNEL(speed, (PC_IN(Vec3) displacement_rate, PC_OUT(Real) fastness), { fastness = pc_length(displacement_rate); })
+PCPHYS_KERNEL(speed, (PC_IN(Vec3) displacement_rate, PC_OUT(Real) fastness),
+              { fastness = pc_length(displacement_rate); })
 PCPHYS_KERNEL(grow_old, (PC_INOUT(int) age), { age = age + 1; })
 PCPHYS_KERNEL(momentum, (PC_IN(Real) mass, PC_IN(Vec3) displacement_rate, PC_SUM(Vec3) total),
               { total = pc_scale(displacement_rate, mass); })
@@ -29,12 +31,12 @@ PCPHYS_KERNEL(pull, (PC_A(Vec3) position_a, PC_B(Vec3) position_b, PC_IN(Real) g
   Vec3 way = pc_sub(position_b, position_a);
   force_a = pc_scale(way, grip);
 })
-PCPHYS_PAIR_KERNEL(attract,
-                   (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_OTHER(Real) charge_other, PC_ADD(Vec3) force), {
-                     Vec3 d = pc_sub(position_other, position);
-                     precise Real r2 = pc_dot(d, d) + PC_REAL(1.0);
-                     force = pc_scale(d, pc_div(charge_other, r2));
-                   })
+PCPHYS_PAIR_KERNEL(
+    attract, (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_OTHER(Real) charge_other, PC_ADD(Vec3) force), {
+      Vec3 d = pc_sub(position_other, position);
+      precise Real r2 = pc_dot(d, d) + PC_REAL(1.0);
+      force = pc_scale(d, pc_div(charge_other, r2));
+    })
 
 PCPHYS_PAIR_KERNEL(count_near, (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_SUM(Real) crowd), {
   Vec3 d = pc_sub(position_other, position);
@@ -82,7 +84,8 @@ TEST_CASE("a body that hovers on fuel stays awake while it burns, and falls when
   });
 }
 
-TEST_CASE("a force that stays as it is, what is made anew in each step, and what no force follows from keep nobody awake") {
+TEST_CASE(
+    "a force that stays as it is, what is made anew in each step, and what no force follows from keep nobody awake") {
   both_places([](const StepSettings& settings) {
     Pushed t(settings);
     (void)must(t.world.add_property<Real>("fastness"));
@@ -129,7 +132,8 @@ TEST_CASE("kernels that go together, or with their stepper, wake all, and nobody
     both_places([&](const StepSettings& settings) {
       Pushed t(settings);
       const auto gathers = [&] {
-        return std::ranges::any_of(t.stepper.memory(t.world), [](const BufferUse& use) { return use.name == "pc_given_force"; });
+        return std::ranges::any_of(t.stepper.memory(t.world),
+                                   [](const BufferUse& use) { return use.name == "pc_given_force"; });
       };
       CHECK(!gathers());
       must(t.stepper.add_kernel(t.world, {.text = push::text(), .parameters = {{"by", Vec3{0, 3000, 0}}}}));
@@ -138,7 +142,8 @@ TEST_CASE("kernels that go together, or with their stepper, wake all, and nobody
       World other;
       if (way == Way::all) must(t.stepper.remove_kernels());
       if (way == Way::stepper) t.stepper = Stepper(settings);
-      if (way == Way::another_world) must(t.stepper.add_kernel(other, {.text = push::text(), .parameters = {{"by", Vec3{}}}}));
+      if (way == Way::another_world)
+        must(t.stepper.add_kernel(other, {.text = push::text(), .parameters = {{"by", Vec3{}}}}));
       CHECK(t.all_asleep());
       if (way == Way::another_world) must(t.stepper.remove_kernels());
       run(t.world, t.stepper, 1);
@@ -162,7 +167,9 @@ TEST_CASE("a parameter that changes in each step lets nobody sleep") {
   });
 }
 
-TEST_CASE("another value of a property of a body wakes its island, of a joint those of its bodies, of a table of one row all") {
+TEST_CASE(
+    "another value of a property of a body wakes its island, of a joint those of its bodies, of a table of one row "
+    "all") {
   both_places([](const StepSettings& settings) {
     Pushed t(settings);
     const auto by = must(t.world.add_property<Vec3>("by", {}, "N"));
@@ -170,7 +177,8 @@ TEST_CASE("another value of a property of a body wakes its island, of a joint th
     const TableId air = must(t.world.add_table("air", 1)), notes = must(t.world.add_table("notes", 2));
     const auto gust = must(t.world.add_property<Vec3>("gust", {}, "N", air));
     const auto note = must(t.world.add_property<Real>("note", 0, "1", notes));
-    for (const KernelText& text : {push_each::text(), push_all::text()}) must(t.stepper.add_kernel(t.world, {.text = text}));
+    for (const KernelText& text : {push_each::text(), push_all::text()})
+      must(t.stepper.add_kernel(t.world, {.text = text}));
     must(t.stepper.add_kernel(t.world, {.text = pull::text(), .over = joint_table}));
     const auto check = [&](bool first, bool other, auto&& act) {
       t.fall_asleep();

@@ -1,6 +1,7 @@
 // Pins pcphys's signature: the same scene has the same hash in scalar C++, in 4 and 8 lanes, in any number of threads,
-// on GL, in all eight mixes of places, when they change from step to step, and whichever steppers step it; in float and in double. It is run again
-// for every change of a kernel, and has to hold on every device that promises parity (see `pcphys doctor`).
+// on GL, in all eight mixes of places, when they change from step to step, and whichever steppers step it; in float and
+// in double. It is run again for every change of a kernel, and has to hold on every device that promises parity (see
+// `pcphys doctor`).
 #include <algorithm>
 #include <random>
 
@@ -91,8 +92,8 @@ TEST_CASE("lanes: 1, 4 and 8 in float have equal hashes over 600 steps") {
   }
 }
 
-// From about step 90 on blocks hold idle contacts beside others, some of which a blow closes within their sub-step while they still
-// have the mean of what they held before.
+// From about step 90 on blocks hold idle contacts beside others, some of which a blow closes within their sub-step
+// while they still have the mean of what they held before.
 TEST_CASE("lanes: a heap of ragdolls, in which blocks mix contacts of all kinds") {
   const Case heap{"ragdolls", 20, 0};
   const auto wanted = hashes(heap, Precision::f32, lanes(1), 180);
@@ -128,7 +129,9 @@ TEST_CASE("run to run: the same hashes, and every step changes them") {
   CHECK(std::adjacent_find(a.begin(), a.end()) == a.end());
 }
 
-TEST_CASE("all eight mixes of cpu and gl have equal hashes in float") { check_mixes(Precision::f32, gl_steps, gl_mixed_steps); }
+TEST_CASE("all eight mixes of cpu and gl have equal hashes in float") {
+  check_mixes(Precision::f32, gl_steps, gl_mixed_steps);
+}
 TEST_CASE("all eight mixes of cpu and gl have equal hashes in double") { check_mixes(Precision::f64, 60, 15); }
 
 /// The most sub-steps of a step that it took there.
@@ -245,7 +248,9 @@ TEST_CASE("parity of the scene whose forces are its own kernel: magnets, in all 
         150, 8);
 }
 
-TEST_CASE("who steps a world changes nothing: new steppers, steppers in turns, snapshots, lanes, threads and places that change") {
+TEST_CASE(
+    "who steps a world changes nothing: new steppers, steppers in turns, snapshots, lanes, threads and places that "
+    "change") {
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const Case& c : cases) {
       INFO(text(c, precision));
@@ -280,7 +285,8 @@ TEST_CASE("steps so short that products come to be subnormal have the same bits 
     StepSettings on_gl;
     on_gl.set_all(Place::gl);
     Stepper gl(on_gl), cpu;
-    for (SceneWorld* s : {&there, &here}) must(s->world.set_angular_velocity(s->world.bodies().back(), {1e-12, 3, 1e-20}));
+    for (SceneWorld* s : {&there, &here})
+      must(s->world.set_angular_velocity(s->world.bodies().back(), {1e-12, 3, 1e-20}));
     CHECK(hash_each_step(there.world, gl, 6, dt) == hash_each_step(here.world, cpu, 6, dt));
   }
 }

@@ -13,7 +13,8 @@ using namespace pcphys;
 namespace {
 
 /// Rows of one case at one step length in one peer; none when it was not found.
-std::vector<cases::Row> rows_of(const char* peer, const char* name, const char* variant, double dt, double budget = 10) {
+std::vector<cases::Row> rows_of(const char* peer, const char* name, const char* variant, double dt,
+                                double budget = 10) {
   const auto engine = cases::make_peer(peer, budget);
   if (!engine) return {};
   cases::Engine* const engines[] = {engine.get()};

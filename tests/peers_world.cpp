@@ -184,7 +184,9 @@ TEST_CASE("peers: limits act on the side they were given for, about each axis, w
           REQUIRE(world.create_joint(held));
         }
         // x, y or z of the joint's frames is the world's z when the rod hangs straight
-        const Quat axes = axis == 0 ? axis_angle({0, 1, 0}, -0.5 * pi) : axis == 1 ? axis_angle({1, 0, 0}, 0.5 * pi) : Quat{};
+        const Quat axes = axis == 0   ? axis_angle({0, 1, 0}, -0.5 * pi)
+                          : axis == 1 ? axis_angle({1, 0, 0}, 0.5 * pi)
+                                      : Quat{};
         const Pose at_post{{}, axes}, at_rod{{0, 0.5, 0}, axes};
         const bool swapped = arrangement == post_is_b;
         JointDef joint;
@@ -346,6 +348,7 @@ TEST_CASE("peers: MuJoCo's joints have the damping of the world's, and those wit
     const bool damped = variant.name.starts_with("mujoco");
     CHECK(length(peer->angular_velocity(0)) == Approx(damped ? 3 * std::exp(-2.0) : 3).epsilon(0.01));
     const auto& said = peer->untranslated();
-    CHECK(std::ranges::any_of(said, [](const std::string& s) { return s.find("damping") != std::string::npos; }) != damped);
+    CHECK(std::ranges::any_of(said, [](const std::string& s) { return s.find("damping") != std::string::npos; }) !=
+          damped);
   });
 }

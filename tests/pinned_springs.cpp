@@ -1,6 +1,7 @@
 // Springs between points where some body hangs on a pin are rows, answered by whole trees. Of any stiffness (1e1 to 1e9
-// N/m) and masses (1e-3 to 1e3 kg), few scenes gain more than a tenth of the energy that there is: of 100 such draws 3 in
-// single precision and 2 in double, where before they turned bodies by no more than they see 23 and 22 did (docs/joints.md).
+// N/m) and masses (1e-3 to 1e3 kg), few scenes gain more than a tenth of the energy that there is: of 100 such draws 3
+// in single precision and 2 in double, where before they turned bodies by no more than they see 23 and 22 did
+// (docs/joints.md).
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -47,7 +48,8 @@ void draw(World& world, unsigned seed) {
     spring.anchor_b = vector(dice() % 2 ? 0.2 : 0);
     spring.stiffness = std::pow(10, between(1, 9));
     const Vec3 from = must(world.pose(spring.a)).position + spring.anchor_a;
-    if (dice() % 2) spring.rest_length = length(must(world.pose(spring.b)).position + spring.anchor_b - from) * between(0.9, 1.1);
+    if (dice() % 2)
+      spring.rest_length = length(must(world.pose(spring.b)).position + spring.anchor_b - from) * between(0.9, 1.1);
     must(world.create_spring(spring));
   }
 }

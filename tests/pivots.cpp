@@ -1,5 +1,6 @@
-// Pins that a body on a pivot has nothing to solve for where no limit, motor or contact acts, what its joint is then said to hold, and
-// that hinges and pins side by side give the same bits in every lane width and on GL (kernels/pivot_turn.inl).
+// Pins that a body on a pivot has nothing to solve for where no limit, motor or contact acts, what its joint is then
+// said to hold, and that hinges and pins side by side give the same bits in every lane width and on GL
+// (kernels/pivot_turn.inl).
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -131,8 +132,8 @@ TEST_CASE("pivots: a hinge's limit stops, or throws back, at the instant at whic
 }
 
 TEST_CASE("pivots: a hinge at its limit is a wall for what presses it there") {
-  // From nine places, since the limit answers a blow in the sub-step after it: by then the ball is in by the way of up to one, which is
-  // pushed out again.
+  // From nine places, since the limit answers a blow in the sub-step after it: by then the ball is in by the way of up
+  // to one, which is pushed out again.
   constexpr double speed = 2, late = speed / 60 / 4;  // [m/s], [m]
   for (const Mode& mode : precisions())
     for (int place = 0; place < 9; place++) {
@@ -177,7 +178,8 @@ TEST_CASE("pivots: hinges and pins side by side have the same bits everywhere") 
       for (int i = 0; i < 11; ++i) hang(run, 2.0 * i, 0.3 * i, i % 3 != 0);
       run.step(1.0 / 60, 60);
       if (wanted == 0) wanted = run.world.hash();
-      if (precision == Precision::f32 || mode.place == Place::cpu) CHECK_MESSAGE(run.world.hash() == wanted, mode.name());
+      if (precision == Precision::f32 || mode.place == Place::cpu)
+        CHECK_MESSAGE(run.world.hash() == wanted, mode.name());
     }
   }
 }

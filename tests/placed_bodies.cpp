@@ -1,5 +1,6 @@
-// Pins what follows a body's being placed (docs/impulses.md): its contacts are visited more often while it settles, by those contacts
-// alone, and no other island feels it by a bit; and the velocity that is read after the very first sub-step.
+// Pins what follows a body's being placed (docs/impulses.md): its contacts are visited more often while it settles, by
+// those contacts alone, and no other island feels it by a bit; and the velocity that is read after the very first
+// sub-step.
 #include <algorithm>
 #include <string>
 
@@ -97,8 +98,8 @@ TEST_CASE("placed bodies: a snapshot in between goes on alike") {
   CHECK(world.hash() == end);
 }
 
-// The stored velocity lags half a sub-step, which the first sub-step makes up for by half a kick: what friction answers to that is half
-// too, and a velocity read after it must know.
+// The stored velocity lags half a sub-step, which the first sub-step makes up for by half a kick: what friction answers
+// to that is half too, and a velocity read after it must know.
 TEST_CASE("the velocity after a single first sub-step is that of a body that slides") {
   constexpr double mu = 0.25, push = 6, dt = 0.01;
   World world = with_floor(Precision::f64);

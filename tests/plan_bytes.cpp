@@ -1,5 +1,6 @@
-// Pins the bytes that a plan names: those of each transfer are the buffer's in that world, their sum is what a first step then
-// moves, and a kernel of the host's own that has only one side shows what it costs to leave the others' place.
+// Pins the bytes that a plan names: those of each transfer are the buffer's in that world, their sum is what a first
+// step then moves, and a kernel of the host's own that has only one side shows what it costs to leave the others'
+// place.
 #include <algorithm>
 
 #include "pcphys/write_kernel.h"
@@ -12,7 +13,8 @@ using namespace worldtest;
 namespace {
 
 /// Makes a kick by a library function, so that it has no text for a GPU.
-PCPHYS_CPU_KERNEL(kick, (PC_IN(Vec3) position, PC_INOUT(Vec3) force), { force.y = force.y + std::max(position.y, Real(0)); })
+PCPHYS_CPU_KERNEL(kick, (PC_IN(Vec3) position, PC_INOUT(Vec3) force),
+                  { force.y = force.y + std::max(position.y, Real(0)); })
 
 std::vector<const PlanEntry*> transfers(const StepPlan& plan, PlanEntry::Kind kind, std::string_view buffer) {
   std::vector<const PlanEntry*> found;
@@ -53,7 +55,8 @@ TEST_CASE("what the plan of a world says that a step moves, a first step moves")
         REQUIRE(report.contacts == contacts);
         const std::uint64_t down = report.transfer_bytes - report.upload_bytes;
         // what could come and does not: contacts without trees, and impacts, whose bodies would have to go up once more
-        const bool foreseen = std::string_view(name) == "ragdolls" || (mix.places[0] == Place::gl && mix.places[2] == Place::cpu);
+        const bool foreseen =
+            std::string_view(name) == "ragdolls" || (mix.places[0] == Place::gl && mix.places[2] == Place::cpu);
         if (foreseen) {
           CHECK(report.upload_bytes <= all.up);
           CHECK(down <= all.down);
@@ -99,7 +102,8 @@ TEST_CASE("a kernel with a C++ side alone runs there, and the plan shows the tra
   // positions come down for it in each sub-step but the first, and the force goes up after it
   const std::size_t rows = s.world.body_count() + 1;
   const Tables& tables = s.world.state().tables;
-  const auto down = transfers(plan, PlanEntry::Kind::download, "pose"), up = transfers(plan, PlanEntry::Kind::upload, "force");
+  const auto down = transfers(plan, PlanEntry::Kind::download, "pose"),
+             up = transfers(plan, PlanEntry::Kind::upload, "force");
   CHECK(down.size() == settings.substeps);    // the last for the host
   CHECK(up.size() == settings.substeps + 1);  // before the first it goes up for what the library adds
   for (const PlanEntry* e : down) CHECK(e->bytes == rows * tables.row_bytes(Buffer::pose));

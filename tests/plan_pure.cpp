@@ -175,7 +175,8 @@ TEST_CASE("left out: shapes that could never touch") {
     run(world, stepper, 1);
     return stepper.plan();
   };
-  CHECK(reason(plan_of([](World& w) { (void)must(w.create_body(ball({}))); }), "collision") == "no two shapes could ever touch");
+  CHECK(reason(plan_of([](World& w) { (void)must(w.create_body(ball({}))); }), "collision") ==
+        "no two shapes could ever touch");
   CHECK(reason(plan_of([](World& w) {
                  BodyDef def;
                  def.mass = 1;
@@ -245,7 +246,8 @@ TEST_CASE("left out names have a reason, a sentence a reader can use") {
     CHECK(runs(plan, "tree_contact_prepare") == 2 * on_limbs);
     CHECK(runs(plan, "tree_contact_solve") == 3 * on_limbs);
     const bool on_trees = s.bodies && (s.tree_contacts || s.tree_joints);
-    for (const char* kernel : {"tree_collect", "tree_respond"}) CHECK(runs(plan, kernel) == (on_trees ? int(s.substeps) : 0));
+    for (const char* kernel : {"tree_collect", "tree_respond"})
+      CHECK(runs(plan, kernel) == (on_trees ? int(s.substeps) : 0));
     CHECK(runs(plan, "tree_flush") == (on_trees ? (s.tree_contacts ? 4 : 2) * int(s.substeps) : 0));
     CHECK(runs(plan, "push_back") == (s.bodies && s.tree_contacts ? int(s.substeps) + 1 : 0));
     if (!s.bodies) CHECK(plan.entries.empty());
@@ -290,11 +292,14 @@ TEST_CASE("the plan as text: a line an entry, each with its names, and what was 
       lines.push_back(text.substr(at, end - at));
     REQUIRE(lines.size() == 2 + plan.entries.size() + plan.left_out.size());
     CHECK(lines[0] == "sub-steps " + std::to_string(s.substeps));
-    const auto holds = [](const std::string& line, std::string_view word) { return line.find(word) != std::string::npos; };
+    const auto holds = [](const std::string& line, std::string_view word) {
+      return line.find(word) != std::string::npos;
+    };
     for (std::size_t i = 0; i < plan.entries.size(); i++) {
       const PlanEntry& e = plan.entries[i];
       const std::string& line = lines[i + 2];
-      bool all = holds(line, name(e.place)) && holds(line, stage_name(e)) && line.starts_with(std::to_string(e.substep));
+      bool all =
+          holds(line, name(e.place)) && holds(line, stage_name(e)) && line.starts_with(std::to_string(e.substep));
       if (!e.transfers()) {
         all &= holds(line, kernel_name(e)) && holds(line, phase_name(e));
         for (const auto& list : {reads(e), writes(e)})
@@ -306,7 +311,8 @@ TEST_CASE("the plan as text: a line an entry, each with its names, and what was 
       CHECK_MESSAGE(all, line);
     }
     for (std::size_t i = 0; i < plan.left_out.size(); i++)
-      CHECK(lines[2 + plan.entries.size() + i] == "left out: " + plan.left_out[i].what + ", since " + plan.left_out[i].why);
+      CHECK(lines[2 + plan.entries.size() + i] ==
+            "left out: " + plan.left_out[i].what + ", since " + plan.left_out[i].why);
   });
 }
 

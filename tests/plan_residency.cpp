@@ -42,7 +42,8 @@ void follow(const PlanSignature& signature, const StepPlan& plan) {
     if (e.transfers()) {
       CHECK((e.place == Place::gl) == (e.kind == PlanEntry::Kind::upload));
       CHECK_FALSE(scratch_of_solver(e.buffer));
-      if (e.kind == PlanEntry::Kind::download) CHECK((e.buffer < Buffer::table_buffers || e.buffer == Buffer::island_labels));
+      if (e.kind == PlanEntry::Kind::download)
+        CHECK((e.buffer < Buffer::table_buffers || e.buffer == Buffer::island_labels));
       Holder& h = holders[e.buffer];
       const Place from = e.place == Place::gl ? Place::cpu : Place::gl;
       CHECK_MESSAGE(h.on[here(from)], text_of(e.buffer) << " is copied from where it is old");
@@ -128,7 +129,8 @@ template <class Visit> void for_all_needs(Visit&& visit) {
         s.friction = bits & 64;
         s.shapes |= s.contacts();
         INFO(mix.text() << ", trees " << s.trees << ", joints " << s.free_joints << s.tree_joints << ", contacts "
-                        << s.free_contacts << s.tree_contacts << ", restitution " << s.restitution << ", sub-steps " << substeps);
+                        << s.free_contacts << s.tree_contacts << ", restitution " << s.restitution << ", sub-steps "
+                        << substeps);
         visit(s);
       }
 }
@@ -145,7 +147,8 @@ TEST_CASE("every kernel finds current data; no copy is redundant; no hazard is w
 
 TEST_CASE("all on the cpu: no transfer, no barrier") {
   PlanSignature s;
-  s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
+  s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution =
+      true;
   for (const PlanEntry& e : make_plan(s).entries) {
     CHECK_FALSE(e.transfers());
     CHECK_FALSE(e.barrier);
@@ -153,10 +156,12 @@ TEST_CASE("all on the cpu: no transfer, no barrier") {
 }
 
 // The narrow phase is the host's: in each sub-step it reads where bodies are and how they move, and writes contacts.
-TEST_CASE("all on gl: but for what the narrow phase needs, each buffer goes up at most once, and comes down in the end") {
+TEST_CASE(
+    "all on gl: but for what the narrow phase needs, each buffer goes up at most once, and comes down in the end") {
   PlanSignature s;
   s.places.fill(Place::gl);
-  s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution = true;
+  s.bodies = s.trees = s.free_joints = s.tree_joints = s.shapes = s.free_contacts = s.tree_contacts = s.restitution =
+      true;
   constexpr std::array meets{Buffer::pose, Buffer::motion, Buffer::delta, Buffer::contact};
   std::set<Buffer> up;
   bool coming_down = false;

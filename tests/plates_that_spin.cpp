@@ -1,5 +1,6 @@
-// A plate that spins on its flat side stays on a floor without friction. The points of its contact move far in a sub-step,
-// so it is an impact in each, and what an impact left of the fall sank it through the floor (1.4 mm a step of 1/30 s).
+// A plate that spins on its flat side stays on a floor without friction. The points of its contact move far in a
+// sub-step, so it is an impact in each, and what an impact left of the fall sank it through the floor (1.4 mm a step of
+// 1/30 s).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -53,7 +54,8 @@ TEST_CASE("what spins on its flat side does not sink into a floor") {
       deepest = std::max(deepest, s.depth / fall);
       least_spin = std::min(least_spin, s.spin);
     }
-    MESSAGE("steps of ", dt, " s: at most ", deepest, " times as deep as it falls in a sub-step; spin left ", least_spin);
+    MESSAGE("steps of ", dt, " s: at most ", deepest, " times as deep as it falls in a sub-step; spin left ",
+            least_spin);
     CHECK(deepest < 1.01);
     CHECK(least_spin > 0.999);
   }

@@ -1,6 +1,6 @@
-// A pyramid comes to rest, however high. Remembered impulses make soft rows springs, stiffer at rest than in motion, and
-// what is so makes energy at low frequencies: one of 60 boxes at its foot went up and down with a period of 0.5 s for
-// good (docs/impulses.md, Stiffness).
+// A pyramid comes to rest, however high. Remembered impulses make soft rows springs, stiffer at rest than in motion,
+// and what is so makes energy at low frequencies: one of 60 boxes at its foot went up and down with a period of 0.5 s
+// for good (docs/impulses.md, Stiffness).
 #include <algorithm>
 
 #include "support_world.h"

@@ -1,6 +1,7 @@
-// Pins how a heap of ragdolls comes to rest: by the damping of its joints within seconds, by drag, and, where joints turn freely and nothing
-// drags, slowly if at all: single limbs swing on for long. Its energy is not monotone, since what limits and overlaps hold as springs is not in the
-// sum, but never rises by more than a ten-thousandth or two of what there is (docs/joint-trees.md).
+// Pins how a heap of ragdolls comes to rest: by the damping of its joints within seconds, by drag, and, where joints
+// turn freely and nothing drags, slowly if at all: single limbs swing on for long. Its energy is not monotone, since
+// what limits and overlaps hold as springs is not in the sum, but never rises by more than a ten-thousandth or two of
+// what there is (docs/joint-trees.md).
 #include <algorithm>
 #include <limits>
 
@@ -69,9 +70,9 @@ Rest tell(Precision precision, int count, std::uint64_t seed, Calmed calmed) {
 
 }  // namespace
 
-// What still falls after 5 s is thrown back by limits and overlaps, which hold energy that is not in the sum: of 150 heaps with free joints (seeds 101
-// to 175, with drag and without) 9 by more than 2.5e-4 and 2 by more than 2e-3 of what there is, at most 2.8e-3; when contacts were found once a step 4
-// and 1.
+// What still falls after 5 s is thrown back by limits and overlaps, which hold energy that is not in the sum: of 150
+// heaps with free joints (seeds 101 to 175, with drag and without) 9 by more than 2.5e-4 and 2 by more than 2e-3 of
+// what there is, at most 2.8e-3; when contacts were found once a step 4 and 1.
 TEST_CASE("ragdolls at rest: of 8 energy rises by no more than 2.5e-4 but in few heaps, and they come to rest") {
   int heaps = 0, thrown_back = 0, thrown_far = 0;
   for (const Precision precision : {Precision::f32, Precision::f64})

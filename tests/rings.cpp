@@ -1,7 +1,7 @@
-// Pins: closed chains of hinges, as tracks and belts are, keep the energy of their motion in single precision. The inertia of a whole chain across
-// its plane is thousands of times that of a link within it: what rounding loses of a link's turning is added along those axes alone where the
-// link's own inertia lacks it (tree_factor.inl). Of 40 such rings with the same added in all directions a quarter lost more than 8 %, the worst 25; now
-// 0.3 and 7.
+// Pins: closed chains of hinges, as tracks and belts are, keep the energy of their motion in single precision. The
+// inertia of a whole chain across its plane is thousands of times that of a link within it: what rounding loses of a
+// link's turning is added along those axes alone where the link's own inertia lacks it (tree_factor.inl). Of 40 such
+// rings with the same added in all directions a quarter lost more than 8 %, the worst 25; now 0.3 and 7.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -70,7 +70,8 @@ double loss(unsigned seed) {
   World world({Precision::f32, {}});
   add_ring(world, seed);
   Stepper stepper;
-  for (int i = 0; i < 2; i++) REQUIRE(stepper.step(world, 1.0 / 60));  // velocities of the start are not those of hinges
+  // velocities of the start are not those of hinges
+  for (int i = 0; i < 2; i++) REQUIRE(stepper.step(world, 1.0 / 60));
   const double start = world.kinetic_energy();
   double least = start;
   for (int i = 0; i < 240; i++) {

@@ -1,5 +1,5 @@
-// Pins: islands at rest fall asleep as a whole and then do not change by a bit; who sleeps is the same in all lanes, threads and places, and across a snapshot; what wakes goes on as what
-// never slept.
+// Pins: islands at rest fall asleep as a whole and then do not change by a bit; who sleeps is the same in all lanes,
+// threads and places, and across a snapshot; what wakes goes on as what never slept.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -80,7 +80,8 @@ TEST_CASE("sleep: no island sleeps by halves, in a pile that comes to rest") {
         return must(s.world.is_asleep(a)) == must(s.world.is_asleep(b));
       };
       for (const Contact& c : s.world.contacts()) CHECK(same(c.a, c.b));
-      for (const JointId joint : s.world.joints()) CHECK(same(must(s.world.joint(joint)).a, must(s.world.joint(joint)).b));
+      for (const JointId joint : s.world.joints())
+        CHECK(same(must(s.world.joint(joint)).a, must(s.world.joint(joint)).b));
     }
   }
   CHECK(most > 10);
@@ -180,7 +181,8 @@ TEST_CASE("sleep: the order of ids does not change when what sleeps") {
     for (int i = 0; i < 3; i++) {
       const int k = turned ? 2 - i : i;
       (void)must(world.create_body(fixed_box({10.0 * k, -0.5, 0}, {2, 0.5, 2})));
-      for (int j = 0; j <= k; j++) found[std::size_t(k)].push_back(must(world.create_body(cube({10.0 * k, 0.5 + 1.001 * j, 0}))));
+      for (int j = 0; j <= k; j++)
+        found[std::size_t(k)].push_back(must(world.create_body(cube({10.0 * k, 0.5 + 1.001 * j, 0}))));
     }
     Stepper stepper(sleepy());
     std::vector<int> when(3, 0);
@@ -253,7 +255,8 @@ TEST_CASE("sleep: a step that fails wakes nobody") {
 
 TEST_CASE("sleep: settings out of range are refused") {
   Stepper stepper;
-  for (double StepSettings::*const field : {&StepSettings::sleep_speed, &StepSettings::sleep_spin, &StepSettings::sleep_time})
+  for (double StepSettings::*const field :
+       {&StepSettings::sleep_speed, &StepSettings::sleep_spin, &StepSettings::sleep_time})
     for (const double value : {-1.0, std::nan(""), HUGE_VAL}) {
       StepSettings s;
       s.*field = value;
@@ -298,7 +301,8 @@ TEST_CASE("sleep: a time too short for a step to see is none") {
   }
 }
 
-// A step that is made anew, since a body left the range of numbers in it, took whom the host had stirred for woken: they slept on, and moved.
+// A step that is made anew, since a body left the range of numbers in it, took whom the host had stirred for woken:
+// they slept on, and moved.
 TEST_CASE("sleep: who is stirred wakes in a step that freezes another") {
   World world({Precision::f32, {}});
   const BodyId still = must(world.create_body(ball({}))), odd = must(world.create_body(ball({5, 0, 0})));
@@ -320,7 +324,8 @@ TEST_CASE("sleep: who is stirred wakes in a step that freezes another") {
   CHECK(must(world.pose(still)).position.x > 0.9 * frame);
 }
 
-// What a step freezes was counted among what moved in it and came to rest: it slept and stood, and steps reported it asleep.
+// What a step freezes was counted among what moved in it and came to rest: it slept and stood, and steps reported it
+// asleep.
 TEST_CASE("sleep: what is frozen stands, and does not sleep") {
   require_gl();
   for (const Place place : {Place::cpu, Place::gl}) {

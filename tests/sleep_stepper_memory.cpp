@@ -1,11 +1,13 @@
-// Pins that what a stepper remembers of joints that slept changes nothing: after a waking the next steps have the bits of a new stepper.
+// Pins that what a stepper remembers of joints that slept changes nothing: after a waking the next steps have the bits
+// of a new stepper.
 #include "support_world.h"
 
 using namespace worldtest;
 
 namespace {
 
-/// Two pinned capsules and two boxes side by side on a floor fall asleep and are woken; then a new stepper goes on where `forgets`.
+/// Two pinned capsules and two boxes side by side on a floor fall asleep and are woken; then a new stepper goes on
+/// where `forgets`.
 std::uint64_t hash_after_waking(std::uint32_t lanes, bool forgets) {
   World world({.precision = Precision::f32});
   (void)must(world.create_body(fixed_box({0, -0.5, 0}, {5, 0.5, 5})));

@@ -1,4 +1,5 @@
-// Pins what wakes an island that sleeps: whatever the host or another body does to one of it wakes all of it, and nothing else does.
+// Pins what wakes an island that sleeps: whatever the host or another body does to one of it wakes all of it, and
+// nothing else does.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -55,9 +56,9 @@ TEST_CASE("sleep: whatever the host changes of a body wakes its island, whole, a
          (void)must(t.world.add_force(t.cubes[2], Wrench{{0, 1, 0}, {}}));
        }},
       {"callback",
-       [](Towers& t) { (void)must(t.world.add_force(t.cubes[2], [](const World&, BodyId) {
-                         return Wrench{{0, 1, 0}, {}};
-                       })); }},
+       [](Towers& t) {
+         (void)must(t.world.add_force(t.cubes[2], [](const World&, BodyId) { return Wrench{{0, 1, 0}, {}}; }));
+       }},
       {"gravity",
        [](Towers& t) {
          must(t.world.set_gravity({0, -9, 0}));

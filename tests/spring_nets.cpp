@@ -53,7 +53,8 @@ void turn_as_one(World& world, unsigned seed) {
   std::vector<BodyId> bodies;
   for (std::size_t i = 0; i < 2 + seed % 4; i++) {
     BodyDef def;
-    def.shapes = {dice() % 2 ? ShapeDef::sphere(between(0.05, 0.2)) : ShapeDef::box(Vec3{0.25, 0.25, 0.25} + vector(0.2))};
+    def.shapes = {dice() % 2 ? ShapeDef::sphere(between(0.05, 0.2))
+                             : ShapeDef::box(Vec3{0.25, 0.25, 0.25} + vector(0.2))};
     def.shapes[0].filter.mask = 0;  // no contacts
     def.pose.position = vector(1);
     def.mass = std::pow(10, between(-2, 2));
@@ -66,7 +67,8 @@ void turn_as_one(World& world, unsigned seed) {
       SpringDef spring;
       spring.a = bodies[i], spring.b = bodies[j];
       spring.anchor_a = vector(0.1), spring.anchor_b = vector(0.1);
-      const Vec3 apart = must(world.pose(spring.b)).position + spring.anchor_b - must(world.pose(spring.a)).position - spring.anchor_a;
+      const Vec3 apart =
+          must(world.pose(spring.b)).position + spring.anchor_b - must(world.pose(spring.a)).position - spring.anchor_a;
       spring.rest_length = length(apart);
       spring.stiffness = std::pow(10, between(least - 1, least));
       must(world.create_spring(spring));
@@ -104,7 +106,8 @@ TEST_CASE("nets of undamped springs make no energy and keep both momenta") {
         REQUIRE(stepper.step(world, frame));
         most = std::max(most, energy(world));
         double sum = 0;
-        for (const BodyId id : world.bodies()) sum += must(world.mass_properties(id)).mass * length(must(world.velocity(id)));
+        for (const BodyId id : world.bodies())
+          sum += must(world.mass_properties(id)).mass * length(must(world.velocity(id)));
         all_momentum = std::max(all_momentum, sum);
       }
       gained = std::max(gained, most / start - 1);
@@ -120,8 +123,8 @@ TEST_CASE("nets of undamped springs make no energy and keep both momenta") {
   }
 }
 
-// What no sub-step resolves (h omega up to 1e3) and Newton's method does not always solve: it may lose energy, and makes
-// none. The lightest without arms made up to 6,000 times what there was, while the impulse that keeps the angular
+// What no sub-step resolves (h omega up to 1e3) and Newton's method does not always solve: it may lose energy, and
+// makes none. The lightest without arms made up to 6,000 times what there was, while the impulse that keeps the angular
 // momentum was not foreseen.
 TEST_CASE("nets that their springs fling together make no energy and keep both momenta") {
   for (const Precision precision : {Precision::f32, Precision::f64})
@@ -146,16 +149,16 @@ TEST_CASE("nets that their springs fling together make no energy and keep both m
         lost_momentum = std::max(lost_momentum, length(world.momentum() - momentum) / all_momentum);
         left += energy(world) / start / 60;
       }
-      MESSAGE(precision, ", from ", range.mass, " kg, arms of ", range.arm, " m: energy gained at most ", gained, ", left ",
-              left, " of it after a second; momentum ", lost_momentum);
+      MESSAGE(precision, ", from ", range.mass, " kg, arms of ", range.arm, " m: energy gained at most ", gained,
+              ", left ", left, " of it after a second; momentum ", lost_momentum);
       CHECK(gained < 2e-3);
       CHECK(lost_momentum < (precision == Precision::f32 ? 1e-5 : 1e-11));
     }
 }
 
-// Springs of 1e4 to 1e9 N/m that are as long as at rest, between all of two to five bodies that turn as one. What no sub-step
-// resolves moves as one body: along chords, since on tangents springs grow by the square of the turn (35 times the energy).
-// (Half a per cent is how velocities are read that turn within a sub-step.)
+// Springs of 1e4 to 1e9 N/m that are as long as at rest, between all of two to five bodies that turn as one. What no
+// sub-step resolves moves as one body: along chords, since on tangents springs grow by the square of the turn (35 times
+// the energy). (Half a per cent is how velocities are read that turn within a sub-step.)
 TEST_CASE("nets that turn as one make no energy and keep their angular momentum") {
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     double gained = 0, lost_momentum = 0, lost_spin = 0;
@@ -175,7 +178,8 @@ TEST_CASE("nets that turn as one make no energy and keep their angular momentum"
       lost_momentum = std::max(lost_momentum, length(world.momentum() - momentum) / sums.momentum);
       lost_spin = std::max(lost_spin, length(world.angular_momentum() - spin) / sums.angular);
     }
-    MESSAGE(precision, ": energy gained at most ", gained, "; momentum ", lost_momentum, ", angular momentum ", lost_spin);
+    MESSAGE(precision, ": energy gained at most ", gained, "; momentum ", lost_momentum, ", angular momentum ",
+            lost_spin);
     CHECK(gained < 1e-2);
     CHECK(lost_momentum < (precision == Precision::f32 ? 1e-5 : 1e-11));
     CHECK(lost_spin < (precision == Precision::f32 ? 1e-4 : 1e-11));
@@ -255,7 +259,8 @@ TEST_CASE("nets that go beside each other in lanes have the bits that they have 
 }
 
 namespace {
-/// Bodies on springs from points of the ground, one below the other, thrown: what holds some of them is done at once, others go on.
+/// Bodies on springs from points of the ground, one below the other, thrown: what holds some of them is done at once,
+/// others go on.
 std::uint64_t hash_of_pendulums(unsigned seed, std::uint32_t lanes) {
   std::mt19937 dice(seed);
   const auto between = [&](double low, double high) { return low + (high - low) * (double(dice()) / 4294967296.0); };

@@ -64,7 +64,8 @@ TEST_CASE("C11, C12: bad input is refused or stays with its body") {
 
 TEST_CASE("C14: 100,000 bodies on a line and a plane, pairs as by brute force") {
   for (const char* variant : {"line, sorted", "plane"})
-    check_rows(rows_of("C14", Mode{Precision::f32}, {}, variant), without("broad phase"));  // no times on a shared machine
+    // no times on a shared machine
+    check_rows(rows_of("C14", Mode{Precision::f32}, {}, variant), without("broad phase"));
 }
 
 TEST_CASE("C3: thin bodies that land make no energy") {
@@ -109,10 +110,12 @@ TEST_CASE("C3: a needle that tumbles and falls from many heights never gains ene
     }
 }
 
-TEST_CASE("B10: a ragdoll pulled by a hand with 15 times its weight holds its joints, and its limits within 5 degrees") {
+TEST_CASE(
+    "B10: a ragdoll pulled by a hand with 15 times its weight holds its joints, and its limits within 5 degrees") {
   for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "1e4 N"));
 }
 
-TEST_CASE("B10: a ragdoll dragged through a gap stays finite, closes within a second of its end and gains no energy then") {
+TEST_CASE(
+    "B10: a ragdoll dragged through a gap stays finite, closes within a second of its end and gains no energy then") {
   for (const Mode& mode : precisions()) check_rows(rows_of("B10", mode, {}, "dragged"));
 }

@@ -48,8 +48,8 @@ Count last_run(const char* name, int count, Precision precision, const StepSetti
 }
 
 void check_none(const char* name, int count, Precision precision, const StepSettings& settings, int settle, int steps) {
-  INFO(std::string(name) << " " << count << ", " << std::string(precision == Precision::f32 ? "float" : "double") << ", lanes "
-                         << settings.lanes << ", after " << settle << " steps");
+  INFO(std::string(name) << " " << count << ", " << std::string(precision == Precision::f32 ? "float" : "double")
+                         << ", lanes " << settings.lanes << ", after " << settle << " steps");
   const Count c = last_run(name, count, precision, settings, settle, steps);
   CHECK_MESSAGE(c.allocations == 0, c.allocations << " allocations, the first in step " << c.first);
   CHECK(c.memory_growth == 0);
@@ -58,8 +58,10 @@ void check_none(const char* name, int count, Precision precision, std::uint32_t 
   check_none(name, count, precision, lanes(width), settle, steps);
 }
 
-PCPHYS_KERNEL(pulled, (PC_IN(Vec3) position, PC_INOUT(Vec3) force), { force = pc_madd(force, position, PC_REAL(-0.01)); })
-PCPHYS_KERNEL(held, (PC_IN(Vec3) position, PC_INOUT(Vec3) torque), { torque = pc_madd(torque, position, PC_REAL(0.0001)); })
+PCPHYS_KERNEL(pulled, (PC_IN(Vec3) position, PC_INOUT(Vec3) force),
+              { force = pc_madd(force, position, PC_REAL(-0.01)); })
+PCPHYS_KERNEL(held, (PC_IN(Vec3) position, PC_INOUT(Vec3) torque),
+              { torque = pc_madd(torque, position, PC_REAL(0.0001)); })
 PCPHYS_KERNEL(joined, (PC_A(Vec3) position_a, PC_B(Vec3) position_b, PC_OUT(Real) stretch, PC_ADD_B(Vec3) force_b), {
   Vec3 way = pc_sub(position_b, position_a);
   stretch = pc_length(way);
@@ -122,7 +124,9 @@ TEST_CASE("no allocation for forces and callbacks") {
   for (int i = 0; i < 10; i++) {
     const BodyId body = must(world.create_body(ball({2.0 * i, 0, 0})));
     (void)must(world.add_force(body, Wrench{{1, 0, 0}, {}}));
-    (void)must(world.add_force(body, [](const World& w, BodyId id) { return Wrench{-1.0 * w.pose(id)->position, {}}; }));
+    (void)must(world.add_force(body, [](const World& w, BodyId id) {
+      return Wrench{-1.0 * w.pose(id)->position, {}};
+    }));
   }
   Stepper stepper(lanes(0));
   run(world, stepper, 20);

@@ -86,7 +86,9 @@ SceneWorld busy_world(Precision precision) {
   const BodyId first = s.world.bodies()[2], second = s.world.bodies()[5];
   must(s.world.set_drag(first, 0.2, 0.1));
   (void)must(s.world.add_force(first, Wrench{{3, 0, 1}, {0, 1, 0}}));
-  (void)must(s.world.add_force(second, [](const World& w, BodyId id) { return Wrench{-5.0 * w.pose(id)->position, {}}; }));
+  (void)must(s.world.add_force(second, [](const World& w, BodyId id) {
+    return Wrench{-5.0 * w.pose(id)->position, {}};
+  }));
   Stepper stepper(lanes(0));
   run(s.world, stepper, 70);
   REQUIRE(s.world.contact_count() > 5);

@@ -116,12 +116,15 @@ TEST_CASE("settings that are refused, by a step and by configure") {
       {with([](StepSettings& s) { s.substeps = 1001; }), ErrorCode::bad_time_step, "The number of sub-steps is 1001"},
       {with([](StepSettings& s) { s.threads = 257; }), ErrorCode::bad_argument, "The number of threads is 257"},
       {with([](StepSettings& s) { s.lanes = 3; }), ErrorCode::unavailable, "lanes"},
-      {with([](StepSettings& s) { s.push_speed = std::nan(""); }), ErrorCode::bad_argument, "must be finite and not below zero."},
+      {with([](StepSettings& s) { s.push_speed = std::nan(""); }), ErrorCode::bad_argument,
+       "must be finite and not below zero."},
       {with([](StepSettings& s) { s.push_speed = -1; }), ErrorCode::bad_argument, "must be finite and not below zero."},
       {with([](StepSettings& s) { s.restitution_threshold = -1; }), ErrorCode::bad_argument,
        "must be finite and not below zero."},
-      {with([](StepSettings& s) { s.refinement = 0; }), ErrorCode::bad_argument, "must lie between 1 (never) and 1000."},
-      {with([](StepSettings& s) { s.contact_margin = INFINITY; }), ErrorCode::bad_argument, "must be finite and not below zero."},
+      {with([](StepSettings& s) { s.refinement = 0; }), ErrorCode::bad_argument,
+       "must lie between 1 (never) and 1000."},
+      {with([](StepSettings& s) { s.contact_margin = INFINITY; }), ErrorCode::bad_argument,
+       "must be finite and not below zero."},
   };
   for (const Case& c : cases) {
     INFO(std::string(c.words));
@@ -142,9 +145,9 @@ TEST_CASE("settings that are refused, by a step and by configure") {
 TEST_CASE("lanes that a precision does not have, and devices that are not there") {
   SceneWorld f64 = scene_world("stack", 2, Precision::f64), f32 = scene_world("stack", 2);
   Stepper eight(lanes(8));
-  CHECK_REFUSED(
-      f64.world, step_status(eight, f64.world), ErrorCode::unavailable,
-      "There are no kernels of 8 lanes in double (1 or 4 with AVX2) for this processor; use lanes 0 for the widest it has.");
+  CHECK_REFUSED(f64.world, step_status(eight, f64.world), ErrorCode::unavailable,
+                "There are no kernels of 8 lanes in double (1 or 4 with AVX2) for this processor; use lanes 0 for the "
+                "widest it has.");
   CHECK(step_status(eight, f32.world));
   for (const Mix& mix : mixes()) {
     StepSettings s = mix.settings();
@@ -170,7 +173,8 @@ TEST_CASE("a host's context that is not there is refused, not replaced") {
                 "No GL context is current on this thread; make the host's context current, or ask for a headless one.");
 }
 
-TEST_CASE("FCL as the narrow phase is refused until it was asked for; then a scene stands, and native steps may follow") {
+TEST_CASE(
+    "FCL as the narrow phase is refused until it was asked for; then a scene stands, and native steps may follow") {
   const NarrowHook kept = std::exchange(fcl_hook(), NarrowHook{});
   SceneWorld s = scene_world("stack", 4);
   const StepSettings fcl = with([](StepSettings& x) { x.narrow = NarrowPhase::fcl; });
@@ -181,7 +185,8 @@ TEST_CASE("FCL as the narrow phase is refused until it was asked for; then a sce
   CHECK_REFUSED(s.world, native.configure(fcl), ErrorCode::unavailable, words);
   if (const Status there = use_fcl()) {
     run(s.world, stepper, 120);
-    for (const scenes::SceneBody& b : s.scene.bodies) CHECK(length(must(s.world.pose(b.id)).position - b.start.position) < 0.05);
+    for (const scenes::SceneBody& b : s.scene.bodies)
+      CHECK(length(must(s.world.pose(b.id)).position - b.start.position) < 0.05);
     must(stepper.configure(with([](StepSettings&) {})));
     run(s.world, stepper, 30);
   } else {
@@ -317,8 +322,8 @@ TEST_CASE("one stepper may serve several worlds in turn, cpu and gl, and worlds 
 
 TEST_CASE("one stepper may serve both precisions in turn") {
   Stepper shared;
-  SceneWorld f = scene_world("stack", 3), d = scene_world("stack", 3, Precision::f64), f_alone = scene_world("stack", 3),
-             d_alone = scene_world("stack", 3, Precision::f64);
+  SceneWorld f = scene_world("stack", 3), d = scene_world("stack", 3, Precision::f64),
+             f_alone = scene_world("stack", 3), d_alone = scene_world("stack", 3, Precision::f64);
   for (int i = 0; i < 10; i++) {
     run(f.world, shared, 1);
     run(d.world, shared, 1);

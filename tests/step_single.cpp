@@ -1,5 +1,5 @@
-// Pins what small worlds skip: one body, one tree, or contacts that no other stands beside run in one lane, with the bits of
-// every width, also when others join them and leave; and bodies that turn about pins alone have no free motion.
+// Pins what small worlds skip: one body, one tree, or contacts that no other stands beside run in one lane, with the
+// bits of every width, also when others join them and leave; and bodies that turn about pins alone have no free motion.
 #include <algorithm>
 
 #include "support_world.h"
@@ -59,7 +59,8 @@ TEST_CASE("free motion is left out where every body that moves turns about a pin
   Stepper stepper;
   run(world, stepper, 1);
   const auto runs_advance = [&] {
-    return std::ranges::any_of(stepper.plan().entries, [](const PlanEntry& e) { return kernel_name(e).starts_with("advance"); });
+    return std::ranges::any_of(stepper.plan().entries,
+                               [](const PlanEntry& e) { return kernel_name(e).starts_with("advance"); });
   };
   CHECK_FALSE(runs_advance());
   CHECK(std::ranges::any_of(stepper.plan().left_out, [](const LeftOut& l) { return l.what == "free motion"; }));

@@ -1,6 +1,6 @@
-// Pins sub-step classes (docs/substeps.md): an island under a heavy load, or with joints that turn far, makes more sub-steps, and
-// no other island feels it by a bit; what is remembered from step to step does not depend on the class; the same bits in any
-// number of lanes and threads, on GL and in all mixes.
+// Pins sub-step classes (docs/substeps.md): an island under a heavy load, or with joints that turn far, makes more
+// sub-steps, and no other island feels it by a bit; what is remembered from step to step does not depend on the class;
+// the same bits in any number of lanes and threads, on GL and in all mixes.
 #include <cmath>
 
 #include "support_ways.h"
@@ -119,8 +119,8 @@ TEST_CASE("octaves: slender towers of many bodies stand") {
     for (int i = 0; i < 60; i++) {  // 30 layers of two, laid crosswise
       const double out = i % 2 == 0 ? 0.8 : -0.8, height = 0.2 * (i / 2) + 0.1;
       const bool turned = i / 2 % 2 == 1;
-      beams.push_back(must(
-          world.create_body(turned ? box({0, height, out}, {1, 0.1, 0.1}, 1000) : box({out, height, 0}, {0.1, 0.1, 1}, 1000))));
+      beams.push_back(must(world.create_body(turned ? box({0, height, out}, {1, 0.1, 0.1}, 1000)
+                                                    : box({out, height, 0}, {0.1, 0.1, 1}, 1000))));
     }
     Stepper stepper;
     CHECK(stepper.step(world, frame).substeps == 32);
@@ -232,19 +232,23 @@ TEST_CASE("octaves: a step that makes a free tree spin, or whip, far faster than
     }
 }
 
-TEST_CASE("octaves: a ragdoll that is pulled gets them by how far its body would go in a sub-step, limits or not, and no other") {
+TEST_CASE(
+    "octaves: a ragdoll that is pulled gets them by how far its body would go in a sub-step, limits or not, and no "
+    "other") {
   // a forearm of 1.7 kg and 0.18 m (twice its radius of gyration): a hundredth of that in 1/240 s with 180 N
   const auto asked = [](bool limits, double force, bool called, Precision precision) {
     World world({precision, {}});
     RagdollDef chain = RagdollDef::human();
     if (!limits)
       for (BoneDef& bone : chain.bones) bone.freedom = {};
-    const Ragdoll pulled = must(world.create_ragdoll(chain, {{0, 5, 0}, {}})), other = must(world.create_ragdoll(chain, {}));
+    const Ragdoll pulled = must(world.create_ragdoll(chain, {{0, 5, 0}, {}})),
+                  other = must(world.create_ragdoll(chain, {}));
     const BodyId arm = pulled.bones[6];
     if (called)
       (void)must(world.add_force(arm, [=](const World&, BodyId) { return Wrench{{force, 0, 0}, {}}; }));
     else
-      (void)must(world.add_force(arm, {{0.5 * force, 0, 0}, {}})), (void)must(world.add_force(arm, {{0.5 * force, 0, 0}, {}}));
+      (void)must(world.add_force(arm, {{0.5 * force, 0, 0}, {}})),
+          (void)must(world.add_force(arm, {{0.5 * force, 0, 0}, {}}));
     Stepper stepper;
     const StepReport& report = stepper.step(world, frame);
     REQUIRE(report);

@@ -1,5 +1,5 @@
-// Calls that every public function refuses, as one table (tests/bad_arguments.cpp): which function, what is wrong, and the error's code.
-// docs/errors.md is made from it.
+// Calls that every public function refuses, as one table (tests/bad_arguments.cpp): which function, what is wrong, and
+// the error's code. docs/errors.md is made from it.
 #pragma once
 #include <functional>
 #include <limits>
@@ -31,7 +31,8 @@ struct Host {
   Fingerprint before;  // of the world that the call is to leave as it is
 
   Host();
-  /// From here on nothing changes the world but what is refused: calls that need more than the host has say so once they have it.
+  /// From here on nothing changes the world but what is refused: calls that need more than the host has say so once
+  /// they have it.
   void ready() { before = lasting(world); }
   /// During a step of the world by the stepper; its error, if it has any.
   Error within_step(const std::function<void()>& act);
@@ -52,7 +53,8 @@ inline Error error_of(const StepReport& report) { return report.error; }
 inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Of World's objects; of what bodies, joints and springs hold; of properties, tables and snapshots; of shapes alone; of steps; of kernels.
+/// Of World's objects; of what bodies, joints and springs hold; of properties, tables and snapshots; of shapes alone;
+/// of steps; of kernels.
 void add_bad_objects(BadCalls& calls);
 void add_bad_values(BadCalls& calls);
 void add_bad_properties(BadCalls& calls);

@@ -66,7 +66,8 @@ void add_bodies(BadCalls& calls) {
   add_body(calls, "a position, velocity or drag that is NaN or beyond 1e15", not_finite,
            [](BodyDef& d) { d.pose.position.y = not_a_number; });
   add_body(calls, "an orientation that is NaN", not_finite, [](BodyDef& d) { d.pose.orientation.x = not_a_number; });
-  add_body(calls, "an orientation that is not of unit length", not_unit_quaternion, [](BodyDef& d) { d.pose.orientation.w = 2; });
+  add_body(calls, "an orientation that is not of unit length", not_unit_quaternion,
+           [](BodyDef& d) { d.pose.orientation.w = 2; });
   add_body(calls, "a spin whose angular momentum is beyond 1e36", not_finite, [](BodyDef& d) {
     d.mass = 1e30;
     d.angular_velocity = {0, 1e10, 0};
@@ -89,22 +90,27 @@ void add_bodies(BadCalls& calls) {
            [](BodyDef& d) { d.material.restitution = not_a_number; });
   add_body(calls, "friction below zero, restitution outside of 0 to 1, a rule that is none", bad_argument,
            [](BodyDef& d) { d.material.kinetic_friction = -1; });
-  add_body(calls, "a mass, moment or length of a shape that is NaN", not_finite, [](BodyDef& d) { d.mass = not_a_number; });
+  add_body(calls, "a mass, moment or length of a shape that is NaN", not_finite,
+           [](BodyDef& d) { d.mass = not_a_number; });
   add_body(calls, "a dynamic body with a mass, moment or density of zero or below, or out of range", bad_mass,
            [](BodyDef& d) { d.mass = 0; });
-  add_body(calls, "moments that no body has, or without a mass", bad_mass, [](BodyDef& d) { d.moments = Vec3{1, 1, 3}; });
+  add_body(calls, "moments that no body has, or without a mass", bad_mass, [](BodyDef& d) {
+    d.moments = Vec3{1, 1, 3};
+  });
   add_body(calls, "a dynamic body without shapes or mass", bad_mass, [](BodyDef& d) { d.shapes.clear(); });
   add_body(calls, "several shapes, or a displaced one, without make_compound", bad_mass,
            [](BodyDef& d) { d.shapes[0].local.position.x = 1; });
   add_body(calls, "a shape smaller than 1e-5 m or larger than 1e6 m", degenerate_shape,
            [](BodyDef& d) { d.shapes[0].size.x = 0; });
-  add_body(calls, "a plane on a body that is not fixed", degenerate_shape, [](BodyDef& d) { d.shapes[0] = ShapeDef::plane(); });
+  add_body(calls, "a plane on a body that is not fixed", degenerate_shape,
+           [](BodyDef& d) { d.shapes[0] = ShapeDef::plane(); });
   add_body(calls, "a shape of kind hull without a hull", degenerate_shape,
            [](BodyDef& d) { d.shapes[0].kind = ShapeKind::hull; });
   add_body(calls, "a shape of no known kind", bad_argument, [](BodyDef& d) { d.shapes[0].kind = ShapeKind(9); });
 }
 
-void add_joint(BadCalls& calls, const char* wrong, ErrorCode code, const std::function<void(const Host&, JointDef&)>& spoil) {
+void add_joint(BadCalls& calls, const char* wrong, ErrorCode code,
+               const std::function<void(const Host&, JointDef&)>& spoil) {
   calls.push_back({"World::create_joint", wrong, code, [=](Host& h) {
                      JointDef def = pin(h.body, {1.5, 0, 0}, h.other, {-1.5, 0, 0});
                      spoil(h, def);
@@ -120,7 +126,8 @@ void add_joints(BadCalls& calls) {
     d.b = h.hand;
   });
   add_joint(calls, "a body that does not rotate", bad_joint, [](const Host& h, JointDef& d) { d.b = h.point; });
-  add_joint(calls, "a pin that is NaN", not_finite, [](const Host&, JointDef& d) { d.frame_a.position.x = not_a_number; });
+  add_joint(calls, "a pin that is NaN", not_finite,
+            [](const Host&, JointDef& d) { d.frame_a.position.x = not_a_number; });
   add_joint(calls, "a frame that is not of unit length", not_unit_quaternion,
             [](const Host&, JointDef& d) { d.frame_b.orientation.w = 2; });
   add_joint(calls, "an angle that is NaN, or a lower one above the upper one", bad_joint,
@@ -137,7 +144,8 @@ void add_joints(BadCalls& calls) {
             [](const Host&, JointDef& d) { d.largest_force = 0; });
 }
 
-void add_spring(BadCalls& calls, const char* wrong, ErrorCode code, const std::function<void(const Host&, SpringDef&)>& spoil) {
+void add_spring(BadCalls& calls, const char* wrong, ErrorCode code,
+                const std::function<void(const Host&, SpringDef&)>& spoil) {
   calls.push_back({"World::create_spring", wrong, code, [=](Host& h) {
                      SpringDef def;
                      def.a = h.body, def.b = h.other;
@@ -165,15 +173,16 @@ void add_grabs(BadCalls& calls) {
   calls.push_back({grab, "a point that is NaN", not_finite, [](Host& h) {
                      return error_of(h.world.grab(h.hand, h.body, {not_a_number, 0, 0}));
                    }});
-  calls.push_back(
-      {grab, "a body that is not there", stale_id, [](Host& h) { return error_of(h.world.grab(h.hand, h.gone_body, {})); }});
+  calls.push_back({grab, "a body that is not there", stale_id,
+                   [](Host& h) { return error_of(h.world.grab(h.hand, h.gone_body, {})); }});
   calls.push_back({grab, "a hand that is not kinematic, or what it grabs not dynamic", bad_joint,
                    [](Host& h) { return error_of(h.world.grab(h.body, h.other, {})); }});
-  calls.push_back(
-      {grab, "a body that does not rotate", bad_joint, [](Host& h) { return error_of(h.world.grab(h.hand, h.point, {})); }});
+  calls.push_back({grab, "a body that does not rotate", bad_joint,
+                   [](Host& h) { return error_of(h.world.grab(h.hand, h.point, {})); }});
 }
 
-void add_ragdoll(BadCalls& calls, const char* wrong, ErrorCode code, const std::function<void(RagdollDef&, Pose&)>& spoil) {
+void add_ragdoll(BadCalls& calls, const char* wrong, ErrorCode code,
+                 const std::function<void(RagdollDef&, Pose&)>& spoil) {
   calls.push_back({"World::create_ragdoll", wrong, code, [=](Host& h) {
                      RagdollDef def = RagdollDef::human();
                      Pose pose{{0, 100, 0}, {}};
@@ -191,24 +200,26 @@ void add_ragdolls(BadCalls& calls) {
               [](RagdollDef& d, Pose&) { d.bones[1].parent = 5; });
   add_ragdoll(calls, "a bone's shape that no body has", degenerate_shape,
               [](RagdollDef& d, Pose&) { d.bones[1].shape.size.x = 0; });
-  add_ragdoll(calls, "a density of zero or below, or out of range", bad_mass, [](RagdollDef& d, Pose&) { d.density = 0; });
-  add_ragdoll(calls, "a material that no body has", bad_argument, [](RagdollDef& d, Pose&) { d.material.restitution = 2; });
+  add_ragdoll(calls, "a density of zero or below, or out of range", bad_mass,
+              [](RagdollDef& d, Pose&) { d.density = 0; });
+  add_ragdoll(calls, "a material that no body has", bad_argument,
+              [](RagdollDef& d, Pose&) { d.material.restitution = 2; });
 }
 
 void add_destroyed(BadCalls& calls) {
   using enum ErrorCode;
-  calls.push_back(
-      {"World::destroy", "a body that is not there", stale_id, [](Host& h) { return error_of(h.world.destroy(h.gone_body)); }});
-  calls.push_back(
-      {"World::destroy", "a joint that is not there", stale_id, [](Host& h) { return error_of(h.world.destroy(h.gone_joint)); }});
+  calls.push_back({"World::destroy", "a body that is not there", stale_id,
+                   [](Host& h) { return error_of(h.world.destroy(h.gone_body)); }});
+  calls.push_back({"World::destroy", "a joint that is not there", stale_id,
+                   [](Host& h) { return error_of(h.world.destroy(h.gone_joint)); }});
   calls.push_back({"World::destroy", "a spring that is not there", stale_id,
                    [](Host& h) { return error_of(h.world.destroy(h.gone_spring)); }});
   calls.push_back({"World::destroy", "a list with a body that is not there, or twice the same", stale_id, [](Host& h) {
                      const BodyId list[] = {h.body, h.other, h.body};
                      return error_of(h.world.destroy(list));
                    }});
-  calls.push_back(
-      {"World::destroy", "the ground", bad_argument, [](Host& h) { return error_of(h.world.destroy(h.world.ground())); }});
+  calls.push_back({"World::destroy", "the ground", bad_argument,
+                   [](Host& h) { return error_of(h.world.destroy(h.world.ground())); }});
   calls.push_back({"World::shrink", "while a step runs", busy, [](Host& h) {
                      Error error;
                      (void)h.within_step([&] { error = error_of(h.world.shrink()); });
@@ -253,8 +264,10 @@ void add_bad_shapes(BadCalls& calls) {
     });
   };
   add_compound("no shapes, or one that is too small or large", degenerate_shape, [](BodyDef& d) { d.shapes.clear(); });
-  add_compound("a position, length or mass that is NaN", not_finite, [](BodyDef& d) { d.pose.position.x = not_a_number; });
-  add_compound("an orientation that is not of unit length", not_unit_quaternion, [](BodyDef& d) { d.pose.orientation.w = 0; });
+  add_compound("a position, length or mass that is NaN", not_finite,
+               [](BodyDef& d) { d.pose.position.x = not_a_number; });
+  add_compound("an orientation that is not of unit length", not_unit_quaternion,
+               [](BodyDef& d) { d.pose.orientation.w = 0; });
   add_compound("a mass or density out of range, or a plane", bad_mass, [](BodyDef& d) { d.density = -1; });
   add_compound("a shape of no known kind", bad_argument, [](BodyDef& d) { d.shapes[0].kind = ShapeKind(9); });
   const auto add_hull = [&](const char* wrong, ErrorCode code, std::vector<Vec3> points) {

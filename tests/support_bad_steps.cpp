@@ -33,7 +33,8 @@ void add_settings(BadCalls& calls) {
   add("no sub-steps, or more than 1000", bad_time_step, [](StepSettings& s) { s.substeps = 0; });
   add("an order other than 2 and 4, or 4 with the integrator seed", bad_argument, [](StepSettings& s) { s.order = 3; });
   add("a place, integrator or narrow phase that is none", bad_argument, [](StepSettings& s) { s.joints = Place(7); });
-  add("a refinement of 0 or more than 1000, more than 256 threads", bad_argument, [](StepSettings& s) { s.refinement = 0; });
+  add("a refinement of 0 or more than 1000, more than 256 threads", bad_argument,
+      [](StepSettings& s) { s.refinement = 0; });
   add("a speed, margin or threshold that is NaN or below zero", bad_argument,
       [](StepSettings& s) { s.push_speed = not_a_number; });
   add("a sleep time of zero or below", bad_argument, [](StepSettings& s) { s.sleep_time = 0; });
@@ -54,11 +55,13 @@ void add_steps(BadCalls& calls) {
   };
   add("a time step that is NaN, zero, below or out of range", bad_time_step,
       [](Host& h) { return error_of(h.stepper.step(h.world, 0)); });
-  add_with("settings of its constructor that configure refuses", bad_argument, [](StepSettings& s) { s.hit_speed = -1; });
-  add_with("a device that is not there, or lanes that the processor or precision lacks", unavailable, [](StepSettings& s) {
-    s.set_all(Place::gl);
-    s.device = 99;
-  });
+  add_with("settings of its constructor that configure refuses", bad_argument,
+           [](StepSettings& s) { s.hit_speed = -1; });
+  add_with("a device that is not there, or lanes that the processor or precision lacks", unavailable,
+           [](StepSettings& s) {
+             s.set_all(Place::gl);
+             s.device = 99;
+           });
   add_with("a host's context that is not current", device_error, [](StepSettings& s) {
     s.set_all(Place::gl);
     s.host_context = true;
@@ -98,11 +101,12 @@ void add_steps(BadCalls& calls) {
   });
   calls.push_back({"Stepper::plan_for", "a time step that is NaN, zero, below or out of range", bad_time_step,
                    [](Host& h) { return error_of(h.stepper.plan_for(h.world, -1)); }});
-  calls.push_back({"Stepper::plan_for", "settings of its constructor that configure refuses", bad_argument, [](Host& h) {
-                     StepSettings settings;
-                     settings.refinement = 0;
-                     return error_of(Stepper(settings).plan_for(h.world, frame));
-                   }});
+  calls.push_back(
+      {"Stepper::plan_for", "settings of its constructor that configure refuses", bad_argument, [](Host& h) {
+         StepSettings settings;
+         settings.refinement = 0;
+         return error_of(Stepper(settings).plan_for(h.world, frame));
+       }});
 }
 
 }  // namespace
@@ -122,12 +126,14 @@ void add_bad_kernels(BadCalls& calls) {
   KernelDef def = burning();
   def.stage = Stage(7);
   add_kernel("a stage that is none, or that has kernels of the library alone", bad_argument, def);
-  add_kernel("neither a C++ nor a GLSL side", bad_argument, {.text = {.name = "empty", .signature = "(PC_INOUT(Real) fuel)"}});
+  add_kernel("neither a C++ nor a GLSL side", bad_argument,
+             {.text = {.name = "empty", .signature = "(PC_INOUT(Real) fuel)"}});
   add_kernel("a signature that cannot be read", bad_argument,
              {.text = {.name = "torn", .signature = "(PC_INOUT(Real fuel)", .body = "{}"}});
   add_kernel("a parameter without a value, or a value without a parameter", bad_argument, {.text = burn::text()});
   add_kernel("it writes what the library derives others from", bad_argument, {.text = place::text()});
-  add_kernel("it writes nothing", bad_argument, {.text = {.name = "nothing", .signature = "(PC_IN(Real) fuel)", .body = "{}"}});
+  add_kernel("it writes nothing", bad_argument,
+             {.text = {.name = "nothing", .signature = "(PC_IN(Real) fuel)", .body = "{}"}});
   def = burning();
   def.cutoff = 1;
   add_kernel("a cut-off of what is not of pairs of bodies, or that is not above zero", bad_argument, def);

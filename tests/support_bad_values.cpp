@@ -12,12 +12,14 @@ constexpr const char* no_body = "a body that is not there";
 
 /// A function that takes a body before all else: `call` is made with one that is not there.
 void add_stale(BadCalls& calls, const char* function, bool changes, std::function<Error(Host&, BodyId)> call) {
-  calls.push_back({function, no_body, stale_id, [call = std::move(call)](Host& h) { return call(h, h.gone_body); }, changes});
+  calls.push_back(
+      {function, no_body, stale_id, [call = std::move(call)](Host& h) { return call(h, h.gone_body); }, changes});
 }
 
 void add_readers(BadCalls& calls) {
   const auto add = [&](const char* function, auto read) {
-    add_stale(calls, function, false, [read](Host& h, BodyId id) { return error_of(read(std::as_const(h.world), id)); });
+    add_stale(calls, function, false,
+              [read](Host& h, BodyId id) { return error_of(read(std::as_const(h.world), id)); });
   };
   add("World::pose", [](const World& w, BodyId id) { return w.pose(id); });
   add("World::velocity", [](const World& w, BodyId id) { return w.velocity(id); });
@@ -98,16 +100,21 @@ void add_motion(BadCalls& calls) {
   add(name, "a fixed body, or one that does not rotate", bad_argument,
       [](Host& h) { return error_of(h.world.set_orientation_last(h.fixed, {})); });
   add_stale(calls, "World::wake", true, [](Host& h, BodyId id) { return error_of(h.world.wake(id)); });
-  add_stale(calls, "World::set_can_sleep", true, [](Host& h, BodyId id) { return error_of(h.world.set_can_sleep(id, true)); });
+  add_stale(calls, "World::set_can_sleep", true,
+            [](Host& h, BodyId id) { return error_of(h.world.set_can_sleep(id, true)); });
 }
 
 void add_inputs(BadCalls& calls) {
   const auto add = [&](const char* function, const char* wrong, ErrorCode code, std::function<Error(Host&)> call) {
     calls.push_back({function, wrong, code, std::move(call)});
   };
-  add("World::set_gravity", "NaN", not_finite, [](Host& h) { return error_of(h.world.set_gravity({0, not_a_number, 0})); });
+  add("World::set_gravity", "NaN", not_finite, [](Host& h) {
+    return error_of(h.world.set_gravity({0, not_a_number, 0}));
+  });
   const char* name = "World::set_mass_properties";
-  add_stale(calls, name, true, [](Host& h, BodyId id) { return error_of(h.world.set_mass_properties(id, {1, {1, 1, 1}})); });
+  add_stale(calls, name, true, [](Host& h, BodyId id) {
+    return error_of(h.world.set_mass_properties(id, {1, {1, 1, 1}}));
+  });
   add(name, "NaN, or an angular momentum beyond 1e36", not_finite, [](Host& h) {
     return error_of(h.world.set_mass_properties(h.body, {not_a_number, {1, 1, 1}}));
   });
@@ -134,7 +141,8 @@ void add_inputs(BadCalls& calls) {
   });
   add(name, "a callback that is empty", bad_argument,
       [](Host& h) { return error_of(h.world.add_force(h.body, ForceCallback{})); });
-  add("World::remove", "a force that is not there", stale_id, [](Host& h) { return error_of(h.world.remove(h.gone_force)); });
+  add("World::remove", "a force that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.remove(h.gone_force)); });
   add_stale(calls, "World::set_filter", true, [](Host& h, BodyId id) { return error_of(h.world.set_filter(id, {})); });
   add_stale(calls, "World::set_collide", true,
             [](Host& h, BodyId id) { return error_of(h.world.set_collide(h.body, id, false)); });
@@ -148,16 +156,17 @@ void add_drives(BadCalls& calls) {
     calls.push_back({function, wrong, code, std::move(call), changes});
   };
   add(
-      "World::joint", "a joint that is not there", stale_id, [](Host& h) { return error_of(h.world.joint(h.gone_joint)); },
-      false);
+      "World::joint", "a joint that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.joint(h.gone_joint)); }, false);
   add(
       "World::joint_separation", "a joint that is not there", stale_id,
       [](Host& h) { return error_of(h.world.joint_separation(h.gone_joint)); }, false);
   add(
-      "World::spring", "a spring that is not there", stale_id, [](Host& h) { return error_of(h.world.spring(h.gone_spring)); },
-      false);
+      "World::spring", "a spring that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.spring(h.gone_spring)); }, false);
   const char* name = "World::set_motor";
-  add(name, "a joint that is not there", stale_id, [](Host& h) { return error_of(h.world.set_motor(h.gone_joint, {})); });
+  add(name, "a joint that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.set_motor(h.gone_joint, {})); });
   add(name, "a speed or torque that is NaN", not_finite, [](Host& h) {
     return error_of(h.world.set_motor(h.joint, {not_a_number, 1}));
   });
@@ -193,36 +202,41 @@ void add_bad_properties(BadCalls& calls) {
   add(
       "World::view", unknown, unknown_name, [](Host& h) { return error_of(h.world.view("speed of light")); }, false);
   add(
-      "World::property", unknown, unknown_name, [](Host& h) { return error_of(h.world.property<Real>("charm")); }, false);
+      "World::property", unknown, unknown_name, [](Host& h) { return error_of(h.world.property<Real>("charm")); },
+      false);
   add(
       "World::property", "another type than the property's", wrong_type,
       [](Host& h) { return error_of(h.world.property<Vec3>("fuel")); }, false);
   const char* name = "World::add_property";
   add(name, "a name that a kernel's text cannot use", bad_argument,
       [](Host& h) { return error_of(h.world.add_property<Real>("two words")); });
-  add(name, "the name of another", name_taken, [](Host& h) { return error_of(h.world.add_property<Real>("position")); });
+  add(name, "the name of another", name_taken,
+      [](Host& h) { return error_of(h.world.add_property<Real>("position")); });
   add(name, "an initial value that its type does not hold, or NaN", not_finite,
       [](Host& h) { return error_of(h.world.add_property<Real>("charm", not_a_number)); });
   add(name, "a table that is not there", stale_id,
       [](Host& h) { return error_of(h.world.add_property<Real>("charm", 0, "1", h.gone_table)); });
   add(name, "a role that is none", bad_argument,
       [](Host& h) { return error_of(h.world.add_property<Real>("charm", 0, "1", body_table, Role(9))); });
-  add("World::remove_property", unknown, unknown_name, [](Host& h) { return error_of(h.world.remove_property("charm")); });
+  add("World::remove_property", unknown, unknown_name,
+      [](Host& h) { return error_of(h.world.remove_property("charm")); });
   add("World::remove_property", "one of the library's", bad_argument,
       [](Host& h) { return error_of(h.world.remove_property("position")); });
   name = "World::get";
   add(
-      name, "a property that is not there", stale_id, [](Host& h) { return error_of(h.world.get(h.gone_property, h.body)); },
-      false);
+      name, "a property that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.get(h.gone_property, h.body)); }, false);
   add(
-      name, "a body that is not there", stale_id, [](Host& h) { return error_of(h.world.get(h.fuel, h.gone_body)); }, false);
+      name, "a body that is not there", stale_id, [](Host& h) { return error_of(h.world.get(h.fuel, h.gone_body)); },
+      false);
   add(
       name, "an object of another table, or a row that the table does not have", bad_argument,
       [](Host& h) { return error_of(h.world.get(h.heat, RowOf(3))); }, false);
   name = "World::set";
   add(name, "a property that is not there", stale_id,
       [](Host& h) { return error_of(h.world.set(h.gone_property, h.body, Real(1))); });
-  add(name, "a body that is not there", stale_id, [](Host& h) { return error_of(h.world.set(h.fuel, h.gone_body, Real(1))); });
+  add(name, "a body that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.set(h.fuel, h.gone_body, Real(1))); });
   add(name, "an object of another table, or a row that the table does not have", bad_argument,
       [](Host& h) { return error_of(h.world.set(h.fuel, RowOf(1), Real(1))); });
   add(name, "one of the library's", bad_argument,
@@ -238,9 +252,12 @@ void add_bad_properties(BadCalls& calls) {
   add(name, "more than 2^28 rows, or a table of the library's", bad_argument,
       [](Host& h) { return error_of(h.world.resize(body_table, 1)); });
   add(
-      "World::rows", "a table that is not there", stale_id, [](Host& h) { return error_of(h.world.rows(h.gone_table)); }, false);
-  add("World::remove", "a table that is not there", stale_id, [](Host& h) { return error_of(h.world.remove(h.gone_table)); });
-  add("World::remove", "a table of the library's", bad_argument, [](Host& h) { return error_of(h.world.remove(joint_table)); });
+      "World::rows", "a table that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.rows(h.gone_table)); }, false);
+  add("World::remove", "a table that is not there", stale_id,
+      [](Host& h) { return error_of(h.world.remove(h.gone_table)); });
+  add("World::remove", "a table of the library's", bad_argument,
+      [](Host& h) { return error_of(h.world.remove(joint_table)); });
   name = "World::restore";
   add(name, "bytes that are cut or changed", bad_snapshot,
       [](Host& h) { return error_of(h.world.restore(std::span(h.saved).first(h.saved.size() - 1))); });

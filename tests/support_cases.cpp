@@ -8,8 +8,8 @@
 namespace physics {
 namespace {
 
-/// Rows that miss their bound, and may: tests/data/missed.csv, with the figure that they may not exceed. The fields that say which row it
-/// is, as they stand there.
+/// Rows that miss their bound, and may: tests/data/missed.csv, with the figure that they may not exceed. The fields
+/// that say which row it is, as they stand there.
 std::map<std::string, double> rows_that_miss() {
   std::ifstream file(PCPHYS_SOURCE_DIR "/tests/data/missed.csv");
   std::map<std::string, double> figures;
@@ -25,8 +25,8 @@ std::map<std::string, double> rows_that_miss() {
 }
 std::string fields_of(const cases::Row& row) {
   std::ostringstream text;
-  text << row.case_name << ';' << row.variant << ';' << (row.precision == Precision::f64 ? "double" : "float") << ';' << row.dt
-       << ';' << row.substeps << ';' << row.metric;
+  text << row.case_name << ';' << row.variant << ';' << (row.precision == Precision::f64 ? "double" : "float") << ';'
+       << row.dt << ';' << row.substeps << ';' << row.metric;
   return text.str();
 }
 
@@ -36,7 +36,8 @@ Where metric(std::string start) {
   return [start](const cases::Row& row) { return row.metric.starts_with(start); };
 }
 
-std::vector<cases::Row> rows_of(const std::string& name, const Mode& mode, std::optional<double> dt, const std::string& variant) {
+std::vector<cases::Row> rows_of(const std::string& name, const Mode& mode, std::optional<double> dt,
+                                const std::string& variant) {
   const auto engine = cases::make_pcphys(mode.place, mode.lanes);
   cases::Engine* const engines[] = {engine.get()};
   cases::Selection selection;

@@ -19,7 +19,8 @@ Where metric(std::string start);
 /// Runs a case in this mode, over its step lengths or one of them; of its variants those that start with `variant`.
 std::vector<cases::Row> rows_of(const std::string& name, const Mode& mode, std::optional<double> dt = {},
                                 const std::string& variant = {});
-/// Every row passes, but for those of tests/data/missed.csv, which miss by no more than is said there; there is at least one.
+/// Every row passes, but for those of tests/data/missed.csv, which miss by no more than is said there; there is at
+/// least one.
 void check_rows(const std::vector<cases::Row>& rows, const Where& where = {});
 
 }  // namespace physics

@@ -1,5 +1,5 @@
-// Every allocation of the test program: operator new in its forms, and aligned_alloc, which the tables use. They may be counted, and made
-// to fail.
+// Every allocation of the test program: operator new in its forms, and aligned_alloc, which the tables use. They may be
+// counted, and made to fail.
 #pragma once
 #include <cstddef>
 

@@ -52,8 +52,9 @@ struct Neighbours {
   /// All stored state of the neighbours, bit for bit.
   std::vector<double> state() const {
     std::vector<double> out;
-    for (const char* name : {"displacement_rate", "angular_momentum", "phase", "position", "orientation", "position_low",
-                             "orientation_low", "velocity_half_change", "momentum_half_change", "velocity_low", "momentum_low"}) {
+    for (const char* name :
+         {"displacement_rate", "angular_momentum", "phase", "position", "orientation", "position_low",
+          "orientation_low", "velocity_half_change", "momentum_half_change", "velocity_low", "momentum_low"}) {
       const PropertyView view = *run.world.view(name);
       for (std::size_t i = 0; i < count; i++)
         for (std::uint32_t c = 0; c < view.components; c++) out.push_back(view.at(*run.world.row_of(bodies[i]), c));

@@ -72,7 +72,8 @@ Momenta momenta_in_phase(const World& world) {
   Momenta sum;
   for (BodyId id : world.bodies())
     if (*world.kind(id) == BodyKind::dynamic)
-      add(sum, world.mass_properties(id)->mass, world.pose(id)->position, *world.velocity(id), *world.angular_momentum(id));
+      add(sum, world.mass_properties(id)->mass, world.pose(id)->position, *world.velocity(id),
+          *world.angular_momentum(id));
   return sum;
 }
 
@@ -83,7 +84,8 @@ Momenta momenta_stored(const World& world) {
     if (*world.kind(id) != BodyKind::dynamic) continue;
     const std::uint32_t row = *world.row_of(id);
     add(sum, world.mass_properties(id)->mass, world.pose(id)->position,
-        {velocity.at(row, 0), velocity.at(row, 1), velocity.at(row, 2)}, {spin.at(row, 0), spin.at(row, 1), spin.at(row, 2)});
+        {velocity.at(row, 0), velocity.at(row, 1), velocity.at(row, 2)},
+        {spin.at(row, 0), spin.at(row, 1), spin.at(row, 2)});
   }
   return sum;
 }

@@ -19,7 +19,8 @@ inline BodyDef cube(Vec3 position, double half = 0.5) {
   return def;
 }
 
-/// Towers of three cubes on a floor of their own, 10 m apart along x, and a joint between the two upper ones of the first.
+/// Towers of three cubes on a floor of their own, 10 m apart along x, and a joint between the two upper ones of the
+/// first.
 struct Towers {
   World world;
   std::vector<BodyId> floors, cubes;

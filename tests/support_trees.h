@@ -24,7 +24,8 @@ struct Worst {
 inline double energy(const World& world) { return world.kinetic_energy() + world.potential_energy(); }
 
 inline void note(Worst& worst, const World& world, double start) {
-  for (const JointId joint : world.joints()) worst.separation = std::max(worst.separation, *world.joint_separation(joint));
+  for (const JointId joint : world.joints())
+    worst.separation = std::max(worst.separation, *world.joint_separation(joint));
   worst.kinetic = std::max(worst.kinetic, world.kinetic_energy());
   worst.lost = start - energy(world);
   worst.gain = std::max(worst.gain, -worst.lost);
@@ -43,8 +44,9 @@ inline Worst watch(Run& run, long steps = 300) {
 }
 
 inline void tell(const std::string& what, const Mode& mode, const Worst& w, double range) {
-  MESSAGE("trees, " << what << ", " << mode.name() << ": separation " << w.separation / millimetre << " mm, energy gained "
-                    << w.gain / range << " and at the end lost " << w.lost / range << " of its range");
+  MESSAGE("trees, " << what << ", " << mode.name() << ": separation " << w.separation / millimetre
+                    << " mm, energy gained " << w.gain / range << " and at the end lost " << w.lost / range
+                    << " of its range");
 }
 
 /// A body that touches nothing.

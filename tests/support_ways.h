@@ -13,9 +13,9 @@ struct Stepped {
   StepSettings settings = {};
 };
 
-/// Checks that each step leaves the bits that one stepper with one lane leaves: with a new stepper each fifth step, with
-/// two in turns, with other lanes and threads in each step, and from its own snapshot before each third; the first few
-/// steps also with stages that are on GL and on the CPU by turns.
+/// Checks that each step leaves the bits that one stepper with one lane leaves: with a new stepper each fifth step,
+/// with two in turns, with other lanes and threads in each step, and from its own snapshot before each third; the first
+/// few steps also with stages that are on GL and on the CPU by turns.
 void check_same_ways(const Stepped& stepped, int steps, int steps_on_gl);
 
 }  // namespace worldtest

@@ -51,7 +51,8 @@ Status step_status(Stepper& stepper, World& world, double dt = frame);
 /// A test must not pass because there was nothing to test: llvmpipe comes with the scripts.
 void require_gl();
 
-/// Checks that a kernel whose GLSL is wrong in that line is refused on GL, with the host's own file and line, and that steps go on.
+/// Checks that a kernel whose GLSL is wrong in that line is refused on GL, with the host's own file and line, and that
+/// steps go on.
 void check_glsl_error(World& world, const KernelDef& def, int line);
 
 /// A ball at a place.

@@ -1,6 +1,6 @@
-// Pins what happens to ragdolls that are thrown at a wall, at random: energy may not rise. When their limbs bounced at the end of the step, each as
-// a bare body with the tree's effective mass, 159 of these 400 gained more than 1e-3 of their energy within a step, 40 more than all of it, one
-// 971 times.
+// Pins what happens to ragdolls that are thrown at a wall, at random: energy may not rise. When their limbs bounced at
+// the end of the step, each as a bare body with the tree's effective mass, 159 of these 400 gained more than 1e-3 of
+// their energy within a step, 40 more than all of it, one 971 times.
 #include <cmath>
 #include <random>
 
@@ -83,7 +83,8 @@ TEST_CASE("ragdolls that are thrown at a wall gain no energy, but for 1 in 40 at
   CHECK(gains.worst <= 0.6);
 }
 
-// Of 2,000 five do, where six did as long as limbs that others might have sent together had rows (and none of these 400).
+// Of 2,000 five do, where six did as long as limbs that others might have sent together had rows (and none of these
+// 400).
 TEST_CASE("ragdolls that are thrown at a wall gain no energy with 16 sub-steps, but for 1 in 400") {
   const Gains gains(16);
   CHECK(gains.many <= 1);

@@ -1,5 +1,6 @@
-// Pins what loops of joints do that cannot move without pulling hard: bridges built straight on two pins, and nets that hang by two corners.
-// No energy is made, and pins stay closed. Bridges of 40 planks once gained 1e5 J, nets of 4 x 4 balls 200 times the energy of their fall.
+// Pins what loops of joints do that cannot move without pulling hard: bridges built straight on two pins, and nets that
+// hang by two corners. No energy is made, and pins stay closed. Bridges of 40 planks once gained 1e5 J, nets of 4 x 4
+// balls 200 times the energy of their fall.
 #include <algorithm>
 #include <string>
 
@@ -47,8 +48,10 @@ void add_net(World& world, int wide, double radius) {
   }
   const auto place = [&](int i) { return Vec3{pitch * (i % wide), 0, pitch * (i / wide)}; };
   for (int i = 0; i < wide * wide; i++) {
-    if (i % wide + 1 < wide) (void)pin(world, balls[std::size_t(i)], balls[std::size_t(i + 1)], 0.5 * (place(i) + place(i + 1)));
-    if (i + wide < wide * wide) (void)pin(world, balls[std::size_t(i)], balls[std::size_t(i + wide)], 0.5 * (place(i) + place(i + wide)));
+    if (i % wide + 1 < wide)
+      (void)pin(world, balls[std::size_t(i)], balls[std::size_t(i + 1)], 0.5 * (place(i) + place(i + 1)));
+    if (i + wide < wide * wide)
+      (void)pin(world, balls[std::size_t(i)], balls[std::size_t(i + wide)], 0.5 * (place(i) + place(i + wide)));
   }
   for (const int corner : {0, wide - 1}) (void)pin(world, world.ground(), balls[std::size_t(corner)], place(corner));
 }
@@ -97,7 +100,8 @@ TEST_CASE("tight loops: nets of pins that hang by two corners make no energy") {
     for (const double radius : {0.05, 0.15}) {
       World world;
       add_net(world, wide, radius);
-      check_fall(world, frame, 1e-3, 0.01, "a net " + std::to_string(wide) + " wide of balls of " + std::to_string(radius));
+      check_fall(world, frame, 1e-3, 0.01,
+                 "a net " + std::to_string(wide) + " wide of balls of " + std::to_string(radius));
     }
 }
 
@@ -109,8 +113,8 @@ TEST_CASE("tight loops: a net too large for its trees makes little energy") {
   check_fall(world, frame, 0.05, 0.05, "a net 14 wide");
 }
 
-// A spring pulls as its law says, however hard: what swings in it gets the sub-steps. A bound of the pull let loads of 100 kg fall; without
-// the sub-steps 1,000 kg gained 3.4 kJ, and 10,000 kg flew at 3e14 m/s.
+// A spring pulls as its law says, however hard: what swings in it gets the sub-steps. A bound of the pull let loads of
+// 100 kg fall; without the sub-steps 1,000 kg gained 3.4 kJ, and 10,000 kg flew at 3e14 m/s.
 TEST_CASE("tight loops: a load on a spring at the end of a light arm hangs there, and makes no energy") {
   for (const double load : {10.0, 100.0, 1e3, 1e4}) {
     World world;
@@ -140,7 +144,8 @@ TEST_CASE("tight loops: a load on a spring at the end of a light arm hangs there
       most = std::max(most, energy(world) + world.spring_energy() - start);
     }
     CAPTURE(load);
-    MESSAGE("a load of " << load << " kg: energy above the start " << most << " J, at " << world.pose(hung)->position.y << " m");
+    MESSAGE("a load of " << load << " kg: energy above the start " << most << " J, at " << world.pose(hung)->position.y
+                         << " m");
     CHECK(most <= 1e-3 * load * 9.81);
     CHECK(world.pose(hung)->position.y >= -2.05);
   }

@@ -1,6 +1,7 @@
-// Pins what hard blows do to bodies of joint trees: one that stands is not sent through the floor by what falls on it from its own tree,
-// though it did not move itself (it was not looked for there, and a shin sank by its thickness), and one that lies wedged between two walls
-// that overlap it is not pushed ever harder (its ragdoll's energy grew by half of what the whole heap had).
+// Pins what hard blows do to bodies of joint trees: one that stands is not sent through the floor by what falls on it
+// from its own tree, though it did not move itself (it was not looked for there, and a shin sank by its thickness), and
+// one that lies wedged between two walls that overlap it is not pushed ever harder (its ragdoll's energy grew by half
+// of what the whole heap had).
 #include <algorithm>
 
 #include "support_world.h"
@@ -67,8 +68,8 @@ TEST_CASE("what is wedged between two walls is not pushed ever harder") {
     const double early = largest_impulse(world);
     run(world, stepper, 1200);
     const double late = largest_impulse(world);
-    MESSAGE("largest impulse after 2 and 22 s: " << early << ", " << late << " N s; kinetic energy " << world.kinetic_energy()
-                                                 << " J");
+    MESSAGE("largest impulse after 2 and 22 s: " << early << ", " << late << " N s; kinetic energy "
+                                                 << world.kinetic_energy() << " J");
     CHECK(early > 0);
     CHECK(late <= 1.01 * early);
     CHECK(late <= 100);  // what a wall holds and what its overlap pushes

@@ -1,5 +1,5 @@
-// Pins how contacts act on joint trees: a blow is answered by the whole tree at once, as a dense solve of its joints and the
-// contact together answers it; both momenta are kept; a tree that is too large for that is answered by rows.
+// Pins how contacts act on joint trees: a blow is answered by the whole tree at once, as a dense solve of its joints
+// and the contact together answers it; both momenta are kept; a tree that is too large for that is answered by rows.
 #include <Eigen/Dense>
 
 #include "support_trees.h"
@@ -89,8 +89,8 @@ void pin_chain(Dense& dense, const Run& run, const std::vector<BodyId>& links, b
   for (std::size_t i = 0; i + 1 < links.size(); i++) dense.pin(run, links[i], links[i + 1], {double(i) + 0.5, 0, 0});
 }
 
-/// Steps in which nothing moves far, several: four corners are solved one after the other, and a velocity that joints have
-/// just changed is read half-way.
+/// Steps in which nothing moves far, several: four corners are solved one after the other, and a velocity that joints
+/// have just changed is read half-way.
 void blow(Run& run, const Mode& mode) { run.step(mode.is_double() ? 1e-6 : 1e-5, 8); }
 
 }  // namespace

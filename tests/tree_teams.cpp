@@ -1,6 +1,6 @@
-// Pins what a work group makes of a joint tree that it shares: the hashes of the CPU, of trees of which no two are alike, with contacts, loops,
-// motors and in fourth order. Invocations take their shares in another order, see GlTeam; gl_parity compares kernel by kernel in both, and with one
-// invocation a tree.
+// Pins what a work group makes of a joint tree that it shares: the hashes of the CPU, of trees of which no two are
+// alike, with contacts, loops, motors and in fourth order. Invocations take their shares in another order, see GlTeam;
+// gl_parity compares kernel by kernel in both, and with one invocation a tree.
 #include <utility>
 
 #include "scenes/balls_on_joints.h"
@@ -26,9 +26,10 @@ World unlike_trees(Precision precision, bool touching) {
   must(world.set_gravity({0, -9.81, 0}));
   if (touching) (void)must(world.create_body(fixed_box({0, -1, 0}, {50, 0.5, 50})));
   scenes::Random random(3);
-  const std::vector<Parents> shapes = {
-      scenes::star_tree(200),         scenes::drawn_tree(150, random), scenes::chain_tree(20),        scenes::chain_tree(2),
-      scenes::drawn_tree(40, random), scenes::drawn_tree(25, random),  scenes::drawn_tree(15, random)};
+  const std::vector<Parents> shapes = {scenes::star_tree(200),         scenes::drawn_tree(150, random),
+                                       scenes::chain_tree(20),         scenes::chain_tree(2),
+                                       scenes::drawn_tree(40, random), scenes::drawn_tree(25, random),
+                                       scenes::drawn_tree(15, random)};
   for (std::size_t i = 0; i < shapes.size(); i++) {
     scenes::TreeOfBalls tree;
     tree.place = {4.0 * double(i), 0.2, 0};

@@ -1,6 +1,7 @@
-// Pins that motion does not depend on how the world is turned: the same scene, turned by some rotation with its gravity, moves as
-// before but for rounding, in double precision. It has caught Gershgorin's bound on a pin's stiffness and the smallest response
-// of a contact along tangents that the world's axes chose (4e-3 for a box on a floor, 1e-2 for a pile).
+// Pins that motion does not depend on how the world is turned: the same scene, turned by some rotation with its
+// gravity, moves as before but for rounding, in double precision. It has caught Gershgorin's bound on a pin's stiffness
+// and the smallest response of a contact along tangents that the world's axes chose (4e-3 for a box on a floor, 1e-2
+// for a pile).
 #include <algorithm>
 #include <functional>
 #include <random>
@@ -31,7 +32,8 @@ struct Turned {
   std::vector<Pose> poses() const {
     std::vector<Pose> all;
     const Quat back = conjugate(turn);
-    for (const BodyId body : run.world.bodies()) all.push_back({rotate(back, run.position(body)), back * run.orientation(body)});
+    for (const BodyId body : run.world.bodies())
+      all.push_back({rotate(back, run.position(body)), back * run.orientation(body)});
     return all;
   }
 };
@@ -59,8 +61,8 @@ void make_box(Turned& t) {
   t.add(box);
 }
 
-/// Stands on each other askew, so that no two overlaps are equal, which rounding would choose from. Without cylinders and hulls, whose
-/// closest points are found step by step from a direction of the world's, to 1e-5 of their size.
+/// Stands on each other askew, so that no two overlaps are equal, which rounding would choose from. Without cylinders
+/// and hulls, whose closest points are found step by step from a direction of the world's, to 1e-5 of their size.
 void make_pile(Turned& t) {
   add_floor(t);
   t.add(shaped(ShapeDef::box({0.5, 0.2, 0.4}), {0, 0.199, 0}, axis_angle({0, 1, 0}, 0.3)));
@@ -91,7 +93,8 @@ void make_tree(Turned& t) {
   t.pin(bodies[1], bodies[3], {1.15, 0.15, 0}, AngleFreedom::hinge(-0.2, 0.3));
 }
 
-/// How far the bodies of the scene are from where they are in the one that is not turned, as a share of a metre or a radian.
+/// How far the bodies of the scene are from where they are in the one that is not turned, as a share of a metre or a
+/// radian.
 double differ(const std::function<void(Turned&)>& make, Quat turn) {
   Turned upright({}), turned(turn);
   make(upright);

@@ -1,4 +1,5 @@
-// Pins: velocities that no body has, and what would make one beyond the range of numbers, are refused, and the world is as it was.
+// Pins: velocities that no body has, and what would make one beyond the range of numbers, are refused, and the world is
+// as it was.
 #include "support_world.h"
 
 using namespace worldtest;
@@ -20,7 +21,8 @@ TEST_CASE("a fixed body has no velocity but zero, whoever asks") {
     must(world.set_velocity(body, {}));
     must(world.set_angular_velocity(body, {}));
     CHECK_REFUSED(world, world.set_velocity(body, {1, 0, 0}), ErrorCode::bad_argument, "A fixed body has no velocity");
-    CHECK_REFUSED(world, world.set_angular_velocity(body, {1, 0, 0}), ErrorCode::bad_argument, "A fixed body has no angular");
+    CHECK_REFUSED(world, world.set_angular_velocity(body, {1, 0, 0}), ErrorCode::bad_argument,
+                  "A fixed body has no angular");
   }
   CHECK(world.hash() == hash);
 }
@@ -50,7 +52,8 @@ TEST_CASE("what a velocity or an angular momentum beyond the range of numbers wo
     CHECK_REFUSED(w, w.create_body(def), ErrorCode::not_finite, "The angular momentum of a body would be");
     const BodyId light = must(w.create_body(ball({5, 0, 0})));
     must(w.set_angular_velocity(light, {0, 1e15, 0}));
-    CHECK_REFUSED(w, w.set_mass_properties(light, {1e30, {1e30, 1e30, 1e30}}), ErrorCode::not_finite, "The angular momentum");
+    CHECK_REFUSED(w, w.set_mass_properties(light, {1e30, {1e30, 1e30, 1e30}}), ErrorCode::not_finite,
+                  "The angular momentum");
     Stepper stepper;
     run(w, stepper, 1, 1e-15);
     const Vec3 at = must(w.pose(light)).position;

@@ -1,8 +1,9 @@
-// Pins: no family of random scenes breaks more often than it did. Seeds 1 to N of each, the same in every run, two minutes
-// in all on one core. What is recorded in tests/data/wild.csv is not what is wanted: it falls with what is mended, and
-// never rises. (Six times it did, by single scenes, and by five that lose bodies of host, when others fell; the last time
-// by one scene of ragdolls, and by the energy of one of joints, when six of host and three of tower fewer broke. Where host changes by roundings alone some 20 scenes of 320 break that did not, and as many hold that broke, so
-// 1,280 are played: of fewer, 120, 320, 640 and 960, one to four were once more where of all there were less.)
+// Pins: no family of random scenes breaks more often than it did. Seeds 1 to N of each, the same in every run, two
+// minutes in all on one core. What is recorded in tests/data/wild.csv is not what is wanted: it falls with what is
+// mended, and never rises. (Six times it did, by single scenes, and by five that lose bodies of host, when others fell;
+// the last time by one scene of ragdolls, and by the energy of one of joints, when six of host and three of tower fewer
+// broke. Where host changes by roundings alone some 20 scenes of 320 break that did not, and as many hold that broke,
+// so 1,280 are played: of fewer, 120, 320, 640 and 960, one to four were once more where of all there were less.)
 #include <doctest/doctest.h>
 
 #include <algorithm>

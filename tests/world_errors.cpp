@@ -51,9 +51,10 @@ struct BadBody {
 }  // namespace
 
 TEST_CASE("names of error codes") {
-  const char* names[] = {"none",        "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion", "bad_time_step",
-                         "stale_id",    "bad_joint",   "bad_argument", "unknown_name",     "name_taken",          "wrong_type",
-                         "unavailable", "buffer_full", "device_error", "bad_file",         "bad_snapshot"};
+  const char* names[] = {"none",          "not_finite",  "bad_mass",    "degenerate_shape", "not_unit_quaternion",
+                         "bad_time_step", "stale_id",    "bad_joint",   "bad_argument",     "unknown_name",
+                         "name_taken",    "wrong_type",  "unavailable", "buffer_full",      "device_error",
+                         "bad_file",      "bad_snapshot"};
   for (int i = 0; i < int(std::size(names)); i++) CHECK(std::string(name(ErrorCode(i))) == names[i]);
   CHECK(int(ErrorCode::bad_snapshot) + 1 == int(std::size(names)));
 }
@@ -65,12 +66,14 @@ TEST_CASE("create_body refuses") {
        "The position of a body is (0, nan, 0); every component must be finite"},
       {"infinite position", [](BodyDef& d) { d.pose.position.z = -infinity; }, ErrorCode::not_finite,
        "The position of a body is (0, 0, -inf)"},
-      {"position out of range", [](BodyDef& d) { d.pose.position.x = 1e16; }, ErrorCode::not_finite, "no larger than 1e+15"},
+      {"position out of range", [](BodyDef& d) { d.pose.position.x = 1e16; }, ErrorCode::not_finite,
+       "no larger than 1e+15"},
       {"NaN orientation", [](BodyDef& d) { d.pose.orientation.x = not_a_number; }, ErrorCode::not_finite,
        "The orientation of a body holds NaN or infinity; give a unit quaternion"},
       {"long orientation", [](BodyDef& d) { d.pose.orientation.w = 1.01; }, ErrorCode::not_unit_quaternion,
        "The orientation of a body has length 1.01; normalise it"},
-      {"zero orientation", [](BodyDef& d) { d.pose.orientation.w = 0; }, ErrorCode::not_unit_quaternion, "has length 0"},
+      {"zero orientation", [](BodyDef& d) { d.pose.orientation.w = 0; }, ErrorCode::not_unit_quaternion,
+       "has length 0"},
       {"NaN velocity", [](BodyDef& d) { d.velocity.x = not_a_number; }, ErrorCode::not_finite,
        "The velocity of a body is (nan, 0, 0)"},
       {"NaN spin", [](BodyDef& d) { d.angular_velocity.x = not_a_number; }, ErrorCode::not_finite,
@@ -85,7 +88,8 @@ TEST_CASE("create_body refuses") {
        "The restitution is -0.5; it must lie between 0 (no bounce) and 1 (no loss)."},
       {"restitution above one", [](BodyDef& d) { d.material.restitution = 1.5; }, ErrorCode::bad_argument,
        "The restitution is 1.5"},
-      {"NaN drag", [](BodyDef& d) { d.linear_drag = not_a_number; }, ErrorCode::not_finite, "The linear drag of a body is nan"},
+      {"NaN drag", [](BodyDef& d) { d.linear_drag = not_a_number; }, ErrorCode::not_finite,
+       "The linear drag of a body is nan"},
       {"infinite drag", [](BodyDef& d) { d.angular_drag = infinity; }, ErrorCode::not_finite,
        "The angular drag of a body is inf"},
       {"negative drag", [](BodyDef& d) { d.angular_drag = -1; }, ErrorCode::bad_argument,
@@ -133,7 +137,8 @@ TEST_CASE("create_body refuses") {
        ErrorCode::degenerate_shape, "A plane is infinite"},
       {"zero density", [](BodyDef& d) { d.density = 0; }, ErrorCode::bad_mass,
        "A density must be above zero, between 1e-30 and 1e+30 kg/m^3; it is 0"},
-      {"NaN density", [](BodyDef& d) { d.density = not_a_number; }, ErrorCode::bad_mass, "A density must be above zero, between"},
+      {"NaN density", [](BodyDef& d) { d.density = not_a_number; }, ErrorCode::bad_mass,
+       "A density must be above zero, between"},
       {"zero mass", [](BodyDef& d) { d.mass = 0; }, ErrorCode::bad_mass,
        "The mass is 0 kg; a dynamic body's must be above zero. Use BodyKind::fixed"},
       {"negative mass", [](BodyDef& d) { d.mass = -2; }, ErrorCode::bad_mass, "The mass is -2 kg"},
@@ -197,10 +202,14 @@ TEST_CASE("set functions refuse") {
   Populated p;
   World& w = p.world;
   CHECK_REFUSED(w, w.set_gravity({0, not_a_number, 0}), ErrorCode::not_finite, "The gravity is (0, nan, 0)");
-  CHECK_REFUSED(w, w.set_pose(p.a, {{0, infinity, 0}, {}}), ErrorCode::not_finite, "The position of a body is (0, inf, 0)");
-  CHECK_REFUSED(w, w.set_pose(p.a, {{}, {0, 0, 0, 2}}), ErrorCode::not_unit_quaternion, "The orientation of a body has length 2");
-  CHECK_REFUSED(w, w.set_pose(p.a, {{}, {not_a_number, 0, 0, 1}}), ErrorCode::not_finite, "The orientation of a body holds NaN");
-  CHECK_REFUSED(w, w.set_velocity(p.a, {not_a_number, 0, 0}), ErrorCode::not_finite, "The velocity of a body is (nan, 0, 0)");
+  CHECK_REFUSED(w, w.set_pose(p.a, {{0, infinity, 0}, {}}), ErrorCode::not_finite,
+                "The position of a body is (0, inf, 0)");
+  CHECK_REFUSED(w, w.set_pose(p.a, {{}, {0, 0, 0, 2}}), ErrorCode::not_unit_quaternion,
+                "The orientation of a body has length 2");
+  CHECK_REFUSED(w, w.set_pose(p.a, {{}, {not_a_number, 0, 0, 1}}), ErrorCode::not_finite,
+                "The orientation of a body holds NaN");
+  CHECK_REFUSED(w, w.set_velocity(p.a, {not_a_number, 0, 0}), ErrorCode::not_finite,
+                "The velocity of a body is (nan, 0, 0)");
   CHECK_REFUSED(w, w.set_velocity(p.fixed, {1, 0, 0}), ErrorCode::bad_argument,
                 "A fixed body has no velocity; make it kinematic to move it.");
   CHECK_REFUSED(w, w.set_angular_velocity(p.a, {0, 0, infinity}), ErrorCode::not_finite,
@@ -212,11 +221,13 @@ TEST_CASE("set functions refuse") {
   CHECK_REFUSED(w, w.set_position_last(p.fixed, {}), ErrorCode::bad_argument, "A fixed body has no last position");
   CHECK_REFUSED(w, w.set_orientation_last(p.a, {0, 0, 0, 0}), ErrorCode::not_unit_quaternion,
                 "The last orientation of a body has length 0");
-  CHECK_REFUSED(w, w.set_orientation_last(p.fixed, {}), ErrorCode::bad_argument, "A fixed body has no last orientation");
+  CHECK_REFUSED(w, w.set_orientation_last(p.fixed, {}), ErrorCode::bad_argument,
+                "A fixed body has no last orientation");
   CHECK_REFUSED(w, w.set_mass_properties(p.a, {0, {1, 1, 1}}), ErrorCode::bad_mass, "The mass is 0 kg");
   CHECK_REFUSED(w, w.set_mass_properties(p.a, {1, {1, 1, 5}}), ErrorCode::bad_mass, "belong to no body");
   CHECK_REFUSED(w, w.set_mass_properties(p.a, {not_a_number, {1, 1, 1}}), ErrorCode::not_finite, "not a number");
-  CHECK_REFUSED(w, w.set_mass_properties(p.fixed, {1, {1, 1, 1}}), ErrorCode::bad_argument, "Only dynamic bodies have a mass.");
+  CHECK_REFUSED(w, w.set_mass_properties(p.fixed, {1, {1, 1, 1}}), ErrorCode::bad_argument,
+                "Only dynamic bodies have a mass.");
   CHECK_REFUSED(w, w.set_mass_properties(p.kinematic, {1, {1, 1, 1}}), ErrorCode::bad_argument,
                 "Only dynamic bodies have a mass.");
   CHECK_REFUSED(w, w.set_material(p.a, {-1, 0, 0}), ErrorCode::bad_argument, "below zero");
@@ -231,10 +242,13 @@ TEST_CASE("set functions refuse") {
   CHECK_REFUSED(w, w.set_drag(p.a, 0, not_a_number), ErrorCode::not_finite, "The angular drag of a body is nan");
   CHECK_REFUSED(w, w.add_force(p.a, Wrench{{not_a_number, 0, 0}, {}}), ErrorCode::not_finite,
                 "The force on a body is (nan, 0, 0)");
-  CHECK_REFUSED(w, w.add_force(p.a, Wrench{{}, {0, infinity, 0}}), ErrorCode::not_finite, "The torque on a body is (0, inf, 0)");
-  CHECK_REFUSED(w, w.add_force(p.a, ForceCallback{}), ErrorCode::bad_argument, "The force callback is empty; pass a function.");
-  CHECK_REFUSED(w, w.view("speed of light"), ErrorCode::unknown_name,
-                "There is no property \"speed of light\"; docs/properties.md lists those of the library, World::properties all.");
+  CHECK_REFUSED(w, w.add_force(p.a, Wrench{{}, {0, infinity, 0}}), ErrorCode::not_finite,
+                "The torque on a body is (0, inf, 0)");
+  CHECK_REFUSED(w, w.add_force(p.a, ForceCallback{}), ErrorCode::bad_argument,
+                "The force callback is empty; pass a function.");
+  CHECK_REFUSED(
+      w, w.view("speed of light"), ErrorCode::unknown_name,
+      "There is no property \"speed of light\"; docs/properties.md lists those of the library, World::properties all.");
 }
 
 TEST_CASE("create_joint refuses") {
@@ -246,7 +260,8 @@ TEST_CASE("create_joint refuses") {
   };
   refused([&](JointDef& d) { d.b = d.a; }, ErrorCode::bad_joint,
           "A joint needs two different bodies; use the world's ground() to hold a body in place.");
-  refused([&](JointDef& d) { d.a = p.fixed, d.b = p.kinematic; }, ErrorCode::bad_joint, "Neither body of the joint is dynamic");
+  refused([&](JointDef& d) { d.a = p.fixed, d.b = p.kinematic; }, ErrorCode::bad_joint,
+          "Neither body of the joint is dynamic");
   refused([&](JointDef& d) { d.a = p.world.ground(), d.b = p.fixed; }, ErrorCode::bad_joint,
           "Neither body of the joint is dynamic");
   refused([&](JointDef& d) { d.frame_a.position.x = not_a_number; }, ErrorCode::not_finite,
@@ -294,15 +309,17 @@ TEST_CASE("create_ragdoll refuses, whole") {
           "The frame of a joint in body a");
   refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].pose.position.y = infinity; }, ErrorCode::not_finite,
           "The position of a body");
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].freedom = AngleFreedom::cone_and_twist(-1, 0); }, ErrorCode::bad_joint,
-          "The cone and twist");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.bones[11].freedom = AngleFreedom::cone_and_twist(-1, 0); },
+          ErrorCode::bad_joint, "The cone and twist");
   refused([](RagdollDef& d, Pose&, Vec3&) { d.density = 0; }, ErrorCode::bad_mass, "A density must be above zero");
-  refused([](RagdollDef& d, Pose&, Vec3&) { d.material.restitution = 3; }, ErrorCode::bad_argument, "The restitution is 3");
+  refused([](RagdollDef& d, Pose&, Vec3&) { d.material.restitution = 3; }, ErrorCode::bad_argument,
+          "The restitution is 3");
   refused([](RagdollDef&, Pose& pose, Vec3&) { pose.position.x = not_a_number; }, ErrorCode::not_finite,
           "The position of a body");
   refused([](RagdollDef&, Pose& pose, Vec3&) { pose.orientation.w = 0; }, ErrorCode::not_unit_quaternion,
           "The orientation of a ragdoll has length 0");
-  refused([](RagdollDef&, Pose&, Vec3& velocity) { velocity.z = not_a_number; }, ErrorCode::not_finite, "The velocity of a body");
+  refused([](RagdollDef&, Pose&, Vec3& velocity) { velocity.z = not_a_number; }, ErrorCode::not_finite,
+          "The velocity of a body");
 }
 
 TEST_CASE("mass_properties and make_compound refuse") {

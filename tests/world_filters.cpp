@@ -7,7 +7,8 @@ using namespace worldtest;
 namespace {
 
 /// Two balls that overlap, in free space; `prepare` sets them up. Answers whether a step makes a contact.
-template <class Prepare> bool touch(Prepare&& prepare, BodyKind kind_a = BodyKind::dynamic, BodyKind kind_b = BodyKind::dynamic) {
+template <class Prepare>
+bool touch(Prepare&& prepare, BodyKind kind_a = BodyKind::dynamic, BodyKind kind_b = BodyKind::dynamic) {
   World world(WorldDef{Precision::f32, {}});
   BodyDef def = ball({0, 0, 0});
   def.kind = kind_a;
@@ -199,7 +200,8 @@ TEST_CASE("a body and itself: refused by name") {
   SpringDef spring;
   spring.a = spring.b = body;
   CHECK_REFUSED(world, world.create_spring(spring), ErrorCode::bad_joint, "A spring needs two different bodies");
-  CHECK_REFUSED(world, world.create_joint(joint_between(body, body)), ErrorCode::bad_joint, "A joint needs two different bodies");
+  CHECK_REFUSED(world, world.create_joint(joint_between(body, body)), ErrorCode::bad_joint,
+                "A joint needs two different bodies");
   for (const BodyId both : {body, hand})
     CHECK_REFUSED(world, world.grab(both, both, {}), ErrorCode::bad_joint, "A hand that grabs is a kinematic body");
 }

@@ -161,7 +161,9 @@ TEST_CASE("callbacks and constants add up; a callback may go at any time") {
   const BodyId body = must(world.create_body(unit_body({})));
   (void)must(world.add_force(body, Wrench{{2, 0, 0}, {}}));
   const ForceId up = must(world.add_force(body, [](const World&, BodyId) { return Wrench{{0, 2, 0}, {}}; }));
-  const ForceId turning = must(world.add_force(body, [](const World&, BodyId) { return Wrench{{0, 0, 2}, {0, 4, 0}}; }));
+  const ForceId turning = must(world.add_force(body, [](const World&, BodyId) {
+    return Wrench{{0, 0, 2}, {0, 4, 0}};
+  }));
   Stepper stepper;
   run(world, stepper, 1);
   CHECK(stored(world, body, "force") == Vec3{2, 2, 2});
@@ -208,7 +210,8 @@ TEST_CASE("a callback that is not finite: a named error, and the world as it was
   Stepper stepper;
   run(world, stepper, 2);
   broken = true;
-  CHECK_REFUSED(world, step_status(stepper, world), ErrorCode::not_finite, "The force of a callback of body 2 is (nan, 0, 0)");
+  CHECK_REFUSED(world, step_status(stepper, world), ErrorCode::not_finite,
+                "The force of a callback of body 2 is (nan, 0, 0)");
   broken = false;
   run(world, stepper, 1);
 }

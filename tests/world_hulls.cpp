@@ -56,9 +56,11 @@ TEST_CASE("hull: points that make none are refused with a reason") {
   CHECK(refused({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {nan, 0, 1}}).code == ErrorCode::not_finite);
   CHECK(refused({{0, 0, 0}, {1, 0, 0}, {0, inf, 0}, {0, 0, 1}}).code == ErrorCode::not_finite);
   CHECK(refused({{0, 0, 0}, {1, 0, 0}, {0, 1e16, 0}, {0, 0, 1}}).code == ErrorCode::not_finite);
-  CHECK(refused({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}).message.find("one place") != std::string::npos);
+  CHECK(refused({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}}).message.find("one place") !=
+        std::string::npos);
   CHECK(refused({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}}).message.find("one line") != std::string::npos);
-  CHECK(refused({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {3, 1, 0}}).message.find("one plane") != std::string::npos);
+  CHECK(refused({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {3, 1, 0}}).message.find("one plane") !=
+        std::string::npos);
   CHECK(refused({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}}).code == ErrorCode::degenerate_shape);  // twice the same
   CHECK(refused(box_corners({1, 1, 1e-6})).message.find("one plane") != std::string::npos);
   CHECK(refused(box_corners({1e-6, 1e-6, 1e-6})).code == ErrorCode::degenerate_shape);

@@ -171,7 +171,8 @@ TEST_CASE("ids: a stale one is refused by every function") {
     CHECK_REFUSED(world, world.joint_separation(id), code, words);
   }
   words = "This id names no force of the world: it was destroyed, or never created here.";
-  for (ForceId id : {force, ForceId{}, as_in(world, ForceId{77, 1})}) CHECK_REFUSED(world, world.remove(id), code, words);
+  for (ForceId id : {force, ForceId{}, as_in(world, ForceId{77, 1})})
+    CHECK_REFUSED(world, world.remove(id), code, words);
 }
 
 TEST_CASE("destroying bodies: the others keep their data, whatever row they move to") {
@@ -232,7 +233,8 @@ TEST_CASE("destroying a body takes its joints, forces, shapes and collision exce
   const JointId ca = must(world.create_joint(def));
   def.b = b;
   const JointId cb = must(world.create_joint(def));
-  const ForceId on_b = must(world.add_force(b, Wrench{{1, 0, 0}, {}})), on_c = must(world.add_force(c, Wrench{{2, 0, 0}, {}}));
+  const ForceId on_b = must(world.add_force(b, Wrench{{1, 0, 0}, {}})),
+                on_c = must(world.add_force(c, Wrench{{2, 0, 0}, {}}));
   const ForceId callback = must(world.add_force(b, [](const World&, BodyId) { return Wrench{}; }));
   must(world.set_collide(a, b, false));
   must(world.destroy(b));
@@ -275,7 +277,8 @@ TEST_CASE("the ground stands at the origin and stays") {
   CHECK_REFUSED(world, world.destroy(world.ground()), ErrorCode::bad_argument, "The ground cannot be destroyed.");
   CHECK_REFUSED(world, world.set_pose(world.ground(), {{1, 0, 0}, {}}), ErrorCode::bad_argument,
                 "The ground stays at the origin; create a fixed body for anything else.");
-  CHECK_REFUSED(world, world.set_velocity(world.ground(), {1, 0, 0}), ErrorCode::bad_argument, "A fixed body has no velocity");
+  CHECK_REFUSED(world, world.set_velocity(world.ground(), {1, 0, 0}), ErrorCode::bad_argument,
+                "A fixed body has no velocity");
   const BodyId body = must(world.create_body(ball({1, 2, 3})));
   JointDef def;
   def.a = world.ground();

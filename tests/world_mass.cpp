@@ -33,7 +33,8 @@ MassProperties summed(const ShapeDef& shape, double density, Vec3 half) {
   for (int i = 0; i < n; i++)
     for (int j = 0; j < n; j++)
       for (int k = 0; k < n; k++) {
-        const Vec3 p{half.x * ((2 * i + 1.0) / n - 1), half.y * ((2 * j + 1.0) / n - 1), half.z * ((2 * k + 1.0) / n - 1)};
+        const Vec3 p{half.x * ((2 * i + 1.0) / n - 1), half.y * ((2 * j + 1.0) / n - 1),
+                     half.z * ((2 * k + 1.0) / n - 1)};
         if (!inside(shape, p)) continue;
         m.mass += piece;
         m.moments = m.moments + piece * Vec3{p.y * p.y + p.z * p.z, p.x * p.x + p.z * p.z, p.x * p.x + p.y * p.y};
@@ -58,31 +59,36 @@ Eigen::Matrix3d world_inertia(const BodyDef& def) {
 
 TEST_CASE("mass properties: closed forms") {
   const double rho = 800;
-  check_near(
-      must(mass_properties(ShapeDef::sphere(0.3), rho)),
-      {rho * 4 / 3 * pi * 0.027,
-       {0.4 * 0.09 * rho * 4 / 3 * pi * 0.027, 0.4 * 0.09 * rho * 4 / 3 * pi * 0.027, 0.4 * 0.09 * rho * 4 / 3 * pi * 0.027}},
-      1e-14);
+  check_near(must(mass_properties(ShapeDef::sphere(0.3), rho)),
+             {rho * 4 / 3 * pi * 0.027,
+              {0.4 * 0.09 * rho * 4 / 3 * pi * 0.027, 0.4 * 0.09 * rho * 4 / 3 * pi * 0.027,
+               0.4 * 0.09 * rho * 4 / 3 * pi * 0.027}},
+             1e-14);
   const double box = rho * 0.2 * 0.4 * 0.6;
   check_near(must(mass_properties(ShapeDef::box({0.1, 0.2, 0.3}), rho)),
              {box, {box / 12 * (0.16 + 0.36), box / 12 * (0.04 + 0.36), box / 12 * (0.04 + 0.16)}}, 1e-14);
   const double cylinder = rho * pi * 0.04 * 1.0, across = cylinder / 12 * (3 * 0.04 + 1.0);
-  check_near(must(mass_properties(ShapeDef::cylinder(0.2, 0.5), rho)), {cylinder, {across, cylinder * 0.02, across}}, 1e-14);
-  // a capsule: the cylinder, and each half ball m by its own m r^2 (2/5 - 9/64) about its centre of mass 3r/8 beyond the end
+  check_near(must(mass_properties(ShapeDef::cylinder(0.2, 0.5), rho)), {cylinder, {across, cylinder * 0.02, across}},
+             1e-14);
+  // a capsule: the cylinder, and each half ball m by its own m r^2 (2/5 - 9/64) about its centre of mass 3r/8 beyond
+  // the end
   const double half_ball = rho * 2 / 3 * pi * 0.008, r = 0.2, reach = 0.5 + 0.375 * r;
   const double capsule_across = across + 2 * half_ball * (r * r * (0.4 - 9.0 / 64) + reach * reach);
-  check_near(must(mass_properties(ShapeDef::capsule(r, 0.5), rho)),
-             {cylinder + 2 * half_ball, {capsule_across, cylinder * 0.02 + 2 * half_ball * 0.4 * r * r, capsule_across}}, 1e-14);
+  check_near(
+      must(mass_properties(ShapeDef::capsule(r, 0.5), rho)),
+      {cylinder + 2 * half_ball, {capsule_across, cylinder * 0.02 + 2 * half_ball * 0.4 * r * r, capsule_across}},
+      1e-14);
 }
 
 TEST_CASE("mass properties: sums over small cubes") {
-  check_near(must(mass_properties(ShapeDef::sphere(0.3), 1000)), summed(ShapeDef::sphere(0.3), 1000, {0.3, 0.3, 0.3}), 2e-3);
+  check_near(must(mass_properties(ShapeDef::sphere(0.3), 1000)), summed(ShapeDef::sphere(0.3), 1000, {0.3, 0.3, 0.3}),
+             2e-3);
   check_near(must(mass_properties(ShapeDef::box({0.1, 0.2, 0.3}), 1000)),
              summed(ShapeDef::box({0.1, 0.2, 0.3}), 1000, {0.1, 0.2, 0.3}), 2e-3);
   check_near(must(mass_properties(ShapeDef::cylinder(0.2, 0.5), 1000)),
              summed(ShapeDef::cylinder(0.2, 0.5), 1000, {0.2, 0.5, 0.2}), 2e-3);
-  check_near(must(mass_properties(ShapeDef::capsule(0.2, 0.5), 1000)), summed(ShapeDef::capsule(0.2, 0.5), 1000, {0.2, 0.7, 0.2}),
-             2e-3);
+  check_near(must(mass_properties(ShapeDef::capsule(0.2, 0.5), 1000)),
+             summed(ShapeDef::capsule(0.2, 0.5), 1000, {0.2, 0.7, 0.2}), 2e-3);
 }
 
 TEST_CASE("mass properties of a body: from density, from mass, as given, none") {

@@ -1,6 +1,6 @@
 // Pins that whatever numbers a world accepts, all that it tells is finite after the call and after steps, in single and
-// double precision, and that a refused call leaves it as it was. The impulses that contacts and joints remember are not asked for:
-// in single precision those of light bodies at 1e16 m/s may be NaN (docs/limits.md).
+// double precision, and that a refused call leaves it as it was. The impulses that contacts and joints remember are not
+// asked for: in single precision those of light bodies at 1e16 m/s may be NaN (docs/limits.md).
 #include <array>
 #include <cfloat>
 #include <cmath>
@@ -200,7 +200,8 @@ class Caller {
     accepted += bool(answer);
     refused += !answer;
     if (answer) return;
-    CHECK_MESSAGE((fingerprint(world_) == before), "a refused " << what << " changed the world: " << answer.error().message);
+    CHECK_MESSAGE((fingerprint(world_) == before),
+                  "a refused " << what << " changed the world: " << answer.error().message);
     CHECK(answer.error().message.back() == '.');
   }
 
@@ -235,7 +236,8 @@ class Caller {
   }
   template <class T> void own(const char* name, const T& value) {
     if (!world_.property<T>(name)) ask("add_property", [&] { return world_.add_property<T>(name, value); });
-    if (const auto property = world_.property<T>(name)) ask("set", [&] { return world_.set(*property, a_body(), value); });
+    if (const auto property = world_.property<T>(name))
+      ask("set", [&] { return world_.set(*property, a_body(), value); });
   }
   void set_of_body(int which, BodyId b) {
     switch (which) {
@@ -265,8 +267,9 @@ class Caller {
           return world_.create_spring(s);
         });
       case 4:
-        return ask("set_spring",
-                   [&, x = size(), y = size(), z = size()] { return world_.set_spring(one(world_.springs()), x, y, z); });
+        return ask("set_spring", [&, x = size(), y = size(), z = size()] {
+          return world_.set_spring(one(world_.springs()), x, y, z);
+        });
       case 5: return ask("grab", [&, v = vector()] { return world_.grab(a_body(), a_body(), v); });
       default: return ask("destroy", [&] { return world_.destroy(j); });
     }

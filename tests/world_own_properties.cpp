@@ -1,6 +1,7 @@
-// Pins properties and tables of the host's own: every type keeps its values and its default for present and coming rows, in
-// both precisions; values follow their objects when rows move; views, snapshots and (of role state) the hash hold them; adding one to a world
-// that runs changes no bit of its motion; names, types, ids and values that do not fit are refused and change nothing.
+// Pins properties and tables of the host's own: every type keeps its values and its default for present and coming
+// rows, in both precisions; values follow their objects when rows move; views, snapshots and (of role state) the hash
+// hold them; adding one to a world that runs changes no bit of its motion; names, types, ids and values that do not fit
+// are refused and change nothing.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -103,14 +104,18 @@ TEST_CASE("of joints and springs, and of a table of the host's own") {
   CHECK(must(world.get(heat, RowOf(1))) == 20.0f);
   CHECK(world.hash() == hash);
 
-  CHECK_REFUSED(world, world.get(heat, RowOf(0)), ErrorCode::bad_argument, "\"puffs\" has rows 1 to 4; there is no row 0.");
+  CHECK_REFUSED(world, world.get(heat, RowOf(0)), ErrorCode::bad_argument,
+                "\"puffs\" has rows 1 to 4; there is no row 0.");
   CHECK_REFUSED(world, world.get(heat, RowOf(5)), ErrorCode::bad_argument, "there is no row 5");
   CHECK_REFUSED(world, world.get(heat, ids[0]), ErrorCode::bad_argument, "ask with a row of a table of the host's own");
-  CHECK_REFUSED(world, world.get(wear, ids[0]), ErrorCode::bad_argument, "is of the table \"joint\"; ask with a joint.");
+  CHECK_REFUSED(world, world.get(wear, ids[0]), ErrorCode::bad_argument,
+                "is of the table \"joint\"; ask with a joint.");
   CHECK_REFUSED(world, world.add_table("puffs"), ErrorCode::name_taken, "There is a table \"puffs\" already");
   CHECK_REFUSED(world, world.add_table("body"), ErrorCode::name_taken, "There is a table \"body\" already");
-  CHECK_REFUSED(world, world.resize(body_table, 3), ErrorCode::bad_argument, "Only a table of the host's own can be resized");
-  CHECK_REFUSED(world, world.remove(joint_table), ErrorCode::bad_argument, "Only a table of the host's own can be removed");
+  CHECK_REFUSED(world, world.resize(body_table, 3), ErrorCode::bad_argument,
+                "Only a table of the host's own can be resized");
+  CHECK_REFUSED(world, world.remove(joint_table), ErrorCode::bad_argument,
+                "Only a table of the host's own can be removed");
   must(world.remove(puffs));
   CHECK_REFUSED(world, world.rows(puffs), ErrorCode::stale_id, "This id names no table");
   CHECK_REFUSED(world, world.get(heat, RowOf(1)), ErrorCode::stale_id, "This id names no property");
@@ -205,13 +210,15 @@ TEST_CASE("what is refused changes nothing") {
     CHECK_REFUSED(world, world.add_property<Real>(word), ErrorCode::bad_argument, "a word of C++ or GLSL");
   CHECK_REFUSED(world, world.add_property<Real>("heat", std::nan("")), ErrorCode::not_finite,
                 "The value of the property \"heat\" is nan");
-  CHECK_REFUSED(world, world.add_property<Real>("heat", 0, "K", as_in(world, TableId{7, 1})), ErrorCode::stale_id, "This id names no table");
+  CHECK_REFUSED(world, world.add_property<Real>("heat", 0, "K", as_in(world, TableId{7, 1})), ErrorCode::stale_id,
+                "This id names no table");
   CHECK_REFUSED(world, world.set(fuel, ids[0], Real(HUGE_VAL)), ErrorCode::not_finite,
                 "The value of the property \"fuel\" is inf");
   CHECK_REFUSED(world, world.set(fuel, ids[0], Real(1e39)), ErrorCode::not_finite,
                 "is 1e+39; it must be finite, and no larger than 3.4");
   must(world.set(fuel, ids[0], Real(1e38)));  // kernels may make it, so the host may too
-  CHECK_REFUSED(world, world.set(fuel, as_in(world, BodyId{9, 1}), Real(1)), ErrorCode::stale_id, "This id names no body");
+  CHECK_REFUSED(world, world.set(fuel, as_in(world, BodyId{9, 1}), Real(1)), ErrorCode::stale_id,
+                "This id names no body");
   CHECK_REFUSED(world, world.property<float>("fuel"), ErrorCode::wrong_type,
                 "The property \"fuel\" holds values of type real, not float32.");
   CHECK_REFUSED(world, world.property<Real>("heat"), ErrorCode::unknown_name, "There is no property \"heat\"");

@@ -24,7 +24,9 @@ constexpr std::string_view table_docs[] = {
 };
 
 /// "pose" and "pose, at 4" say where a kernel finds it.
-std::string place(const PropertySchema& p) { return std::string(schema(p.buffer).name) + " " + std::to_string(p.offset); }
+std::string place(const PropertySchema& p) {
+  return std::string(schema(p.buffer).name) + " " + std::to_string(p.offset);
+}
 
 std::string capital(std::string_view text) {
   std::string s(text);
@@ -75,12 +77,13 @@ std::string page() {
     out << "| property | type | role | unit | at first | place | meaning |\n|---|---|---|---|---|---|---|\n";
     for (const PropertySchema& p : properties())
       if (p.table == Table(t))
-        out << "| `" << p.name << "` | " << name(p.type) << " | " << name(p.role) << " | " << p.unit << " | " << p.initial
-            << " | " << place(p) << " | " << p.doc << " |\n";
+        out << "| `" << p.name << "` | " << name(p.type) << " | " << name(p.role) << " | " << p.unit << " | "
+            << p.initial << " | " << place(p) << " | " << p.doc << " |\n";
     out << "\n| buffer | reals a row | holds |\n|---|---|---|\n";
     for (std::size_t b = 0; b < table_buffer_count; b++)
       if (schema(Buffer(b)).table == Table(t))
-        out << "| `" << schema(Buffer(b)).name << "` | " << schema(Buffer(b)).reals << " | " << schema(Buffer(b)).doc << " |\n";
+        out << "| `" << schema(Buffer(b)).name << "` | " << schema(Buffer(b)).reals << " | " << schema(Buffer(b)).doc
+            << " |\n";
   }
   out << "\n## Kernels\nEvery kernel with its stage, what it runs over, and the buffers that it reads and writes.\n\n"
          "| kernel | stage | over | reads | writes |\n|---|---|---|---|---|\n";
@@ -89,8 +92,8 @@ std::string page() {
     std::string lists[2];
     for (const Access& a : s.accesses)
       lists[a.write] += (lists[a.write].empty() ? "" : ", ") + std::string(schema(a.buffer).name);
-    out << "| `" << s.name << "` | " << name(s.stage) << " | " << text_of(s.domain) << " | " << lists[0] << " | " << lists[1]
-        << " |\n";
+    out << "| `" << s.name << "` | " << name(s.stage) << " | " << text_of(s.domain) << " | " << lists[0] << " | "
+        << lists[1] << " |\n";
   }
   return out.str();
 }

@@ -71,7 +71,8 @@ TEST_CASE("kernels bind at most eight buffers, each once, of their own domain or
       const bool of_node = table == Table::node && of_tree;
       reaches |= table == Table::body || table == Table::node;
       CHECK((table == own || table == Table::body || of_node || (table == Table::touch && own == Table::contact)));
-      if (schema(a.buffer).reals == 0 && a.buffer != Buffer::island_labels) CHECK_FALSE(a.write);  // the host makes the lists
+      // the host makes the lists
+      if (schema(a.buffer).reals == 0 && a.buffer != Buffer::island_labels) CHECK_FALSE(a.write);
     }
     CHECK(writes);
     if (s.domain == Domain::body) CHECK(bound.contains(Buffer::bodies));
@@ -130,7 +131,8 @@ TEST_CASE("row 0 of every table does nothing, and stays so, on every mix of plac
     SceneWorld s = scene_world(name, 1);
     const Tables& tables = s.world.state().tables;
     const auto row_0 = [&](Buffer buffer) {
-      return std::vector<std::byte>(tables.bytes(buffer).data(), tables.bytes(buffer).data() + tables.row_bytes(buffer));
+      return std::vector<std::byte>(tables.bytes(buffer).data(),
+                                    tables.bytes(buffer).data() + tables.row_bytes(buffer));
     };
     std::vector<std::vector<std::byte>> before;
     for (std::size_t b = 0; b < table_buffer_count; b++) before.push_back(row_0(Buffer(b)));
@@ -147,12 +149,14 @@ TEST_CASE("row 0 of every table does nothing, and stays so, on every mix of plac
           for (std::uint32_t k = 0; k < schema(Buffer(b)).reals; k++) same &= tables.get(Buffer(b), 0, k) == 0;
         }
         std::string values;
-        for (std::uint32_t k = 0; k < schema(Buffer(b)).reals; k++) values += " " + std::to_string(tables.get(Buffer(b), 0, k));
+        for (std::uint32_t k = 0; k < schema(Buffer(b)).reals; k++)
+          values += " " + std::to_string(tables.get(Buffer(b), 0, k));
         INFO(std::string(name) << ", " << std::string(schema(Buffer(b)).name) << ":" << values);
         CHECK(same);
       }
       if (s.world.contact_count() > 0)
-        for (std::uint32_t k : {3u, 20u, 21u, 22u, 23u, 24u, 25u, 26u, 27u}) CHECK(tables.get(Buffer::contact, 0, k) == 0);
+        for (std::uint32_t k : {3u, 20u, 21u, 22u, 23u, 24u, 25u, 26u, 27u})
+          CHECK(tables.get(Buffer::contact, 0, k) == 0);
     }
   }
 }

@@ -138,10 +138,12 @@ TEST_CASE("cut, changed and foreign snapshots are refused, and change nothing") 
     CHECK_REFUSED(w, w.restore(changed), ErrorCode::bad_snapshot, "");
   }
   const char* foreign =
-      "The snapshot is of a world with other objects, shapes, properties or another precision; restore it into one with the same "
+      "The snapshot is of a world with other objects, shapes, properties or another precision; restore it into one "
+      "with the same "
       "bodies, joints, properties and tables.";
   CHECK_REFUSED(w, w.restore(scene_world("stack", 4).world.snapshot()), ErrorCode::bad_snapshot, foreign);
-  CHECK_REFUSED(w, w.restore(scene_world("stack", 3, Precision::f64).world.snapshot()), ErrorCode::bad_snapshot, foreign);
+  CHECK_REFUSED(w, w.restore(scene_world("stack", 3, Precision::f64).world.snapshot()), ErrorCode::bad_snapshot,
+                foreign);
   CHECK_REFUSED(w, w.restore(scene_world("chain", 3).world.snapshot()), ErrorCode::bad_snapshot, foreign);
   CHECK_REFUSED(w, w.restore(World().snapshot()), ErrorCode::bad_snapshot, foreign);
   must(w.restore(snapshot));
@@ -183,7 +185,8 @@ template <class Scalar> int count_taken(Precision precision, Scalar number) {
 }
 }  // namespace
 
-TEST_CASE("whatever number stands in the state of a body, it is refused, or the world goes on and its snapshots are whole") {
+TEST_CASE(
+    "whatever number stands in the state of a body, it is refused, or the world goes on and its snapshots are whole") {
   for (const float number : {2.0f, 1.0f, -1.0f, 3e38f, 1e-40f}) CHECK(count_taken(Precision::f32, number) > 10);
   for (const double number : {2.0, 1.0, -1.0, 1.7e308, 1e-310}) CHECK(count_taken(Precision::f64, number) > 10);
 }

@@ -134,7 +134,8 @@ TEST_CASE("set_pose keeps the velocity and the angular velocity, and turns the m
     const BodyId body = must(world.create_body(def));
     Stepper stepper;
     run(world, stepper, 2);
-    const Vec3 v = must(world.velocity(body)), w = must(world.angular_velocity(body)), l = must(world.angular_momentum(body));
+    const Vec3 v = must(world.velocity(body)), w = must(world.angular_velocity(body)),
+               l = must(world.angular_momentum(body));
     must(world.set_pose(body, {{-4, 0, 9}, must(world.pose(body)).orientation}));
     check_close(must(world.velocity(body)), v, tolerance);
     check_close(must(world.angular_velocity(body)), w, tolerance);
@@ -176,14 +177,16 @@ TEST_CASE("last position and orientation are one sub-step ago, and may be writte
     run(world, stepper, 1);
     check_close(must(world.position_last(body)), before.position, tolerance);
     const Quat d = conjugate(must(world.orientation_last(body))) * before.orientation;
-    CHECK(std::fabs(2 * std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z)) < 1e-3);  // the body tumbles: equal to second order
+    // the body tumbles: equal to second order
+    CHECK(std::fabs(2 * std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z)) < 1e-3);
 
     must(world.set_position_last(body, {0.5, 0.25, -0.125}));
     check_close(must(world.position_last(body)), {0.5, 0.25, -0.125}, tolerance);
     const Quat last = axis_angle({0, 1, 0}, 0.1) * must(world.pose(body)).orientation;
     must(world.set_orientation_last(body, last));
     const Quat back = must(world.orientation_last(body)), difference = conjugate(back) * last;
-    CHECK(std::sqrt(difference.x * difference.x + difference.y * difference.y + difference.z * difference.z) < 10 * tolerance);
+    CHECK(std::sqrt(difference.x * difference.x + difference.y * difference.y + difference.z * difference.z) <
+          10 * tolerance);
     check_close(must(world.position_last(body)), {0.5, 0.25, -0.125}, tolerance);
     // the same rotation by the other quaternion means the same
     must(world.set_orientation_last(body, {-last.x, -last.y, -last.z, -last.w}));

@@ -1,6 +1,6 @@
-// Pins what a GPU may do and llvmpipe does not: its memory holds whatever was in it (a NaN times the zero that should have hidden it made
-// one run in thousands differ), rows of the solver hold it at the start of every step, and all that no barrier parts runs in any order.
-// On a device that does its worst hashes are those of the CPU.
+// Pins what a GPU may do and llvmpipe does not: its memory holds whatever was in it (a NaN times the zero that should
+// have hidden it made one run in thousands differ), rows of the solver hold it at the start of every step, and all that
+// no barrier parts runs in any order. On a device that does its worst hashes are those of the CPU.
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -29,7 +29,8 @@ void spoil(AlignedBytes& bytes) {
 /// The CPU with memory of its own and a queue: blocks of slots run in an order drawn by lot, up to the next barrier.
 class WorstDevice final : public Backend {
  public:
-  WorstDevice(std::unique_ptr<Backend> inner, std::size_t real_bytes) : inner_(std::move(inner)), real_bytes_(real_bytes) {}
+  WorstDevice(std::unique_ptr<Backend> inner, std::size_t real_bytes)
+      : inner_(std::move(inner)), real_bytes_(real_bytes) {}
 
   std::string device() const override { return "the worst"; }
   std::uint32_t width() const override { return inner_->width(); }
@@ -39,7 +40,9 @@ class WorstDevice final : public Backend {
     if (memory.device.size() == bytes && bytes > 0) return {};
     return resize(buffer, bytes);
   }
-  Status reserve(Buffer buffer, std::size_t slots) override { return resize(buffer, slots * schema(buffer).reals * real_bytes_); }
+  Status reserve(Buffer buffer, std::size_t slots) override {
+    return resize(buffer, slots * schema(buffer).reals * real_bytes_);
+  }
   Status upload(Buffer buffer) override {
     if (Status ok = flush(); !ok) return ok;
     Memory& memory = memory_.at(buffer);
@@ -134,7 +137,8 @@ struct WorstDeviceScope {
       std::exchange(gl_backend_maker(), [](Precision precision, int, bool) -> Result<std::unique_ptr<Backend>> {
         auto cpu = make_cpu_backend(precision, lanes_there);
         if (!cpu) return cpu.error();
-        return std::unique_ptr<Backend>(std::make_unique<WorstDevice>(std::move(*cpu), precision == Precision::f64 ? 8 : 4));
+        return std::unique_ptr<Backend>(
+            std::make_unique<WorstDevice>(std::move(*cpu), precision == Precision::f64 ? 8 : 4));
       });
   ~WorstDeviceScope() { gl_backend_maker() = before; }
 };
@@ -205,7 +209,8 @@ MakeWorld maker(const char* name, int count, Precision precision) {
 }  // namespace
 
 TEST_CASE("worst device: what was in memory does not matter, nor the order of what no barrier parts") {
-  for (const std::uint32_t bits : {0xffffffffu, 0x7f800000u, 0x7f7fffffu}) {  // NaN, and of a float infinity and its largest
+  // NaN, and of a float infinity and its largest
+  for (const std::uint32_t bits : {0xffffffffu, 0x7f800000u, 0x7f7fffffu}) {
     garbage = bits;
     for (const Precision precision : {Precision::f32, Precision::f64})
       for (const std::uint32_t lanes : {0u, 1u}) {

@@ -104,7 +104,8 @@ void Balance::stepped(const Observation& seen, double work, double dt) {
   if (std::isfinite(noise)) noise_ = std::max(noise_, noise);
   const double balance = energy(seen) - offset_;
   const double scale = motion_ + fall_ + put_in_ + lift_ + noise_;
-  if (scale > 0) rise_ = std::max(rise_, (balance - lowest_ - allowed_ - 2 * unresolved_spring_energy(seen, rounding_)) / scale);
+  if (scale > 0)
+    rise_ = std::max(rise_, (balance - lowest_ - allowed_ - 2 * unresolved_spring_energy(seen, rounding_)) / scale);
   if (!std::isfinite(balance)) rise_ = balance;
   lowest_ = std::min(lowest_, balance);
   see_scale(seen);

@@ -26,8 +26,7 @@ Result<const Family*> find_family(std::string_view name) {
     if (f.name == name) return &f;
     names += (names.empty() ? "" : ", ") + std::string(f.name);
   }
-  return Error{ErrorCode::unknown_name,
-               "There is no family '" + std::string(name) + "'; choose of " + names + "."};
+  return Error{ErrorCode::unknown_name, "There is no family '" + std::string(name) + "'; choose of " + names + "."};
 }
 
 Result<Scene> draw(std::string_view family, std::uint64_t seed) {

@@ -99,11 +99,12 @@ double unresolved_speed(const SeenBody& b, double rounding, double dt) {
 double unresolved_spring_energy(const Observation& seen, double rounding) {
   double sum = 0;
   for (const SeenJoint& j : seen.joints)
-    if (j.there && j.def.spring.stiffness > 0) sum += energy_of_step(j.def.spring.stiffness, away(seen, j), 4 * rounding);
+    if (j.there && j.def.spring.stiffness > 0)
+      sum += energy_of_step(j.def.spring.stiffness, away(seen, j), 4 * rounding);
   for (const SeenSpring& s : seen.springs) {
     if (!s.there) continue;
-    const double reach = length(seen.body(s.a).pose.position) + length(seen.body(s.b).pose.position) + length(s.def.anchor_a) +
-                         length(s.def.anchor_b);
+    const double reach = length(seen.body(s.a).pose.position) + length(seen.body(s.b).pose.position) +
+                         length(s.def.anchor_a) + length(s.def.anchor_b);
     sum += energy_of_step(s.def.stiffness, away(seen, s), rounding * reach);
   }
   return sum;

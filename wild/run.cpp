@@ -149,7 +149,9 @@ class FamilyRun {
   static Result<Verdict> judged_by(const std::string& peer, const Scene& scene) {
     try {
       return judge_peer(scene, peer);
-    } catch (const std::exception& error) { return Error{ErrorCode::unavailable, error.what()}; }
+    } catch (const std::exception& error) {
+      return Error{ErrorCode::unavailable, error.what()};
+    }
   }
 
   const RunOptions& options_;

@@ -68,7 +68,8 @@ class Islands : public Watcher {
   std::set<int> touched_;
 };
 
-/// How far the joints are open that calls make: without the steps before them bodies stand elsewhere, and to close a gap is work.
+/// How far the joints are open that calls make: without the steps before them bodies stand elsewhere, and to close a
+/// gap is work.
 class MadeOpen : public Watcher {
  public:
   void after_call(const Player& player, const Call& call, const Status&) override {

@@ -234,9 +234,11 @@ bool plain_material(Call& call) {
   if (!make) return false;
   const Material usual;
   Material& m = make->def.material;
-  const bool friction = any(change(m.static_friction, usual.static_friction), change(m.kinetic_friction, usual.kinetic_friction));
+  const bool friction =
+      any(change(m.static_friction, usual.static_friction), change(m.kinetic_friction, usual.kinetic_friction));
   const bool levers = any(change(m.rolling_friction, 0.0), change(m.torsional_friction, 0.0));
-  const bool rules = any(change(m.friction_rule, usual.friction_rule), change(m.restitution_rule, usual.restitution_rule));
+  const bool rules =
+      any(change(m.friction_rule, usual.friction_rule), change(m.restitution_rule, usual.restitution_rule));
   return any(friction, levers, rules, change(m.restitution, usual.restitution));
 }
 bool plain_body(Call& call) {

@@ -68,9 +68,9 @@ struct Verdict {
 /// Plays the scene on the library and judges it.
 Verdict judge(const Scene& scene, const PlayOptions& options);
 
-/// Plays it again in other ways that must give the same bits: in 1, 4 and 8 lanes, with two threads, with two steppers in
-/// turns, with new ones every few steps, with unrelated islands, with snapshots restored, and, with `gl`, as OpenGL compute
-/// and with stages there and on the CPU by turns; how many differ goes into Measure::bits of `verdict`.
+/// Plays it again in other ways that must give the same bits: in 1, 4 and 8 lanes, with two threads, with two steppers
+/// in turns, with new ones every few steps, with unrelated islands, with snapshots restored, and, with `gl`, as OpenGL
+/// compute and with stages there and on the CPU by turns; how many differ goes into Measure::bits of `verdict`.
 void judge_bits(const Scene& scene, const PlayOptions& options, bool gl, Verdict& verdict);
 
 /// The same scene and the same judge in another engine (peers::variants). Errors: unknown_name; unavailable where the

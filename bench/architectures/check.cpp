@@ -66,7 +66,8 @@ bool check_one(const NamedDesign& named, SceneKind kind, History history, Refere
   return good & report(same(after, state_of(*design, handles)), what + ": a gather and a scatter change the state");
 }
 
-// What the library's own world takes for the property and the force, counted beside the designs' (tools/architectures_report.py).
+// What the library's own world takes for the property and the force, counted beside the designs'
+// (tools/architectures_report.py).
 Status add_wind(World& world, Stepper& stepper) {
   const auto area = world.add_property<Real>("area");  // [property]
   if (!area) return area.error();
@@ -86,7 +87,9 @@ bool check_stepper(SceneKind kind) {
   settings.substeps = 1;
   Stepper stepper(settings);
   Tables& tables = world.state().tables;
-  const auto row_of = [&](Buffer buffer, std::size_t row) { return tables.data<float>(buffer) + row * length_of(buffer); };
+  const auto row_of = [&](Buffer buffer, std::size_t row) {
+    return tables.data<float>(buffer) + row * length_of(buffer);
+  };
   for (std::size_t i = 0; i < handles.size(); i++) {
     BodyDef def;
     def.mass = 1;
@@ -115,16 +118,18 @@ bool check_stepper(SceneKind kind) {
 
 bool check() {
   bool good = true;
-  constexpr SceneKind kinds[] = {SceneKind::flight, SceneKind::chains, SceneKind::pairs, SceneKind::wind, SceneKind::ropes};
+  constexpr SceneKind kinds[] = {SceneKind::flight, SceneKind::chains, SceneKind::pairs, SceneKind::wind,
+                                 SceneKind::ropes};
   for (const SceneKind kind : kinds) {
     Reference reference;
     for (const NamedDesign& named : designs())
-      for (const History history : {History::fresh, History::churned}) good &= check_one(named, kind, history, reference);
+      for (const History history : {History::fresh, History::churned})
+        good &= check_one(named, kind, history, reference);
   }
   good &= check_stepper(SceneKind::flight) & check_stepper(SceneKind::wind);
   if (good)
-    std::printf("%zu designs, %zu scenes, 2 histories: the same bits after %d steps\n", designs().size(), std::size(kinds),
-                steps);
+    std::printf("%zu designs, %zu scenes, 2 histories: the same bits after %d steps\n", designs().size(),
+                std::size(kinds), steps);
   return good;
 }
 

@@ -3,8 +3,8 @@
 
 namespace pcphys::architectures {
 
-/// Runs every scene small in every design and history and prints what differs. True: nothing does, and free flight is that of the
-/// library's own stepper.
+/// Runs every scene small in every design and history and prints what differs. True: nothing does, and free flight is
+/// that of the library's own stepper.
 bool check();
 
 }  // namespace pcphys::architectures

@@ -24,7 +24,8 @@ void write(const BodyInit& b, const BodyRows& rows) {
   put(rows.pose, b.position, 0);
   put(rows.pose + 4, {0, 0, 0, 1});
   put(rows.mass, b.moments, b.mass);
-  put(rows.mass + 4, {inverse(b.moments.x), inverse(b.moments.y), inverse(b.moments.z), double(middle_axis(b.moments))});
+  put(rows.mass + 4,
+      {inverse(b.moments.x), inverse(b.moments.y), inverse(b.moments.z), double(middle_axis(b.moments))});
   put(rows.force, b.force, b.drag);
   put(rows.force + 4, {}, b.drag);
   put(rows.material, {0.5, 0.5, 0, 1, 0, 0, 0, 0});

@@ -1,6 +1,6 @@
-// (b) Bodies, joints and contacts as entities of a component store (entity_store.h); a kernel is a system over a view. Included by
-// entity_views.cpp, which finds each component by its entity, and by entity_groups.cpp (PCPHYS_GROUPS), where the components of bodies
-// stand in one order, so that a place serves for all of them.
+// (b) Bodies, joints and contacts as entities of a component store (entity_store.h); a kernel is a system over a view.
+// Included by entity_views.cpp, which finds each component by its entity, and by entity_groups.cpp (PCPHYS_GROUPS),
+// where the components of bodies stand in one order, so that a place serves for all of them.
 #include "cpu/prelude.h"
 #include "design.h"
 #include "entity_store.h"
@@ -26,12 +26,13 @@ struct Rope {
 };
 // [end]
 
-using Store = Registry<C<Buffer::motion>, C<Buffer::pose>, C<Buffer::velocity_parts>, C<Buffer::mass>, C<Buffer::force>,
-                       C<Buffer::drag_terms>, C<Buffer::inertia>, C<Buffer::delta>, C<Buffer::material>,
-                       Area,  // [property]
-                       Rope,  // [constraint]
-                       Ends<Buffer::joint_ends>, C<Buffer::joint_solved>, C<Buffer::joint_impulse>, C<Buffer::joint_rows>,
-                       Ends<Buffer::contact_ends>, C<Buffer::contact>, C<Buffer::contact_rows>, C<Buffer::contact_impulses>>;
+using Store =
+    Registry<C<Buffer::motion>, C<Buffer::pose>, C<Buffer::velocity_parts>, C<Buffer::mass>, C<Buffer::force>,
+             C<Buffer::drag_terms>, C<Buffer::inertia>, C<Buffer::delta>, C<Buffer::material>,
+             Area,  // [property]
+             Rope,  // [constraint]
+             Ends<Buffer::joint_ends>, C<Buffer::joint_solved>, C<Buffer::joint_impulse>, C<Buffer::joint_rows>,
+             Ends<Buffer::contact_ends>, C<Buffer::contact>, C<Buffer::contact_rows>, C<Buffer::contact_impulses>>;
 
 // what the kernels' text calls things: an entity, or a place in the pools of its group
 struct Index {
@@ -103,12 +104,14 @@ class Entities final : public Design {
   case Kernel::name: return bodies([&](std::uint32_t i) { name::pc_kernel(io, {i}); });
       PCPHYS_BODY_KERNELS(K)
 #undef K
-#define K(name) \
-  case Kernel::name: return constraints<Buffer::joint_solved, Buffer::joint_ends>([&](std::uint32_t i) { name::pc_kernel(io, {i}); });
+#define K(name)      \
+  case Kernel::name: \
+    return constraints<Buffer::joint_solved, Buffer::joint_ends>([&](std::uint32_t i) { name::pc_kernel(io, {i}); });
       PCPHYS_JOINT_KERNELS(K)
 #undef K
-#define K(name) \
-  case Kernel::name: return constraints<Buffer::contact, Buffer::contact_ends>([&](std::uint32_t i) { name::pc_kernel(io, {i}); });
+#define K(name)      \
+  case Kernel::name: \
+    return constraints<Buffer::contact, Buffer::contact_ends>([&](std::uint32_t i) { name::pc_kernel(io, {i}); });
       PCPHYS_CONTACT_KERNELS(K)
 #undef K
       default: return;
@@ -124,7 +127,8 @@ class Entities final : public Design {
   void run_ropes(float inverse_h) override {
     store_.view<Rope>([&](Entity e) {
       const auto& [a, b, length] = store_.pool<Rope>().of(e);
-      hold_rope(find<Buffer::pose>(a), find<Buffer::pose>(b), length, find<Buffer::motion>(a), find<Buffer::motion>(b), inverse_h);
+      hold_rope(find<Buffer::pose>(a), find<Buffer::pose>(b), length, find<Buffer::motion>(a), find<Buffer::motion>(b),
+                inverse_h);
     });
   }
   // [gather]
@@ -161,7 +165,9 @@ class Entities final : public Design {
       if (entity != ground_) visit(entity);
     });
   }
-  template <Buffer first, Buffer ends, class Visit> void constraints(Visit visit) const { store_.view<C<first>, Ends<ends>>(visit); }
+  template <Buffer first, Buffer ends, class Visit> void constraints(Visit visit) const {
+    store_.view<C<first>, Ends<ends>>(visit);
+  }
 #endif
   template <Buffer b> Scalar* find(Entity entity) const { return store_.pool<C<b>>().of(entity).reals; }
   template <Buffer ends> Entity constrain(Handle a, Handle b) {

@@ -5,11 +5,12 @@
 namespace pcphys::architectures {
 namespace {
 
-PCPHYS_KERNEL(wind_force, (PC_IN(Vec3) displacement_rate, PC_IN(Real) area, PC_INOUT(Vec3) force, PC_PARAM(Vec3) wind), {
-  Vec3 past = pc_sub(wind, displacement_rate);
-  Real push = area * pc_length(past);
-  force = pc_madd(force, past, push);
-})
+PCPHYS_KERNEL(wind_force, (PC_IN(Vec3) displacement_rate, PC_IN(Real) area, PC_INOUT(Vec3) force, PC_PARAM(Vec3) wind),
+              {
+                Vec3 past = pc_sub(wind, displacement_rate);
+                Real push = area * pc_length(past);
+                force = pc_madd(force, past, push);
+              })
 
 // What stops the two from being further apart than the rope's length by the end of the sub-step; a rope only pulls.
 PCPHYS_KERNEL(rope,
@@ -38,7 +39,8 @@ void wind_drag(const float velocity[3], float area, float force[3], const float 
 }
 KernelText wind_kernel() { return wind_force::text(); }
 
-void hold_rope(const float* pose_a, const float* pose_b, float length, float* motion_a, float* motion_b, float inverse_h) {
+void hold_rope(const float* pose_a, const float* pose_b, float length, float* motion_a, float* motion_b,
+               float inverse_h) {
   kernel_f32::Vec3 u_a = load(motion_a), u_b = load(motion_b);
   rope::f32::run(load(pose_a), load(pose_b), length, motion_a[3], motion_b[3], u_a, u_b, inverse_h);
   store(u_a, motion_a), store(u_b, motion_b);

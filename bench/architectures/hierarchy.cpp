@@ -1,5 +1,5 @@
-// (a) A class hierarchy with virtual updates. Everything that a body, joint or contact has stands in the object, which new has put
-// somewhere; lists of pointers say what there is.
+// (a) A class hierarchy with virtual updates. Everything that a body, joint or contact has stands in the object, which
+// new has put somewhere; lists of pointers say what there is.
 #define PC_SCALAR float
 #define PC_LANES 1
 #define PC_NAMESPACE hierarchy
@@ -24,8 +24,8 @@ struct Slot {
 struct Io;
 
 struct Body : Object,
-              Fields<Buffer::motion, Buffer::pose, Buffer::velocity_parts, Buffer::mass, Buffer::force, Buffer::drag_terms,
-                     Buffer::inertia, Buffer::delta, Buffer::material> {
+              Fields<Buffer::motion, Buffer::pose, Buffer::velocity_parts, Buffer::mass, Buffer::force,
+                     Buffer::drag_terms, Buffer::inertia, Buffer::delta, Buffer::material> {
   std::size_t place = 0;  // in the list of bodies
   float area = 0;         // [property]
 #define K(kernel) virtual void kernel(const Io& io) = 0;
@@ -60,7 +60,8 @@ struct Rope final : Constraint {
 // [end]
 
 template <Buffer b, class Of> constexpr bool has = std::is_base_of_v<Field<b>, Of>;
-template <Buffer b> using Owner = std::conditional_t<has<b, Body>, Body, std::conditional_t<has<b, Joint>, Joint, Contact>>;
+template <Buffer b>
+using Owner = std::conditional_t<has<b, Body>, Body, std::conditional_t<has<b, Joint>, Joint, Contact>>;
 template <Buffer b> Scalar* find(Object* object) { return static_cast<Owner<b>*>(object)->Field<b>::reals; }
 
 struct Io {

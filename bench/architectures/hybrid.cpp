@@ -1,6 +1,6 @@
-// (c) The original's hybrid of hierarchy and components: a RigidBody is a game object that holds its state and points to its parts
-// (forces, collider, scene node); a Ragdoll is a tree of bones and joints that is walked for each constraint update; collisions are
-// a list that the collision tree hands to RigidBody.
+// (c) The original's hybrid of hierarchy and components: a RigidBody is a game object that holds its state and points
+// to its parts (forces, collider, scene node); a Ragdoll is a tree of bones and joints that is walked for each
+// constraint update; collisions are a list that the collision tree hands to RigidBody.
 #define PC_SCALAR float
 #define PC_LANES 1
 #define PC_NAMESPACE hybrid
@@ -117,8 +117,8 @@ PCPHYS_BODY_KERNELS(K)
 #undef K
 
 RigidBody::RigidBody(const BodyInit& init) : collider(std::make_unique<Collider>(init.shape)) {
-  write(init, {find<Buffer::motion>(this), find<Buffer::pose>(this), find<Buffer::mass>(this), find<Buffer::force>(this),
-               find<Buffer::material>(this)});
+  write(init, {find<Buffer::motion>(this), find<Buffer::pose>(this), find<Buffer::mass>(this),
+               find<Buffer::force>(this), find<Buffer::material>(this)});
   collider->area = float(init.area);  // [property]
 }
 

@@ -1,5 +1,5 @@
-// The text of the library's kernels over a design's own storage, for one element at a time. Included in a design's namespace, inside
-// that of cpu/prelude.h, where it has defined
+// The text of the library's kernels over a design's own storage, for one element at a time. Included in a design's
+// namespace, inside that of cpu/prelude.h, where it has defined
 //   Index                    how it names a body, joint or contact;  Slot   a joint or contact that is being solved
 //   Io                       with `info`, and
 //     at<Buffer>(Index)      a row of a property buffer
@@ -17,9 +17,10 @@ PC_INLINE void pc_write_quad(Scalar* p, const Quad& q) { p[0] = q.v.x, p[1] = q.
 #undef PC_ST
 #undef PC_ENDS
 #undef PC_ORDER
-#define PC_GATHER(buffer, i, k) pc_read_quad(io.template at<Buffer::buffer>(i) + (k) * 4u)
-#define PC_SCATTER(buffer, i, k, q) pc_write_quad(io.template at<Buffer::buffer>(i) + (k) * 4u, q)
-#define PC_SCATTER_IF(mask, buffer, i, k, q) if (mask) PC_SCATTER(buffer, i, k, q)
+#define PC_GATHER(buffer, i, k) pc_read_quad(io.template at<Buffer::buffer>(i) + (k)*4u)
+#define PC_SCATTER(buffer, i, k, q) pc_write_quad(io.template at<Buffer::buffer>(i) + (k)*4u, q)
+#define PC_SCATTER_IF(mask, buffer, i, k, q) \
+  if (mask) PC_SCATTER(buffer, i, k, q)
 #define PC_LD(buffer, slot, f) io.template rows<Buffer::buffer>(slot)[f]
 #define PC_ST(buffer, slot, f, x) io.template rows<Buffer::buffer>(slot)[f] = x
 #define PC_ENDS(buffer, slot, side) io.template end<Buffer::buffer>(slot, side)

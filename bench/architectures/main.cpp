@@ -1,5 +1,5 @@
-// pcphys_architectures: the same scenes and the same kernels in four designs (docs/architectures.md). Times, memory, gathers and
-// uploads as JSON, from which tools/architectures_report.py makes the page.
+// pcphys_architectures: the same scenes and the same kernels in four designs (docs/architectures.md). Times, memory,
+// gathers and uploads as JSON, from which tools/architectures_report.py makes the page.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -94,7 +94,9 @@ int step_one(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"The same scenes and kernels in a class hierarchy, the original's hybrid, an entity store and the property world"};
+  CLI::App app{
+      "The same scenes and kernels in a class hierarchy, the original's hybrid, an entity store and the property "
+      "world"};
   app.add_option("--sizes", options.sizes, "numbers of bodies")->delimiter(',')->check(CLI::PositiveNumber);
   app.add_option("--rounds", options.rounds, "runs of each case up to 10,000 bodies; of more there is one")
       ->check(CLI::PositiveNumber);
@@ -102,7 +104,8 @@ int main(int argc, char** argv) {
   app.add_flag("--no-gl", options.no_gl, "no transfers through OpenGL");
   app.add_flag("--transfers", options.transfers, "only the way to the GPU and back, and gathers on it");
   app.add_flag("--check", options.check, "compare the designs bit by bit on small scenes, and nothing else");
-  app.add_option("--only", options.design, "step this design alone, for a profiler; with --scene, --history, --steps, --sizes");
+  app.add_option("--only", options.design,
+                 "step this design alone, for a profiler; with --scene, --history, --steps, --sizes");
   app.add_option("--scene", options.scene, "flight, chains or pairs");
   app.add_option("--history", options.history, "fresh or churned");
   app.add_option("--steps", options.steps, "of --only; 0 only builds");

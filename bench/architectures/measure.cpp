@@ -128,8 +128,8 @@ std::optional<Json> measure(const Case& of) {
   Json row{{"design", of.design->name}, {"scene", name(of.scene)}, {"history", name(of.history)}};
   const Json found = in_another_process([&] { return measure_here(of); });
   if (!found.is_object()) {
-    std::fprintf(stderr, "pcphys_architectures: %s, %s, %zu bodies did not end; is there memory enough?\n", of.design->name,
-                 std::string(name(of.scene)).c_str(), of.bodies);
+    std::fprintf(stderr, "pcphys_architectures: %s, %s, %zu bodies did not end; is there memory enough?\n",
+                 of.design->name, std::string(name(of.scene)).c_str(), of.bodies);
     std::exit(1);
   }
   row.update(found);

@@ -1,5 +1,5 @@
-// (d) The property world: the library's own tables and compiled kernels. Objects are ids; a row of the tables is a body, joint or
-// contact; lists of rows tell the loops what to visit.
+// (d) The property world: the library's own tables and compiled kernels. Objects are ids; a row of the tables is a
+// body, joint or contact; lists of rows tell the loops what to visit.
 #include <array>
 
 #include "cpu/kernels.h"
@@ -98,15 +98,17 @@ class PropertyWorld final : public Design {
     }
   }
   // [gather]
-  std::vector<std::span<const std::byte>> blocks() const override { return {column(Buffer::pose), column(Buffer::motion)}; }
+  std::vector<std::span<const std::byte>> blocks() const override {
+    return {column(Buffer::pose), column(Buffer::motion)};
+  }
   // [end]
   // (not needed to upload: the same rows as the other designs, to compare with)
   void gather(float* packed) const override {
     const float *pose = tables_.data<float>(Buffer::pose), *motion = tables_.data<float>(Buffer::motion),
                 *mass = tables_.data<float>(Buffer::mass);
     for (std::size_t row = 1; row < tables_.rows(Table::body); row++, packed += packed_reals)
-      pack(pose + row * length_of(Buffer::pose), mass + row * length_of(Buffer::mass), motion + row * length_of(Buffer::motion),
-           packed);
+      pack(pose + row * length_of(Buffer::pose), mass + row * length_of(Buffer::mass),
+           motion + row * length_of(Buffer::motion), packed);
   }
   void scatter(const float* packed) override {
     for (std::uint32_t row = 1; row < tables_.rows(Table::body); row++, packed += packed_reals)
@@ -130,7 +132,9 @@ class PropertyWorld final : public Design {
   float* find(Buffer buffer, std::uint32_t row) {
     return tables_.data<float>(buffer) + row * (tables_.row_bytes(buffer) / sizeof(float));
   }
-  std::span<const std::byte> column(Buffer buffer) const { return {tables_.bytes(buffer).data(), tables_.bytes(buffer).size()}; }
+  std::span<const std::byte> column(Buffer buffer) const {
+    return {tables_.bytes(buffer).data(), tables_.bytes(buffer).size()};
+  }
   std::size_t longest(std::size_t first, std::size_t count) const {
     std::size_t most = 0;
     for (std::size_t chain = first; chain < first + count && chain < chains_.size(); chain++)

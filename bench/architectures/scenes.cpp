@@ -68,7 +68,8 @@ void build_chain(std::size_t chain, Design& design, Handle* made) {
     body.moments = {0.002, 0.01, 0.01};
     made[link] = design.create_body(body);
     const Vec3 end{half, 0, 0}, start{-half, 0, 0};
-    design.create_joint(link == 0 ? design.ground() : made[link - 1], made[link], {link == 0 ? place : end, start, 0.7, 0.5});
+    design.create_joint(link == 0 ? design.ground() : made[link - 1], made[link],
+                        {link == 0 ? place : end, start, 0.7, 0.5});
   }
 }
 
@@ -131,14 +132,18 @@ std::vector<Handle> build(SceneKind kind, std::size_t count, History history, De
   return made;
 }
 
-double wall_time() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double wall_time() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 double processor_time() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-Steps::Steps(Clock clock) : clock_(clock) { fill_infos(InfoInputs(StepSettings{}, {0, -9.81, 0}, substep, substep, substep), infos_); }
+Steps::Steps(Clock clock) : clock_(clock) {
+  fill_infos(InfoInputs(StepSettings{}, {0, -9.81, 0}, substep, substep, substep), infos_);
+}
 
 void Steps::step(SceneKind kind, Design& design, StageTimes* times) const {
   const FlushSubnormals flush;

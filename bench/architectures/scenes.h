@@ -9,20 +9,22 @@
 
 namespace pcphys::architectures {
 
-/// flight: free bodies with drag. chains: of ten links that hang from the ground, with cones and twists. pairs: two balls that forces
-/// press together. wind, ropes: what was added to the designs; flight in wind, and the same of bodies on a rope two by two.
+/// flight: free bodies with drag. chains: of ten links that hang from the ground, with cones and twists. pairs: two
+/// balls that forces press together. wind, ropes: what was added to the designs; flight in wind, and the same of bodies
+/// on a rope two by two.
 enum class SceneKind : std::uint8_t { flight, chains, pairs, wind, ropes };
 inline constexpr SceneKind measured_scenes[] = {SceneKind::flight, SceneKind::chains, SceneKind::pairs};
 std::string_view name(SceneKind kind);
 
-/// fresh: objects made in order, in a heap and in tables without holes. churned: as late in a game; as many other bodies were there
-/// before, and came and went while those of the scene were made, in random order.
+/// fresh: objects made in order, in a heap and in tables without holes. churned: as late in a game; as many other
+/// bodies were there before, and came and went while those of the scene were made, in random order.
 enum class History : std::uint8_t { fresh, churned };
 std::string_view name(History history);
 
 /// Body `i` of the scene of free flight.
 BodyInit flying_body(std::size_t i);
-/// Makes `count` bodies, rounded down to whole chains or pairs; answers their handles, in the same order for every history.
+/// Makes `count` bodies, rounded down to whole chains or pairs; answers their handles, in the same order for every
+/// history.
 std::vector<Handle> build(SceneKind kind, std::size_t count, History history, Design& design);
 
 using StageTimes = std::array<double, stage_count>;  // [s]

@@ -25,7 +25,8 @@ double potential(double r) { return -poles * strength / r; }
 }  // namespace
 
 int main(int argc, char** argv) {
-  show::Csv csv(argc, argv, "time,distance,distance exact,kinetic,kinetic exact,potential,potential exact,sum,sum exact");
+  show::Csv csv(argc, argv,
+                "time,distance,distance exact,kinetic,kinetic exact,potential,potential exact,sum,sum exact");
   double worst = 0, drift = 0;
   const bool same = show::same_on_both_places([&](Place place) {
     World world(WorldDef{.gravity = {}});
@@ -40,18 +41,20 @@ int main(int argc, char** argv) {
       must(world.set(pole, magnets[i], Real(3)));
     }
     Stepper stepper(show::at(place));
-    must(stepper.add_kernel(world, {.text = magnet::text(), .parameters = {{"strength", strength}, {"softening", 0.0}}}));
+    must(stepper.add_kernel(world,
+                            {.text = magnet::text(), .parameters = {{"strength", strength}, {"softening", 0.0}}}));
     show::run(world, stepper, 0.8, [&](double t) {  // they touch after 0.83 s
       const double r = must(world.pose(magnets[1])).position.x - must(world.pose(magnets[0])).position.x;
       const double kinetic = world.kinetic_energy(), exact = distance_at(t), whole = potential(start);
       worst = std::max(worst, std::fabs(r - exact));
       drift = std::max(drift, std::fabs((kinetic + potential(r) - whole) / potential(r)));
-      csv.row(place,
-              {t, r, exact, kinetic, whole - potential(exact), potential(r), potential(exact), kinetic + potential(r), whole});
+      csv.row(place, {t, r, exact, kinetic, whole - potential(exact), potential(r), potential(exact),
+                      kinetic + potential(r), whole});
     });
     return world.hash();
   });
-  std::printf("attraction: largest error of the distance %.3f mm of 600; energy off by %.3f %% of what is in the field\n",
-              1000 * worst, 100 * drift);
+  std::printf(
+      "attraction: largest error of the distance %.3f mm of 600; energy off by %.3f %% of what is in the field\n",
+      1000 * worst, 100 * drift);
   return same && worst < 1e-3 && drift < 0.01 ? 0 : 1;
 }

@@ -1,4 +1,5 @@
-// Buoyancy and drag in water: a sphere and boxes go down as far as Archimedes says, and what is too heavy sinks at its terminal speed.
+// Buoyancy and drag in water: a sphere and boxes go down as far as Archimedes says, and what is too heavy sinks at its
+// terminal speed.
 #include "pcphys/write_kernel.h"
 #include "show.h"
 
@@ -45,7 +46,8 @@ PCPHYS_KERNEL(float_box,
 
 PCPHYS_KERNEL(water_drag,
               (PC_IN(Vec3) displacement_rate, PC_IN(Vec3) angular_momentum, PC_IN(Real) mass, PC_IN(Real) wet,
-               PC_INOUT(Vec3) force, PC_INOUT(Vec3) torque, PC_PARAM(Vec3) gravity, PC_PARAM(Real) rate, PC_PARAM(Real) h),
+               PC_INOUT(Vec3) force, PC_INOUT(Vec3) torque, PC_PARAM(Vec3) gravity, PC_PARAM(Real) rate,
+               PC_PARAM(Real) h),
               {
                 Real slow = rate * wet;
                 Real half_h = h * PC_REAL(0.5);
@@ -65,7 +67,8 @@ int main(int argc, char** argv) {
   const double angle = (std::acos(2 * share(0) - 1) + 4 * pi) / 3;       // of the cubic d^2 (3 r - d) = 4 r^3 share
   const double rest[] = {2 * radius * std::cos(angle), half.y * (1 - 2 * share(1)), half.y * (1 - 2 * share(2))};
   const double sinking = (1 - 1 / share(3)) * gravity / drag;
-  show::Csv csv(argc, argv, "time,sphere 300,sphere 300 exact,box 400,box 400 exact,tilted box 750,tilted box 750 exact");
+  show::Csv csv(argc, argv,
+                "time,sphere 300,sphere 300 exact,box 400,box 400 exact,tilted box 750,tilted box 750 exact");
   double error = 0, speed_error = 0, tilt = 0;
   const bool same = show::same_on_both_places([&](Place place) {
     World world;

@@ -1,5 +1,5 @@
-// Elastic cords, which pull and never push: a jumper on a bridge's, and two bodies that fly apart on one. A kernel of a joint with its
-// two bodies; what holds the ends is a spring of the library without any force of its own.
+// Elastic cords, which pull and never push: a jumper on a bridge's, and two bodies that fly apart on one. A kernel of a
+// joint with its two bodies; what holds the ends is a spring of the library without any force of its own.
 #include <numbers>
 
 #include "pcphys/write_kernel.h"
@@ -10,8 +10,9 @@ using show::must;
 
 PCPHYS_KERNEL(cord,
               (PC_A(Vec3) position_a, PC_A(Quaternion) orientation_a, PC_IN(Vec3) anchor_a, PC_B(Vec3) position_b,
-               PC_B(Quaternion) orientation_b, PC_IN(Vec3) anchor_b, PC_IN(Real) rest_length, PC_IN(Real) cord_stiffness,
-               PC_ADD_A(Vec3) force_a, PC_ADD_A(Vec3) torque_a, PC_ADD_B(Vec3) force_b, PC_ADD_B(Vec3) torque_b),
+               PC_B(Quaternion) orientation_b, PC_IN(Vec3) anchor_b, PC_IN(Real) rest_length,
+               PC_IN(Real) cord_stiffness, PC_ADD_A(Vec3) force_a, PC_ADD_A(Vec3) torque_a, PC_ADD_B(Vec3) force_b,
+               PC_ADD_B(Vec3) torque_b),
               {
                 Vec3 arm_a = pc_rotate(orientation_a, anchor_a);
                 Vec3 arm_b = pc_rotate(orientation_b, anchor_b);
@@ -27,10 +28,12 @@ PCPHYS_KERNEL(cord,
 constexpr double g = 9.81, rest = 20, stiffness = 120;  // [m/s^2], [m], [N/m]
 constexpr double jumper = 80, light = 40, heavy = 60;   // [kg]
 
-/// How far apart ends are that fly apart from nothing at `speed`, under an acceleration `pull` apart: slack, taut, slack again.
+/// How far apart ends are that fly apart from nothing at `speed`, under an acceleration `pull` apart: slack, taut,
+/// slack again.
 double distance(double pull, double speed, double mass, double t) {
   const double taut_speed = std::sqrt(speed * speed + 2 * pull * rest), rate = std::sqrt(stiffness / mass);
-  const double slack = 2 * rest / (speed + taut_speed), sag = pull / (rate * rate);  // when it is taut; where it would hang
+  // when it is taut; where it would hang
+  const double slack = 2 * rest / (speed + taut_speed), sag = pull / (rate * rate);
   const double swing = std::hypot(sag, taut_speed / rate), angle = std::atan2(sag, taut_speed / rate);
   const double taut = (std::numbers::pi + 2 * angle) / rate;
   if (t < slack) return (speed + 0.5 * pull * t) * t;

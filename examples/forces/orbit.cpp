@@ -1,5 +1,5 @@
-// Two stars about each other under their own gravity: the kernel of examples/gravity.cpp beside Kepler's ellipse, and how the error falls
-// with the step.
+// Two stars about each other under their own gravity: the kernel of examples/gravity.cpp beside Kepler's ellipse, and
+// how the error falls with the step.
 #include <utility>
 
 #include "../gravitation.h"
@@ -53,7 +53,8 @@ double error_of(Precision precision, int steps_a_second) {
   Stars s(Place::cpu, precision);
   double worst = 0;
   show::run(
-      s.world, s.stepper, period, [&](double t) { worst = std::max(worst, length(s.apart() - between(t))); }, steps_a_second);
+      s.world, s.stepper, period, [&](double t) { worst = std::max(worst, length(s.apart() - between(t))); },
+      steps_a_second);
   return worst;
 }
 

@@ -22,8 +22,8 @@ inline void must(const pcphys::Status& status) {
   if (!status) stop(status.error().message.c_str());
 }
 
-/// Writes rows where the program was called with --csv FILE, or with another option. A column "x exact" is the closed form of the
-/// column "x".
+/// Writes rows where the program was called with --csv FILE, or with another option. A column "x exact" is the closed
+/// form of the column "x".
 class Csv {
  public:
   Csv(int argc, char** argv, const char* header, const char* option = "--csv") {
@@ -47,7 +47,8 @@ class Csv {
 };
 
 /// Steps the world to `seconds`, `rate` steps a second, and calls `after(time)` after each step.
-template <class After> void run(pcphys::World& world, pcphys::Stepper& stepper, double seconds, After after, int rate = 60) {
+template <class After>
+void run(pcphys::World& world, pcphys::Stepper& stepper, double seconds, After after, int rate = 60) {
   for (int step = 1; step <= std::lround(seconds * rate); step++) {
     if (const pcphys::StepReport& report = stepper.step(world, 1.0 / rate); !report) stop(report.error.message.c_str());
     after(step / double(rate));

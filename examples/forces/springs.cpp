@@ -1,4 +1,5 @@
-// Springs, made twice: by a kernel of one's own, which pulls a body to its home, and by the library's springs between two points.
+// Springs, made twice: by a kernel of one's own, which pulls a body to its home, and by the library's springs between
+// two points.
 #include "pcphys/write_kernel.h"
 #include "show.h"
 
@@ -6,8 +7,9 @@ using namespace pcphys;
 using show::must;
 
 PCPHYS_KERNEL(pull_home,
-              (PC_IN(Vec3) position, PC_IN(Vec3) displacement_rate, PC_IN(Real) mass, PC_IN(Vec3) home, PC_IN(Real) stiffness,
-               PC_IN(Real) damping, PC_INOUT(Vec3) force, PC_PARAM(Vec3) gravity, PC_PARAM(Real) h),
+              (PC_IN(Vec3) position, PC_IN(Vec3) displacement_rate, PC_IN(Real) mass, PC_IN(Vec3) home,
+               PC_IN(Real) stiffness, PC_IN(Real) damping, PC_INOUT(Vec3) force, PC_PARAM(Vec3) gravity,
+               PC_PARAM(Real) h),
               {
                 Vec3 away = pc_sub(home, position);
                 force = pc_madd(force, away, stiffness);

@@ -1,4 +1,5 @@
-// A rocket whose fuel is a property of one's own, and whose mass falls as it burns: Tsiolkovsky's equation, then free flight.
+// A rocket whose fuel is a property of one's own, and whose mass falls as it burns: Tsiolkovsky's equation, then free
+// flight.
 #include "pcphys/write_kernel.h"
 #include "show.h"
 
@@ -6,8 +7,8 @@ using namespace pcphys;
 using show::must;
 
 PCPHYS_KERNEL(thruster,
-              (PC_IN(Quaternion) orientation, PC_IN(Real) mass, PC_INOUT(Real) fuel, PC_INOUT(Vec3) force, PC_PARAM(Real) tank,
-               PC_PARAM(Real) exhaust_speed, PC_PARAM(Real) flow, PC_PARAM(Real) h),
+              (PC_IN(Quaternion) orientation, PC_IN(Real) mass, PC_INOUT(Real) fuel, PC_INOUT(Vec3) force,
+               PC_PARAM(Real) tank, PC_PARAM(Real) exhaust_speed, PC_PARAM(Real) flow, PC_PARAM(Real) h),
               {
                 Real wanted = flow * h;
                 Real burned = pc_min(fuel, wanted);
@@ -31,8 +32,8 @@ int main(int argc, char** argv) {
     rocket.mass = full;
     const BodyId body = must(world.create_body(rocket));
     Stepper stepper(show::at(place));
-    must(stepper.add_kernel(
-        world, {.text = thruster::text(), .parameters = {{"tank", tank}, {"exhaust_speed", exhaust_speed}, {"flow", flow}}}));
+    must(stepper.add_kernel(world, {.text = thruster::text(),
+                                    .parameters = {{"tank", tank}, {"exhaust_speed", exhaust_speed}, {"flow", flow}}}));
     show::run(world, stepper, 12, [&](double t) {
       const double burning = std::min(t, tank / flow), left = full - flow * burning, log = std::log(full / left);
       const double speed = exhaust_speed * log - gravity * t;
@@ -44,7 +45,8 @@ int main(int argc, char** argv) {
   });
   // what stops at once is felt half a sub-step early: velocities stand half a sub-step behind
   const double jump = exhaust_speed * flow / (full - tank) / 60 / 4 / 2;
-  std::printf("thruster: error of the speed %.2f mm/s while it burns, %.1f mm/s after the jump at its end (%.1f foreseen)\n",
-              1000 * burning_error, 1000 * cut_off_error, 1000 * jump);
+  std::printf(
+      "thruster: error of the speed %.2f mm/s while it burns, %.1f mm/s after the jump at its end (%.1f foreseen)\n",
+      1000 * burning_error, 1000 * cut_off_error, 1000 * jump);
   return same && burning_error < 2e-3 && std::fabs(cut_off_error - jump) < 5e-3 ? 0 : 1;
 }

@@ -1,4 +1,5 @@
-// Wind with drag by cross-section: three equal planks, flat, tilted and on edge, in a wind from below. One rises, one hovers, one falls.
+// Wind with drag by cross-section: three equal planks, flat, tilted and on edge, in a wind from below. One rises, one
+// hovers, one falls.
 #include "pcphys/write_kernel.h"
 #include "show.h"
 
@@ -42,13 +43,14 @@ int main(int argc, char** argv) {
     const double mass = must(world.mass_properties(planks[0])).mass;
     Stepper stepper(show::at(place));
     must(stepper.add_kernel(
-        world,
-        {.text = wind::text(), .parameters = {{"wind_velocity", Vec3{0, wind_speed, 0}}, {"half_density", density * drag / 2}}}));
+        world, {.text = wind::text(),
+                .parameters = {{"wind_velocity", Vec3{0, wind_speed, 0}}, {"half_density", density * drag / 2}}}));
     show::run(world, stepper, 4, [&](double t) {
       double speed[3], exact[3];
       for (int i = 0; i < 3; i++) {
         const double area = 4 * half.z * (half.x * std::cos(tilts[i]) + half.y * std::sin(tilts[i]));
-        const double limit = std::sqrt(mass * gravity / (density * drag * area / 2)), grown = std::tanh(gravity * t / limit);
+        const double limit = std::sqrt(mass * gravity / (density * drag * area / 2)),
+                     grown = std::tanh(gravity * t / limit);
         exact[i] = wind_speed - limit * (wind_speed + limit * grown) / (limit + wind_speed * grown);
         speed[i] = must(world.velocity(planks[i])).y;
         error = std::max(error, std::fabs(speed[i] - exact[i]));

@@ -1,4 +1,5 @@
-// What happened in a step, for those who ask (StepSettings): who touched, who let go, who hit whom, who moved, slept or woke. docs/events.md
+// What happened in a step, for those who ask (StepSettings): who touched, who let go, who hit whom, who moved, slept or
+// woke. docs/events.md
 #pragma once
 #include <cstdint>
 #include <span>
@@ -32,8 +33,8 @@ struct ContactHit : ContactBegun {
   friend bool operator==(const ContactHit&, const ContactHit&) = default;
 };
 
-/// Of one step, until the next. Contacts stand in ascending order of their shapes, bodies of their ids; the order and all numbers are
-/// the same on every backend, and for any number of lanes and threads.
+/// Of one step, until the next. Contacts stand in ascending order of their shapes, bodies of their ids; the order and
+/// all numbers are the same on every backend, and for any number of lanes and threads.
 struct StepEvents {
   std::span<const ContactBegun> begun;
   std::span<const ContactEnded> ended;

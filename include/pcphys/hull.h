@@ -51,8 +51,9 @@ class Hull {
 };
 
 /// The convex hull of points in any order [m], by qhull (C. Barber et al., The Quickhull Algorithm, 1996).
-/// Errors: not_finite; degenerate_shape for fewer than four points apart, points on one line or in one plane, or nearly so
-/// (`constants::hull_flatness`, however they are turned), and sizes outside the range of shapes; buffer_full for more vertices than `constants::largest_hull_vertices`.
+/// Errors: not_finite; degenerate_shape for fewer than four points apart, points on one line or in one plane, or nearly
+/// so (`constants::hull_flatness`, however they are turned), and sizes outside the range of shapes; buffer_full for
+/// more vertices than `constants::largest_hull_vertices`.
 Result<Hull> make_hull(std::span<const Vec3> points);
 
 }  // namespace pcphys

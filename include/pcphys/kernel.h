@@ -16,7 +16,8 @@ struct KernelRows {
   const std::size_t* strides;  // and bytes from row to row; 0 of a parameter
   const std::uint32_t* rows;   // null: begin to end themselves
   std::uint32_t begin, end;
-  // in place of `rows`, of joints with their bodies: three by three the rows of the joint, of its body a and of its body b
+  // in place of `rows`, of joints with their bodies: three by three the rows of the joint, of its body a and of its
+  // body b
   const std::uint32_t* joined = nullptr;
   const std::uint8_t* of_three = nullptr;  // and of each argument which of them: 0, 1 or 2
 };
@@ -58,15 +59,16 @@ struct KernelParameter {
   std::string name;
   PropertyType type;
   PropertyNumbers value;
-  template <PropertyValue T> KernelParameter(std::string n, const T& v) : name(std::move(n)), type(property_type<T>), value(v) {}
+  template <PropertyValue T>
+  KernelParameter(std::string n, const T& v) : name(std::move(n)), type(property_type<T>), value(v) {}
   KernelParameter(std::string n, double v) : name(std::move(n)), type(PropertyType::real), value(Real(v)) {}
 };
 
 /// When and over what a kernel runs.
 struct KernelDef {
   KernelText text = {};
-  /// Rows of this table: of bodies those that move, of joints and the host's own tables all. A kernel with PC_A or PC_B is over
-  /// `joint_table`, and over those that join a body that moves.
+  /// Rows of this table: of bodies those that move, of joints and the host's own tables all. A kernel with PC_A or PC_B
+  /// is over `joint_table`, and over those that join a body that moves.
   TableId over = body_table;
   /// Before or after that stage of each sub-step; with `once_a_step` of the first or the last sub-step.
   Stage stage = Stage::integrate;
@@ -75,8 +77,9 @@ struct KernelDef {
   std::vector<KernelParameter> parameters = {};
   /// Of pairs of bodies: only those whose positions are no further apart [m]. Without one, all.
   std::optional<double> cutoff = {};
-  /// Names of kernels of the same moment that run before this one. What follows by itself: of a property first the one that writes it
-  /// anew, then those that change it, then those that read it; and else the order in which they were added.
+  /// Names of kernels of the same moment that run before this one. What follows by itself: of a property first the one
+  /// that writes it anew, then those that change it, then those that read it; and else the order in which they were
+  /// added.
   std::vector<std::string> follows = {};
 };
 

@@ -1,7 +1,7 @@
-// The text of kernels as C++: Real, Vec3, Quad, Quaternion, Sym3, Mat3 and the functions pc_* of kernel_math.inl, for one element, in
-// float (pcphys::kernel_f32) and in double (pcphys::kernel_f64). The same text is GLSL on the GPU. What makes both agree to the bit:
-// no operator / and no functions of the language's own, but pc_div, pc_sqrt and so on; constants as PC_REAL(0.5); no contraction
-// (pcphys_add_kernel in CMake, or -ffp-contract=off).
+// The text of kernels as C++: Real, Vec3, Quad, Quaternion, Sym3, Mat3 and the functions pc_* of kernel_math.inl, for
+// one element, in float (pcphys::kernel_f32) and in double (pcphys::kernel_f64). The same text is GLSL on the GPU. What
+// makes both agree to the bit: no operator / and no functions of the language's own, but pc_div, pc_sqrt and so on;
+// constants as PC_REAL(0.5); no contraction (pcphys_add_kernel in CMake, or -ffp-contract=off).
 #pragma once
 #include <cmath>
 #include <cstdint>

@@ -44,7 +44,8 @@ struct Quat {
 
   constexpr Quat() = default;
   constexpr Quat(double x_, double y_, double z_, double w_) : x(x_), y(y_), z(z_), w(w_) {}
-  template <ForeignQuaternion Q> Quat(const Q& q) : x(double(q.x())), y(double(q.y())), z(double(q.z())), w(double(q.w())) {}
+  template <ForeignQuaternion Q>
+  Quat(const Q& q) : x(double(q.x())), y(double(q.y())), z(double(q.z())), w(double(q.w())) {}
   template <ForeignQuaternion Q> operator Q() const { return Q(w, x, y, z); }
   friend constexpr bool operator==(const Quat&, const Quat&) = default;
 };
@@ -93,7 +94,9 @@ constexpr Quat operator*(Quat a, Quat b) {
 }
 constexpr Quat conjugate(Quat q) { return {-q.x, -q.y, -q.z, q.w}; }
 inline double length(Quat q) { return std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w); }
-inline bool finite(Quat q) { return std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w); }
+inline bool finite(Quat q) {
+  return std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
+}
 
 /// v turned by the unit quaternion q.
 constexpr Vec3 rotate(Quat q, Vec3 v) {

@@ -1,5 +1,6 @@
-// The C++ side of pair kernels (write_kernel.h): loops over bodies and, of each, over the others, in an order of sums that the GPU
-// keeps too. Lanes are bodies side by side, for the compiler to vectorise; each lane sums in the order of one alone.
+// The C++ side of pair kernels (write_kernel.h): loops over bodies and, of each, over the others, in an order of sums
+// that the GPU keeps too. Lanes are bodies side by side, for the compiler to vectorise; each lane sums in the order of
+// one alone.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -65,7 +66,8 @@ template <class T, class Real, std::size_t Width> struct LaneValues {
 };
 
 template <auto Run, auto Kinds, class Real, class = decltype(Run)> struct PairLoop;
-template <auto Run, auto Kinds, class Real, class... Arguments> struct PairLoop<Run, Kinds, Real, void (*)(Arguments...)> {
+template <auto Run, auto Kinds, class Real, class... Arguments>
+struct PairLoop<Run, Kinds, Real, void (*)(Arguments...)> {
   static void run(const KernelPairs& k) {
     constexpr auto indices = std::index_sequence_for<Arguments...>();
     if (k.apply)
@@ -104,7 +106,8 @@ template <auto Run, auto Kinds, class Real, class... Arguments> struct PairLoop<
   }
 
   // ---- all others ---------------------------------------------------------------------------------------
-  template <std::size_t I> static void set(Selves& selves, const KernelPairs& k, std::uint32_t row, std::uint32_t lane) {
+  template <std::size_t I>
+  static void set(Selves& selves, const KernelPairs& k, std::uint32_t row, std::uint32_t lane) {
     if constexpr (of_self(I)) std::get<I>(selves).set(lane, load<Value<I>>(place<I>(k, row)));
   }
   template <std::size_t I> static void clear(Sums& sums) {
@@ -128,12 +131,13 @@ template <auto Run, auto Kinds, class Real, class... Arguments> struct PairLoop<
     else
       return load<Value<I>>(place<I>(k, row));
   }
-  template <std::size_t I> static void keep_lane(const KernelPairs& k, std::uint32_t n, const Sums& sums, std::uint32_t lane) {
+  template <std::size_t I>
+  static void keep_lane(const KernelPairs& k, std::uint32_t n, const Sums& sums, std::uint32_t lane) {
     if constexpr (summed(I)) keep<I>(k, n + lane, std::get<I>(sums).at(lane));
   }
 
-  /// Of `lanes` bodies from n on the terms of all others: summed in a row within a tile, then tiles within a chunk, then chunks
-  /// by a binary tree.
+  /// Of `lanes` bodies from n on the terms of all others: summed in a row within a tile, then tiles within a chunk,
+  /// then chunks by a binary tree.
   template <std::size_t... I>
   static void all(const KernelPairs& k, std::uint32_t n, std::uint32_t lanes, std::index_sequence<I...> indices) {
     Selves selves;

@@ -13,14 +13,14 @@ namespace pcphys {
 enum class Place : std::uint8_t { cpu, gl };
 const char* name(Place place);
 
-/// The parts of a sub-step that are put on a place each, and what comes after the last where islands are found on a device
-/// (StepSettings::islands).
+/// The parts of a sub-step that are put on a place each, and what comes after the last where islands are found on a
+/// device (StepSettings::islands).
 enum class Stage : std::uint8_t { integrate, joints, impulses, islands };
 std::string_view name(Stage stage);
 
-/// How bodies move between impulses (docs/integrate.md). `verlet`: exact drag, and free rotation of second order. `seed`:
-/// the scheme of the document that pcphys began with, to compare with it: drag by a factor 1 - F h, constant angular
-/// velocity, velocities half a sub-step late.
+/// How bodies move between impulses (docs/integrate.md). `verlet`: exact drag, and free rotation of second order.
+/// `seed`: the scheme of the document that pcphys began with, to compare with it: drag by a factor 1 - F h, constant
+/// angular velocity, velocities half a sub-step late.
 enum class Integrator : std::uint8_t { verlet, seed };
 const char* name(Integrator integrator);
 
@@ -38,19 +38,22 @@ enum class Domain : std::uint8_t;
 struct OwnKernel;
 
 struct PlanEntry {
-  enum class Kind : std::uint8_t { kernel, upload, download, collide };  // collide: the narrow phase of a sub-step, on the host
+  /// collide: the narrow phase of a sub-step, on the host
+  enum class Kind : std::uint8_t { kernel, upload, download, collide };
   Kind kind = Kind::kernel;
   Place place = Place::cpu;
   Kernel kernel{};  // of a kernel
   Buffer buffer{};  // of a transfer
   Phase phase = Phase::biased;
-  bool barrier = false;            // uses what a kernel before it wrote, or writes what one read, on the same device
-  std::uint32_t substep = 0;       // of the octave's
-  std::uint8_t octave = 0;         // of the islands that a kernel is for; octave_count more for those of fourth order
-  const OwnKernel* own = nullptr;  // a kernel of the host's own, in place of `kernel`; of a transfer, one that uses the buffer
-  std::uint32_t again = 0;  // runs only while the kernel's run before struck something, and at most so often; 0: once, always
-  /// Of a transfer that `Stepper::plan_for` names: the whole buffer, in that world. 0 in plans of no world (`Stepper::plan`), which
-  /// stand for steps of any size.
+  bool barrier = false;       // uses what a kernel before it wrote, or writes what one read, on the same device
+  std::uint32_t substep = 0;  // of the octave's
+  std::uint8_t octave = 0;    // of the islands that a kernel is for; octave_count more for those of fourth order
+  /// a kernel of the host's own, in place of `kernel`; of a transfer, one that uses the buffer
+  const OwnKernel* own = nullptr;
+  /// runs only while the kernel's run before struck something, and at most so often; 0: once, always
+  std::uint32_t again = 0;
+  /// Of a transfer that `Stepper::plan_for` names: the whole buffer, in that world. 0 in plans of no world
+  /// (`Stepper::plan`), which stand for steps of any size.
   std::uint64_t bytes = 0;
   bool transfers() const { return kind == Kind::upload || kind == Kind::download; }
   friend bool operator==(const PlanEntry&, const PlanEntry&) = default;
@@ -81,14 +84,15 @@ struct StepPlan {
   friend bool operator==(const StepPlan&, const StepPlan&) = default;
 };
 
-/// Bytes of all transfers of a step whose plan has them (PlanEntry::bytes). The most that go: an upload is spared where the device
-/// has what the host has.
+/// Bytes of all transfers of a step whose plan has them (PlanEntry::bytes). The most that go: an upload is spared where
+/// the device has what the host has.
 struct TransferBytes {
   std::uint64_t up = 0, down = 0;
 };
 TransferBytes transfer_bytes(const StepPlan& plan);
 
-/// A line an entry: where, what, its phase, what it reads and writes, of a transfer its bytes; then their sums, and what was left out.
+/// A line an entry: where, what, its phase, what it reads and writes, of a transfer its bytes; then their sums, and
+/// what was left out.
 std::string to_text(const StepPlan& plan);
 std::string_view kernel_name(const PlanEntry& entry);
 std::string_view buffer_name(const PlanEntry& entry);

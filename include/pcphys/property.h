@@ -1,5 +1,5 @@
-// Properties: what a table holds of each of its objects. Those that the library works with stand in docs/properties.md; a host adds
-// its own (World::add_property). Views show the world's own memory, strided, never copied.
+// Properties: what a table holds of each of its objects. Those that the library works with stand in docs/properties.md;
+// a host adds its own (World::add_property). Views show the world's own memory, strided, never copied.
 #pragma once
 #include <cassert>
 #include <cstddef>
@@ -14,14 +14,16 @@
 
 namespace pcphys {
 
-/// What a property holds of each object. `real`: float or double, as the world was made; vectors and matrices are of such reals.
+/// What a property holds of each object. `real`: float or double, as the world was made; vectors and matrices are of
+/// such reals.
 enum class PropertyType : std::uint8_t { real, vec3, quat, sym3, vec4, mat3, float32, float64, int32, uint32 };
 std::string_view name(PropertyType type);
 /// Numbers in a value.
 std::uint32_t components(PropertyType type);
 
-/// input: the host writes it; state: what snapshots and the hash hold; derived: follows from others; scratch: means nothing
-/// between steps; host: what a host hangs on its objects. Snapshots hold that, and the hash since a kernel has named it.
+/// input: the host writes it; state: what snapshots and the hash hold; derived: follows from others; scratch: means
+/// nothing between steps; host: what a host hangs on its objects. Snapshots hold that, and the hash since a kernel has
+/// named it.
 enum class Role : std::uint8_t { input, state, derived, scratch, host };
 std::string_view name(Role role);
 
@@ -113,7 +115,8 @@ struct PropertyView {
     const std::byte* row = data + i * stride;
     if (type == PropertyType::int32) return reinterpret_cast<const std::int32_t*>(row)[c];
     if (type == PropertyType::uint32) return reinterpret_cast<const std::uint32_t*>(row)[c];
-    return precision == Precision::f32 ? double(reinterpret_cast<const float*>(row)[c]) : reinterpret_cast<const double*>(row)[c];
+    return precision == Precision::f32 ? double(reinterpret_cast<const float*>(row)[c])
+                                       : reinterpret_cast<const double*>(row)[c];
   }
 };
 

@@ -1,6 +1,6 @@
 // Errors are values: a code with a name, and a sentence that tells the caller what to do.
-// No function of the library throws across its border: where there is no memory that is ErrorCode::buffer_full, and all is as it was; a call
-// that answers with a value, and a constructor, end the process with a sentence.
+// No function of the library throws across its border: where there is no memory that is ErrorCode::buffer_full, and all
+// is as it was; a call that answers with a value, and a constructor, end the process with a sentence.
 #pragma once
 #include <memory>
 #include <string>
@@ -46,33 +46,24 @@ namespace detail {
 [[noreturn]] void moved_from(const char* what, const char* call);
 /// Of a call that answers with a value and has no memory for it.
 [[noreturn]] void no_memory_for(const char* call);
-/// An error in memory of its own; where there is none for it, the one that says so, which was made when the process began.
+/// An error in memory of its own; where there is none for it, the one that says so, which was made when the process
+/// began.
 std::shared_ptr<const Error> keep(Error error) noexcept;
 }  // namespace detail
 
-/// A value, or why there is none. Taking the value where there is none, or the error where there is a value, ends the process with a
-/// sentence that holds the error's.
+/// A value, or why there is none. Taking the value where there is none, or the error where there is a value, ends the
+/// process with a sentence that holds the error's.
 template <class T> class [[nodiscard]] Result {
  public:
   Result(T value) : content_(std::in_place_index<0>, std::move(value)) {}
   Result(Error error) : content_(std::in_place_index<1>, std::move(error)) {}
 
   explicit operator bool() const { return content_.index() == 0; }
-  T& operator*() & {
-    return value();
-  }
-  const T& operator*() const& {
-    return value();
-  }
-  T&& operator*() && {
-    return std::move(value());
-  }
-  T* operator->() {
-    return &value();
-  }
-  const T* operator->() const {
-    return &value();
-  }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(value()); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
   const Error& error() const {
     if (*this) detail::no_error();
     return *std::get_if<1>(&content_);

@@ -30,20 +30,23 @@ struct StepSettings {
   std::uint32_t order = 2;
   /// Most by which a step may multiply the sub-steps of an island that needs it (docs/substeps.md); 1: never.
   std::uint32_t refinement = 16;
-  std::uint32_t lanes = 0;    // of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is, or fewer where those are enough
+  /// of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is, or fewer where those are enough
+  std::uint32_t lanes = 0;
   std::uint32_t threads = 1;  // of the CPU, up to 256; 0: as many as the processor runs at a time
   NarrowPhase narrow = NarrowPhase::native;
   int device = -1;            // EGL device; -1: the first that works
   bool host_context = false;  // use the GL context that is current on this thread
-  /// On GL, where nothing meets or holds a body (StepPlan::flight): what a step leaves on the device comes to the host when something
-  /// asks for it, a view, a hash or a step that needs it there, by the thread that asks. A device that fails takes it along.
+  /// On GL, where nothing meets or holds a body (StepPlan::flight): what a step leaves on the device comes to the host
+  /// when something asks for it, a view, a hash or a step that needs it there, by the thread that asks. A device that
+  /// fails takes it along.
   bool resident = false;
   bool timings = true;  // clock the step and each stage (StepReport); on GL this waits for the device after each
 
-  /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md). A step with it off wakes what sleeps.
+  /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md). A step with it off wakes what
+  /// sleeps.
   bool sleep = false;
-  /// Where who is in which island is found after a step: by union-find on the CPU, or by label propagation on the device. The result is
-  /// the same.
+  /// Where who is in which island is found after a step: by union-find on the CPU, or by label propagation on the
+  /// device. The result is the same.
   Place islands = Place::cpu;
   double sleep_speed = constants::sleep_speed;  // what is faster is not at rest [m/s]
   double sleep_spin = constants::sleep_spin;    // nor what spins faster [rad/s]
@@ -51,8 +54,9 @@ struct StepSettings {
 
   double push_speed = 3;               // at which an overlap is undone, at most (docs/limits.md) [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
-  double contact_margin = 0;           // contacts are kept up to this gap [m]; 0: up to constants::contact_share of the smaller shape
-  std::size_t max_pairs = 1u << 24;    // more is an error that says how many there are
+  /// contacts are kept up to this gap [m]; 0: up to constants::contact_share of the smaller shape
+  double contact_margin = 0;
+  std::size_t max_pairs = 1u << 24;  // more is an error that says how many there are
 
   /// What Stepper::events tells of; nothing is spent on the rest (docs/events.md).
   bool contact_events = false;  // begun and ended
@@ -72,16 +76,17 @@ struct StepReport {
   std::uint32_t substeps = 0;  // the most that an island made: the setting, or more (StepSettings::refinement)
   std::uint32_t refined = 0;   // bodies whose islands made more than the setting
   std::uint32_t limited = 0;   // bodies whose islands would have made more yet: beyond StepSettings::refinement
-  /// Times that this step was undone and made anew: for what turned out to need far more sub-steps (docs/substeps.md), for bodies that
-  /// went further than contacts were looked for, for one that had to be frozen.
+  /// Times that this step was undone and made anew: for what turned out to need far more sub-steps (docs/substeps.md),
+  /// for bodies that went further than contacts were looked for, for one that had to be frozen.
   std::uint32_t repeats = 0;
   bool given_up = false;  // the step was kept as it was after eight tries, though it asked to be made anew once more
   std::uint32_t fourth_order = 0;  // bodies that moved in fourth order (StepSettings::order)
   std::uint32_t bodies = 0, joints = 0, pairs = 0, contacts = 0, points = 0, colours = 0;
   std::uint32_t asleep = 0, islands_asleep = 0;  // bodies that sleep after this step, and how many islands they make
   std::uint32_t fell_asleep = 0, woke = 0;       // bodies, in this step
-  /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of the same bodies, joints
-  /// that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows (docs/joint-trees.md).
+  /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of
+  /// the same bodies, joints that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows
+  /// (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
   std::uint64_t transfer_bytes = 0;                    // between host and device
   std::uint64_t upload_bytes = 0;                      // of them, to the device
@@ -99,9 +104,9 @@ struct BufferUse {
   std::size_t bytes = 0;
 };
 
-/// A world may be stepped by several steppers, one after the other: what comes of a step follows from the world and the settings, not from
-/// what its stepper made before (but for Stepper::events, which tell of changes since its last step). While one steps a world, and of
-/// itself, any other change is ErrorCode::busy.
+/// A world may be stepped by several steppers, one after the other: what comes of a step follows from the world and the
+/// settings, not from what its stepper made before (but for Stepper::events, which tell of changes since its last
+/// step). While one steps a world, and of itself, any other change is ErrorCode::busy.
 class Stepper {
  public:
   explicit Stepper(const StepSettings& settings = {});
@@ -118,34 +123,37 @@ class Stepper {
   /// Moves the world on by dt [s]. The report stands until the next call.
   const StepReport& step(World& world, double dt);
 
-  /// What happened in the last step, of what the settings ask for; empty if it failed. It stands until the next call of `step`.
+  /// What happened in the last step, of what the settings ask for; empty if it failed. It stands until the next call of
+  /// `step`.
   StepEvents events() const;
 
-  /// A kernel of the host's own runs in every step of this world from now on; a stepper has kernels of one world at a time. Errors:
-  /// bad_argument (signature, more than eight buffers, order), unknown_name, wrong_type, name_taken, unavailable; device_error where
-  /// a stage is on gl and its compiler refuses the text. Nothing is added then.
+  /// A kernel of the host's own runs in every step of this world from now on; a stepper has kernels of one world at a
+  /// time. Errors: bad_argument (signature, more than eight buffers, order), unknown_name, wrong_type, name_taken,
+  /// unavailable; device_error where a stage is on gl and its compiler refuses the text. Nothing is added then.
   Status add_kernel(World& world, const KernelDef& def);
   Status remove_kernel(World& world, std::string_view name);
-  /// All of them, whether their world is still there or not: then this stepper can step another. Where it is, its next step, by whatever
-  /// stepper, wakes who sleeps there, as remove_kernel does at once; so it is when a stepper goes that has kernels.
+  /// All of them, whether their world is still there or not: then this stepper can step another. Where it is, its next
+  /// step, by whatever stepper, wakes who sleeps there, as remove_kernel does at once; so it is when a stepper goes
+  /// that has kernels.
   Status remove_kernels();
   /// From the next step on; of the type that it was given as.
   Status set_parameter(std::string_view kernel, const KernelParameter& parameter);
 
-  /// What the last step ran, or (`plan_for`) what a step of this world would, with the bytes of its transfers: for contacts as the last
-  /// step left them, and islands of the sub-steps that the settings ask for. It needs no device.
+  /// What the last step ran, or (`plan_for`) what a step of this world would, with the bytes of its transfers: for
+  /// contacts as the last step left them, and islands of the sub-steps that the settings ask for. It needs no device.
   const StepPlan& plan() const;
   Result<StepPlan> plan_for(const World& world, double dt);
 
-  /// What this world and the stepper take, with the device's copies: buffers, the host's own properties among them, and by parts of the
-  /// step what stands in none ("objects" are the world's). Nothing of it is named twice; World::memory_bytes is part of it.
+  /// What this world and the stepper take, with the device's copies: buffers, the host's own properties among them, and
+  /// by parts of the step what stands in none ("objects" are the world's). Nothing of it is named twice;
+  /// World::memory_bytes is part of it.
   std::vector<BufferUse> memory(const World& world) const;
-  /// Gives back all memory, and the devices. The next step makes again what it needs, and takes as long as a new stepper's; what comes
-  /// of it is the same.
+  /// Gives back all memory, and the devices. The next step makes again what it needs, and takes as long as a new
+  /// stepper's; what comes of it is the same.
   Status shrink();
 
-  /// For tests and `pcphys wild`: told what contacts do in each sub-step (src/step/contact_trace.h), where all stages are on the CPU;
-  /// null: nobody is.
+  /// For tests and `pcphys wild`: told what contacts do in each sub-step (src/step/contact_trace.h), where all stages
+  /// are on the CPU; null: nobody is.
   void set_trace(ContactTrace* trace);
 
   /// "cpu, 8 lanes", or the GL renderer's name; empty when no stage runs there.

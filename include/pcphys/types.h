@@ -61,9 +61,13 @@ struct ShapeDef {
   Hull convex = {};  // of ShapeKind::hull, which uses no size
 
   static ShapeDef sphere(double radius) { return {ShapeKind::sphere, {radius, 0, 0}, {}, {}}; }
-  static ShapeDef capsule(double radius, double half_length) { return {ShapeKind::capsule, {radius, half_length, 0}, {}, {}}; }
+  static ShapeDef capsule(double radius, double half_length) {
+    return {ShapeKind::capsule, {radius, half_length, 0}, {}, {}};
+  }
   static ShapeDef box(Vec3 half_extents) { return {ShapeKind::box, half_extents, {}, {}}; }
-  static ShapeDef cylinder(double radius, double half_height) { return {ShapeKind::cylinder, {radius, half_height, 0}, {}, {}}; }
+  static ShapeDef cylinder(double radius, double half_height) {
+    return {ShapeKind::cylinder, {radius, half_height, 0}, {}, {}};
+  }
   static ShapeDef hull(Hull hull) { return {ShapeKind::hull, {}, {}, {}, std::move(hull)}; }
   static ShapeDef plane() { return {ShapeKind::plane, {}, {}, {}}; }
 };
@@ -89,8 +93,8 @@ struct BodyDef {
   double linear_drag = 0;   // F in v' = -F v [1/s]; the original's default is 0.25
   double angular_drag = 0;  // the same of the angular momentum [1/s]
   bool can_sleep = true;    // false: it keeps its island awake (docs/sleeping.md)
-  /// false: a dynamic body that no contact, force or spring turns, as if its moments of inertia were infinite; they read as zero. It
-  /// takes no joints. Where no body rotates, steps compute no rotation (docs/leaving-out.md).
+  /// false: a dynamic body that no contact, force or spring turns, as if its moments of inertia were infinite; they
+  /// read as zero. It takes no joints. Where no body rotates, steps compute no rotation (docs/leaving-out.md).
   bool rotates = true;
 };
 
@@ -119,23 +123,25 @@ struct AngleFreedom {
   static AngleFreedom locked() { return between({}, {}); }
 };
 
-/// Turns b against a about the x axis of the joint's frame in a, at `speed`, with at most `torque`: a motor with a gear that does not
-/// turn back, which holds its speed (0: a brake) as long as its torque suffices. What the pins leave free may move beside it.
+/// Turns b against a about the x axis of the joint's frame in a, at `speed`, with at most `torque`: a motor with a gear
+/// that does not turn back, which holds its speed (0: a brake) as long as its torque suffices. What the pins leave free
+/// may move beside it.
 struct Motor {
   double speed = 0;   // [rad/s]
   double torque = 0;  // [N m]; 0: no motor
 };
 
-/// Pulls b's frame back to `rest` in a's frame: torque = -stiffness * (rotation vector from rest) - damping * (relative angular
-/// velocity). Turns of more than half a circle are taken the short way.
+/// Pulls b's frame back to `rest` in a's frame: torque = -stiffness * (rotation vector from rest) - damping * (relative
+/// angular velocity). Turns of more than half a circle are taken the short way.
 struct AngularSpring {
   double stiffness = 0;  // [N m/rad]
   double damping = 0;    // [N m s/rad]
   Quat rest;
 };
 
-/// A spring and damper along the line between a point of a and one of b: tension = stiffness * (distance - rest_length) +
-/// damping * (rate of the distance). It pulls and pushes, at any stiffness: what a sub-step is too long to resolve is damped.
+/// A spring and damper along the line between a point of a and one of b: tension = stiffness * (distance - rest_length)
+/// + damping * (rate of the distance). It pulls and pushes, at any stiffness: what a sub-step is too long to resolve is
+/// damped.
 struct SpringDef {
   BodyId a, b;              // a may be `World::ground()`
   Vec3 anchor_a, anchor_b;  // in each body's frame [m]
@@ -152,8 +158,9 @@ struct JointDef {
   Motor motor;
   AngularSpring spring;
   bool collide = false;  // whether a and b may collide; adjacent bones do not
-  /// Of the pin, above 0; what pulls harder draws it open, and it closes again. Infinite: it never gives way, so a kinematic body tears
-  /// what it drags through what stands. Such a pin is solved as a row, beside the trees ([N]; World::grab).
+  /// Of the pin, above 0; what pulls harder draws it open, and it closes again. Infinite: it never gives way, so a
+  /// kinematic body tears what it drags through what stands. Such a pin is solved as a row, beside the trees ([N];
+  /// World::grab).
   double largest_force = std::numeric_limits<double>::infinity();
   bool yields() const { return largest_force < std::numeric_limits<double>::infinity(); }
 };
@@ -166,7 +173,8 @@ struct BoneDef {
   Vec3 joint;       // where it is pinned to its parent, ragdoll's frame
   Quat joint_axes;  // of the joint frames, ragdoll's frame
   AngleFreedom freedom;
-  double damping = 0;  // torque against the joint's turning, per angular velocity [N m s/rad]; without any, what hangs free swings on
+  /// torque against the joint's turning, per angular velocity [N m s/rad]; without any, what hangs free swings on
+  double damping = 0;
 };
 
 /// A tree of bones (section 9.1 of the original). Adjacent bones do not collide.
@@ -175,8 +183,8 @@ struct RagdollDef {
   double density = 1000;
   Material material;
 
-  /// The original's human: 12 capsules, 11 joints, root at the hips, feet at y = 0. Its joints have a damping of 0.3 N m s/rad,
-  /// so that limbs that hang free come to rest.
+  /// The original's human: 12 capsules, 11 joints, root at the hips, feet at y = 0. Its joints have a damping of 0.3 N
+  /// m s/rad, so that limbs that hang free come to rest.
   static RagdollDef human();
   /// Gives all joints this damping [N m s/rad].
   void set_damping(double damping);

@@ -2,8 +2,9 @@
 //
 // Every function that takes an id answers a stale one with ErrorCode::stale_id, every one that takes
 // numbers answers NaN and infinity with ErrorCode::not_finite, and a refused call leaves the world exactly
-// as it was. While a step of it runs, which callbacks see, every change is ErrorCode::busy. Nothing but a destructor and an assignment
-// may be called of a world that was moved from: that ends the process with a sentence. A world is used by one thread at a time.
+// as it was. While a step of it runs, which callbacks see, every change is ErrorCode::busy. Nothing but a destructor
+// and an assignment may be called of a world that was moved from: that ends the process with a sentence. A world is
+// used by one thread at a time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,8 @@ class World;
 /// A manifold between two bodies, as the last step left it. World axes, SI units.
 struct Contact {
   struct Point {
-    Vec3 position;          // on the light body's surface, midway between equal ones; as found, from a where a is now [m]
+    /// on the light body's surface, midway between equal ones; as found, from a where a is now [m]
+    Vec3 position;
     double separation = 0;  // negative when the shapes overlap [m]
     double impulse = 0;     // along the normal, of the last sub-step [N s]
   };
@@ -42,7 +44,8 @@ struct WorldDef {
 };
 
 using ForceId = Id<struct ForceTag>;
-/// Evaluated once a step, before anything moves. It may read the world, not change it. What it throws makes the step fail.
+/// Evaluated once a step, before anything moves. It may read the world, not change it. What it throws makes the step
+/// fail.
 using ForceCallback = std::function<Wrench(const World&, BodyId)>;
 
 class World {
@@ -59,8 +62,9 @@ class World {
   Result<JointId> create_joint(const JointDef& def);
   /// The two bodies may collide. Stiffness, damping and rest length below zero are ErrorCode::bad_joint.
   Result<SpringId> create_spring(const SpringDef& def);
-  /// Pins what stands at a point of the world [m] of a dynamic body to a kinematic one, a hand, by at most 100 times the weight of all
-  /// that hangs together with the body by joints (of gravity, or where there is none of the earth's). ErrorCode::bad_joint of other kinds.
+  /// Pins what stands at a point of the world [m] of a dynamic body to a kinematic one, a hand, by at most 100 times
+  /// the weight of all that hangs together with the body by joints (of gravity, or where there is none of the earth's).
+  /// ErrorCode::bad_joint of other kinds.
   Result<JointId> grab(BodyId hand, BodyId body, Vec3 point);
   /// Bones and joints of a ragdoll whose frame stands at `pose`; all bones move with `velocity`.
   Result<Ragdoll> create_ragdoll(const RagdollDef& def, const Pose& pose, Vec3 velocity = {});
@@ -109,8 +113,9 @@ class World {
 
   /// Whether it sleeps: its step left it out, and so will the next (docs/sleeping.md).
   Result<bool> is_asleep(BodyId body) const;
-  /// Wakes its island at the next step, and lets no body rest on what it was before. What the functions of this class change wakes by
-  /// itself; this is for what they do not see, such as a change of what a kernel of the host's own does.
+  /// Wakes its island at the next step, and lets no body rest on what it was before. What the functions of this class
+  /// change wakes by itself; this is for what they do not see, such as a change of what a kernel of the host's own
+  /// does.
   Status wake(BodyId body);
   Result<bool> can_sleep(BodyId body) const;
   Status set_can_sleep(BodyId body, bool can_sleep);
@@ -131,7 +136,8 @@ class World {
   /// The shapes as they were given at creation.
   Result<std::vector<ShapeDef>> shapes(BodyId body) const;
   Status set_filter(BodyId body, const Filter& filter);
-  /// Whether two bodies may never collide, besides what joints and filters say. Twice the same body is ErrorCode::bad_argument.
+  /// Whether two bodies may never collide, besides what joints and filters say. Twice the same body is
+  /// ErrorCode::bad_argument.
   Status set_collide(BodyId a, BodyId b, bool collide);
   Result<JointDef> joint(JointId joint) const;
   /// From the next step on. Speed in [rad/s], torque in [N m]; a torque below zero is ErrorCode::bad_joint.
@@ -158,21 +164,24 @@ class World {
 
   // ---- tables ----------------------------------------------------------------------------------------
   Precision precision() const;
-  /// A view of a property by name: "position", "angular_momentum", ... (docs/properties.md lists all), or one of the host's own.
-  /// Valid until an object of its table is created or destroyed. Row 0 is the padding row; `row_of` finds a body's.
+  /// A view of a property by name: "position", "angular_momentum", ... (docs/properties.md lists all), or one of the
+  /// host's own. Valid until an object of its table is created or destroyed. Row 0 is the padding row; `row_of` finds a
+  /// body's.
   Result<PropertyView> view(std::string_view property) const;
   Result<std::uint32_t> row_of(BodyId body) const;
   Result<std::uint32_t> row_of(JointId joint) const;
   /// What its tables and objects take.
   std::size_t memory_bytes() const;
-  /// Gives back memory that none of its objects needs, such as that of many which were destroyed; what comes of steps is the same.
+  /// Gives back memory that none of its objects needs, such as that of many which were destroyed; what comes of steps
+  /// is the same.
   Status shrink();
 
-  /// A property of the host's own, of bodies, of joints (and springs), or of a table of its own: T is Real, float, double,
-  /// std::int32_t, std::uint32_t, Vec3, Vec4, Quat, Mat3 or SymMat3. Every row, present and to come, starts with `initial`.
-  /// Until a kernel of some stepper names it, it is the host's alone: to set it wakes nobody, and the hash does not hold it unless its
-  /// role is `state`. Snapshots hold it if its role is `host` or `state`. The name must be one that a kernel's text can use:
-  /// letters, digits and underscores, not that of another property (ErrorCode::name_taken).
+  /// A property of the host's own, of bodies, of joints (and springs), or of a table of its own: T is Real, float,
+  /// double, std::int32_t, std::uint32_t, Vec3, Vec4, Quat, Mat3 or SymMat3. Every row, present and to come, starts
+  /// with `initial`. Until a kernel of some stepper names it, it is the host's alone: to set it wakes nobody, and the
+  /// hash does not hold it unless its role is `state`. Snapshots hold it if its role is `host` or `state`. The name
+  /// must be one that a kernel's text can use: letters, digits and underscores, not that of another property
+  /// (ErrorCode::name_taken).
   template <PropertyValue T>
   Result<Property<T>> add_property(std::string_view name, const T& initial = {}, std::string_view unit = "1",
                                    TableId table = body_table, Role role = Role::host) {
@@ -185,31 +194,33 @@ class World {
   template <PropertyValue T> Result<Property<T>> property(std::string_view name) const {
     return handle<T>(find_property(name, property_type<T>));
   }
-  /// The value of one object, or of one row of a table of the host's own. What the library derives from others or keeps in step
-  /// with them (any of its own that is no `input`) can be read, not set: that is ErrorCode::bad_argument.
+  /// The value of one object, or of one row of a table of the host's own. What the library derives from others or keeps
+  /// in step with them (any of its own that is no `input`) can be read, not set: that is ErrorCode::bad_argument.
   template <PropertyValue T> Result<T> get(Property<T> property, RowOf object) const {
     PropertyNumbers numbers;
-    if (Status ok = read({property.index, property.generation, property.world}, object, numbers.x); !ok) return ok.error();
+    if (Status ok = read({property.index, property.generation, property.world}, object, numbers.x); !ok)
+      return ok.error();
     return numbers.as<T>();
   }
   template <PropertyValue T> Status set(Property<T> property, RowOf object, const T& value) {
     const PropertyNumbers numbers(value);
     return write({property.index, property.generation, property.world}, object, numbers.x);
   }
-  /// All of them, the library's first, then the host's own in the order of their handles. Names stand as long as the properties.
+  /// All of them, the library's first, then the host's own in the order of their handles. Names stand as long as the
+  /// properties.
   std::vector<PropertyInfo> properties() const;
 
   /// A table of the host's own with rows 1 to `rows`, at most 2^28; row 0 pads, as in every table.
   Result<TableId> add_table(std::string_view name, std::uint32_t rows = 0);
-  /// New rows hold each property's initial value; rows beyond are gone. Errors: bad_argument above 2^28, buffer_full where there is no
-  /// memory for them; then the table is as it was.
+  /// New rows hold each property's initial value; rows beyond are gone. Errors: bad_argument above 2^28, buffer_full
+  /// where there is no memory for them; then the table is as it was.
   Status resize(TableId table, std::uint32_t rows);
   Result<std::uint32_t> rows(TableId table) const;
   /// Takes its properties with it.
   Status remove(TableId table);
 
-  /// FNV-1a, 64 bit, over state and solver memory in ascending id order; -0 counts as +0. A property of role `host` is in
-  /// it since a kernel of some stepper has named it: what comes of steps may follow from it.
+  /// FNV-1a, 64 bit, over state and solver memory in ascending id order; -0 counts as +0. A property of role `host` is
+  /// in it since a kernel of some stepper has named it: what comes of steps may follow from it.
   std::uint64_t hash() const;
   /// All properties of role `state` or `host`, as bytes; restored bit for bit into a world with the same objects.
   std::vector<std::byte> snapshot() const;
@@ -233,8 +244,8 @@ class World {
     if (!found) return found.error();
     return Property<T>{found->index, found->generation, found->world};
   }
-  Result<AnyProperty> add_property(std::string_view name, PropertyType type, const double* initial, std::string_view unit,
-                                   TableId table, Role role);
+  Result<AnyProperty> add_property(std::string_view name, PropertyType type, const double* initial,
+                                   std::string_view unit, TableId table, Role role);
   Result<AnyProperty> find_property(std::string_view name, PropertyType type) const;
   Status read(AnyProperty property, RowOf object, double* numbers) const;
   Status write(AnyProperty property, RowOf object, const double* numbers);

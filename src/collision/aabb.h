@@ -27,7 +27,9 @@ inline float round_down(double x) {
 inline float round_up(double x) { return -round_down(-x); }
 
 /// False for NaN and for inverted boxes.
-inline bool valid(const Aabb& box) { return box.min[0] <= box.max[0] && box.min[1] <= box.max[1] && box.min[2] <= box.max[2]; }
+inline bool valid(const Aabb& box) {
+  return box.min[0] <= box.max[0] && box.min[1] <= box.max[1] && box.min[2] <= box.max[2];
+}
 
 inline bool bounded(const Aabb& box) {
   constexpr float largest = std::numeric_limits<float>::max();
@@ -47,8 +49,8 @@ inline bool overlap(const Aabb& a, const Aabb& b) {
   const __m128 ab = _mm_cmple_ps(_mm_loadu_ps(a.min), high(b)), ba = _mm_cmple_ps(_mm_loadu_ps(b.min), high(a));
   return (_mm_movemask_ps(_mm_and_ps(ab, ba)) & 7) == 7;
 #else
-  return a.min[0] <= b.max[0] && b.min[0] <= a.max[0] && a.min[1] <= b.max[1] && b.min[1] <= a.max[1] && a.min[2] <= b.max[2] &&
-         b.min[2] <= a.max[2];
+  return a.min[0] <= b.max[0] && b.min[0] <= a.max[0] && a.min[1] <= b.max[1] && b.min[1] <= a.max[1] &&
+         a.min[2] <= b.max[2] && b.min[2] <= a.max[2];
 #endif
 }
 

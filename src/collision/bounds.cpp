@@ -63,9 +63,9 @@ template <class Scalar> void Detector::find_twists(const WorldState& s, const Op
                moving_.data(), movers_, twists_.data()->v});
 }
 
-// A blow that stops one body of a joint tree sends its neighbours on, or draws them along: a foot that stands is pushed through the floor
-// by what falls on it from the same ragdoll, though it did not move. So each may go as far as the fastest body that joints connect it
-// to, where that is further than half of the thinnest shape.
+// A blow that stops one body of a joint tree sends its neighbours on, or draws them along: a foot that stands is pushed
+// through the floor by what falls on it from the same ragdoll, though it did not move. So each may go as far as the
+// fastest body that joints connect it to, where that is further than half of the thinnest shape.
 void Detector::find_drawn(double dt) {
   const bool drew = std::exchange(draws_, false);
   drawn_.assign(trees_.size(), 0);
@@ -86,9 +86,10 @@ void Detector::find_drawn(double dt) {
   }
 }
 
-// Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so that every
-// two shapes that come within the margin of each other have overlapping boxes.
-template <class Scalar> void Detector::bound(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
+// Each box is grown by its shape's margin, if forces move it, and by how far the shape can come within the step, so
+// that every two shapes that come within the margin of each other have overlapping boxes.
+template <class Scalar>
+void Detector::bound(const WorldState& s, double dt, const Options& options, Scratch<Scalar>& scratch) {
   constexpr bool rounds = !std::is_same_v<Scalar, float>;
   const std::uint32_t count = std::uint32_t(proxies_.size()), stride = std::uint32_t(bodies_.size());
   if (listed_margin_ != options.contact_margin) list_columns(s, options);
@@ -103,8 +104,8 @@ template <class Scalar> void Detector::bound(const WorldState& s, double dt, con
   for (std::uint32_t i = 0; i < count; i++) {
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive) continue;
-    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.hull, proxy.centred, bodies.orientation(proxy.body),
-                scratch.shapes[i]);
+    place_shape(table + (i + 1) * reals_of(Buffer::shape), proxy.kind, proxy.hull, proxy.centred,
+                bodies.orientation(proxy.body), scratch.shapes[i]);
     bodies.write_row(proxy.body, scratch.shapes[i], rows + i * round_reals);
     if constexpr (rounds) round_row(rows + i * round_reals, bound_rows + i * round_reals);
   }
@@ -113,8 +114,8 @@ template <class Scalar> void Detector::bound(const WorldState& s, double dt, con
   dt_ = dt;
   fall_ = length(s.gravity) * dt * dt;
   narrow_lanes<float>(options.lanes)
-      .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt), float(fall_), largest_turn,
-              reach_.data(), tight_.data()});
+      .boxes({bound_rows, columns, twists_.data()->v, bodies_.data(), count, stride, float(dt), float(fall_),
+              largest_turn, reach_.data(), tight_.data()});
   scratch.kinds.resize(count);
   for (std::uint32_t i = 0; i < count; i++)
     scratch.kinds[i] = {Scalar(margins_[i]), reach_[i], proxies_[i].kind, proxies_[i].responds};

@@ -31,7 +31,8 @@ struct alignas(16) BoxBlock {
 static_assert(sizeof(BoxBlock) == 128);
 
 /// Bit l is set when lane l of `block` overlaps the box with these sides.
-inline std::uint32_t overlapping_lanes(const BoxBlock& block, float x0, float y0, float z0, float x1, float y1, float z1) {
+inline std::uint32_t overlapping_lanes(const BoxBlock& block, float x0, float y0, float z0, float x1, float y1,
+                                       float z1) {
 #if defined(__SSE2__)
   const auto below = [](const float* lanes, float side) { return _mm_cmple_ps(_mm_load_ps(lanes), _mm_set1_ps(side)); };
   const auto above = [](const float* lanes, float side) { return _mm_cmpge_ps(_mm_load_ps(lanes), _mm_set1_ps(side)); };
@@ -67,7 +68,8 @@ inline Aabb BoxBlock::load(const Aabb* boxes) {
   Aabb around = *source[0];
 #if defined(__SSE2__)
   __m128 low[lanes], high[lanes];  // min0 min1 min2 max0; min2 max0 max1 max2
-  for (std::uint32_t l = 0; l < lanes; ++l) low[l] = _mm_loadu_ps(source[l]->min), high[l] = _mm_loadu_ps(source[l]->min + 2);
+  for (std::uint32_t l = 0; l < lanes; ++l)
+    low[l] = _mm_loadu_ps(source[l]->min), high[l] = _mm_loadu_ps(source[l]->min + 2);
   __m128 least = low[0], most = high[0];  // the second operand survives a NaN
   for (std::uint32_t l = 1; l < lanes; ++l) least = _mm_min_ps(low[l], least), most = _mm_max_ps(high[l], most);
   _mm_storeu_ps(around.min + 2, most);

@@ -36,7 +36,8 @@ std::array<std::uint32_t, 4> points_before(const Manifold<Scalar>& m, const std:
 
 /// What is left over goes to the nearest point of before: a feature may change its name while the contact stays.
 template <class Scalar>
-void match_nearest(const Manifold<Scalar>& m, const Scalar* before, std::uint32_t count, std::array<std::uint32_t, 4>& from) {
+void match_nearest(const Manifold<Scalar>& m, const Scalar* before, std::uint32_t count,
+                   std::array<std::uint32_t, 4>& from) {
   for (std::uint32_t i = 0; i < m.count; i++) {
     if (from[i] != 0) continue;
     Scalar best = std::numeric_limits<Scalar>::max();
@@ -67,7 +68,8 @@ template <class Scalar> struct Detector::Substep {
 /// Looks, of which `does` is one. The rows that it renews are those that count as such until the level is looked at
 /// again.
 template <class Does>
-void Detector::look_in(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options, const Does& does) {
+void Detector::look_in(WorldState& s, const Listed& contacts, unsigned level, double h, const Options& options,
+                       const Does& does) {
   meetings_++;
   renewed_.clear();
   if (anew_.size() <= level) anew_.resize(level + 1);
@@ -171,16 +173,16 @@ template <class Scalar> struct Detector::Meeting {
   bool sinks(const Manifold<Scalar>& m, double t) const { return closing(m) * (h - t) > thick / 2; }
 
   /// Whether they come together, and no faster than by what gravity gives in two sub-steps. What else holds them takes
-  /// that back, which rows that are solved together know and an impact does not. (What bounces does so however slowly it
-  /// comes. Limbs that part rest still: what their tree takes from them it gives back.)
+  /// that back, which rows that are solved together know and an impact does not. (What bounces does so however slowly
+  /// it comes. Limbs that part rest still: what their tree takes from them it gives back.)
   bool settles(const Manifold<Scalar>& m) const {
     if (c.bounces) return false;
     const double closing = this->closing(m);
     return (closing > 0 || c.jointed) && closing <= 2 * length(s.gravity) * h;
   }
 
-  /// The points within this of the nearest are those that act. (Shapes may be as near by their supports as they are at no point of the
-  /// manifold.)
+  /// The points within this of the nearest are those that act. (Shapes may be as near by their supports as they are at
+  /// no point of the manifold.)
   void find_together(const Manifold<Scalar>& m, double within) {
     const double most = std::max(0.0, double(least_separation(m))) + within;
     c.together = 0;
@@ -191,8 +193,8 @@ template <class Scalar> struct Detector::Meeting {
   /// Whether one goes so far that it leaves the range of numbers: the step freezes it, and till then it meets nothing.
   static bool is_lost(double goes) { return !(goes < constants::largest_state); }
 
-  /// `sent`: they were looked at before in the sub-step, and sent elsewhere since. Then what would sink in is stopped; the
-  /// next sub-step sees the rest.
+  /// `sent`: they were looked at before in the sub-step, and sent elsewhere since. Then what would sink in is stopped;
+  /// the next sub-step sees the rest.
   void find(bool sent) {
     const double goes = way();
     const bool quick = this->quick();
@@ -247,7 +249,8 @@ template <class Scalar> struct Detector::Meeting {
       look_at(x, y, z);
     };
     Manifold<Scalar> m;
-    const Met met = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
+    const Met met =
+        meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
     if (!met.together) return false;
     find_together(m, near);
     to_light_side(m, share);

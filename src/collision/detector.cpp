@@ -14,7 +14,9 @@
 namespace pcphys {
 namespace {
 
-bool may_touch(const void* filter, std::uint32_t a, std::uint32_t b) { return (*static_cast<const PairFilter*>(filter))(a, b); }
+bool may_touch(const void* filter, std::uint32_t a, std::uint32_t b) {
+  return (*static_cast<const PairFilter*>(filter))(a, b);
+}
 
 /// See Proxy. A shape that is not centred turns with its whole distance.
 std::pair<float, float> levers(const ShapeDef& d) {
@@ -67,9 +69,9 @@ bool some_could_touch(const WorldState& s) {
   return false;
 }
 
-/// By body row the lowest row of its joint tree, whatever the order of the joints; 0 for bodies of none, and where the tree hangs on
-/// something that does not respond. (What never gives way may leave a body nowhere to go, wherever it is looked for: docs/substeps.md,
-/// hands that slip.) Empty where there are no joints.
+/// By body row the lowest row of its joint tree, whatever the order of the joints; 0 for bodies of none, and where the
+/// tree hangs on something that does not respond. (What never gives way may leave a body nowhere to go, wherever it is
+/// looked for: docs/substeps.md, hands that slip.) Empty where there are no joints.
 void list_trees(const WorldState& s, std::vector<std::uint32_t>& trees) {
   trees.clear();
   if (s.joints.size() == 1) return;
@@ -180,13 +182,15 @@ void Detector::rebuild(const WorldState& s) {
 }
 
 std::size_t Detector::memory_bytes() const {
-  const std::size_t of_shapes = bytes_of(proxies_, standing_, tight_, margins_, reach_, columns_, rows_, odd_, *filter_);
-  const std::size_t of_bodies =
-      bytes_of(parts_, touched_, twists_, rounded_, moving_, bodies_, starts_, levers_, ways_, twisted_, touching_,
-               times_struck_, marked_, swept_, first_of_, contacts_of_, of_marked_, soonest_, sent_elsewhere_, went_, trees_, fastest_, drawn_);
-  const std::size_t of_contacts = bytes_of(standings_, later_, renewed_, struck_, waiting_, unseen_, beside_struck_, on_standing_, inner_,
-                                           beside_, looks_, anew_, distant_, gone_, next_);
-  return of_shapes + of_bodies + of_contacts + bytes_of(pairs_, near_, marks_, hints_, next_hints_, alone_, scratch_f_, scratch_d_);
+  const std::size_t of_shapes =
+      bytes_of(proxies_, standing_, tight_, margins_, reach_, columns_, rows_, odd_, *filter_);
+  const std::size_t of_bodies = bytes_of(parts_, touched_, twists_, rounded_, moving_, bodies_, starts_, levers_, ways_,
+                                         twisted_, touching_, times_struck_, marked_, swept_, first_of_, contacts_of_,
+                                         of_marked_, soonest_, sent_elsewhere_, went_, trees_, fastest_, drawn_);
+  const std::size_t of_contacts = bytes_of(standings_, later_, renewed_, struck_, waiting_, unseen_, beside_struck_,
+                                           on_standing_, inner_, beside_, looks_, anew_, distant_, gone_, next_);
+  return of_shapes + of_bodies + of_contacts +
+         bytes_of(pairs_, near_, marks_, hints_, next_hints_, alone_, scratch_f_, scratch_d_);
 }
 
 void Detector::follow_rest(const WorldState& s) {
@@ -211,14 +215,15 @@ bool Detector::some_material(const WorldState& s, std::initializer_list<std::uin
 }
 
 namespace {
-/// What a list holds beside pairs whose tight boxes overlap depends on what the broad phase has seen, so it has room for some more:
-/// whether there are too many is asked of those that overlap.
+/// What a list holds beside pairs whose tight boxes overlap depends on what the broad phase has seen, so it has room
+/// for some more: whether there are too many is asked of those that overlap.
 constexpr std::size_t list_room(std::size_t max_pairs) { return 4 * max_pairs + 64; }
 
 Error too_many_pairs(std::uint64_t needed, bool exact, std::size_t room) {
-  return {ErrorCode::buffer_full, "The scene has " + std::to_string(needed) + (exact ? "" : " or fewer") +
-                                      " pairs of shapes close together and room for " + std::to_string(room) +
-                                      "; raise StepSettings::max_pairs, or spread the bodies. The world is as before the step."};
+  return {ErrorCode::buffer_full,
+          "The scene has " + std::to_string(needed) + (exact ? "" : " or fewer") +
+              " pairs of shapes close together and room for " + std::to_string(room) +
+              "; raise StepSettings::max_pairs, or spread the bodies. The world is as before the step."};
 }
 }  // namespace
 
@@ -237,8 +242,9 @@ Status Detector::find_pairs(const WorldState& s, double dt, const Options& optio
   if (report.refused > 0) {
     const std::uint32_t body = s.shapes[report.first_refused].body;
     structure_ = 0;  // the broad phase dropped the shape: list all of them anew once the host has mended it
-    return Error{ErrorCode::not_finite, "The pose or velocity of body " + std::to_string(body) +
-                                            " is not finite; set it anew or destroy the body. The world is as before the step."};
+    return Error{ErrorCode::not_finite,
+                 "The pose or velocity of body " + std::to_string(body) +
+                     " is not finite; set it anew or destroy the body. The world is as before the step."};
   }
   if (report.changed) {
     const std::size_t pairs = pairs_.pairs().size();
@@ -282,7 +288,8 @@ template <class Scalar> bool Detector::passes_unseen(std::uint32_t shape, const 
   return false;
 }
 
-// A body that went its reach and half of its thickness is at most half sunk into what it never saw: the next step finds it.
+// A body that went its reach and half of its thickness is at most half sunk into what it never saw: the next step finds
+// it.
 template <class Scalar> bool Detector::collect_strays(const WorldState& s, const Scalar* before) {
   const Scalar* now = s.tables.data<Scalar>(Buffer::pose);
   bool found = false;
@@ -290,7 +297,8 @@ template <class Scalar> bool Detector::collect_strays(const WorldState& s, const
     const Proxy& proxy = proxies_[i];
     if (!proxy.alive || !proxy.responds) continue;
     const Scalar *p = now + proxy.body * reals_of(Buffer::pose), *q = before + proxy.body * reals_of(Buffer::pose);
-    const float x = float(p[0] - q[0]), y = float(p[1] - q[1]), z = float(p[2] - q[2]), seen = reach_[i] + 0.5f * proxy.inner;
+    const float x = float(p[0] - q[0]), y = float(p[1] - q[1]), z = float(p[2] - q[2]),
+                seen = reach_[i] + 0.5f * proxy.inner;
     const float way = x * x + y * y + z * z;
     if (way <= seen * seen || !passes_unseen(i, q, p)) continue;
     if (!strays_) went_.assign(s.bodies.size(), 0);

@@ -73,7 +73,8 @@ class Detector {
   void meet(WorldState& state, const Listed& contacts, unsigned level, bool first, double h, const Options& options);
   /// And once more, of bodies that impacts have struck since, which now go elsewhere, and of impacts that waited for
   /// others. `last`: none waits any longer.
-  void meet_again(WorldState& state, const Listed& contacts, unsigned level, bool last, double h, const Options& options);
+  void meet_again(WorldState& state, const Listed& contacts, unsigned level, bool last, double h,
+                  const Options& options);
   /// Whether impacts wait for others that come before them.
   bool waits() const { return !waiting_.empty(); }
   /// After contacts and joints have acted, before the bodies move: limbs that they have sent against something.
@@ -84,7 +85,8 @@ class Detector {
   std::span<const std::uint32_t> struck() const { return unseen_; }
   /// By contact row.
   std::span<const Standing> standings() const { return standings_; }
-  /// Of a contact, after the step: where the first body's centre was when its rows were found, as its points see it [m].
+  /// Of a contact, after the step: where the first body's centre was when its rows were found, as its points see it
+  /// [m].
   Vec3 origin(std::uint32_t contact) const {
     const Standing& c = standings_[contact];
     return c.later > 0 ? later_[c.later].origin : starts_[c.rows[0]];
@@ -175,9 +177,11 @@ class Detector {
   void list_columns(const WorldState& state, const Options& options);
   template <class Scalar> void find_twists(const WorldState& state, const Options& options);
   void find_drawn(double dt);
-  template <class Scalar> void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
+  template <class Scalar>
+  void bound(const WorldState& state, double dt, const Options& options, Scratch<Scalar>& scratch);
   template <class Scalar> struct Merge;
-  template <class Scalar> Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
+  template <class Scalar>
+  Status narrow_all(WorldState& state, const Options& options, Scratch<Scalar>& scratch, Found& found);
   /// Takes over contacts of the last step, from the first row to before the last.
   template <class Scalar>
   void keep(const WorldState& state, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found);
@@ -196,9 +200,11 @@ class Detector {
       for (std::uint32_t place = 0; place < batch_.size(); place++) does(place);
   }
   /// Finds the manifolds of those that do not go in lanes, in their order.
-  template <class Scalar> void find_manifolds(const WorldState& state, const Options& options, Scratch<Scalar>& scratch);
+  template <class Scalar>
+  void find_manifolds(const WorldState& state, const Options& options, Scratch<Scalar>& scratch);
   /// The manifold of a place in the batch, `found` of which had none in lanes. False where no contact comes of it.
-  template <class Scalar> bool touches(Scratch<Scalar>& scratch, std::uint32_t place, std::size_t& found, Touch<Scalar>& touch);
+  template <class Scalar>
+  bool touches(Scratch<Scalar>& scratch, std::uint32_t place, std::size_t& found, Touch<Scalar>& touch);
   template <class Scalar>
   Standing stand(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair, bool held,
                  Touch<Scalar>& touch) const;
@@ -214,7 +220,8 @@ class Detector {
   /// The shapes of a pair in the order of the contact's bodies.
   Pair in_order(std::uint32_t pair) const;
   template <class Scalar> Scalar look_margin(Pair shapes) const;
-  template <class Scalar> Sight<Scalar> sight(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair) const;
+  template <class Scalar>
+  Sight<Scalar> sight(const WorldState& state, const Scratch<Scalar>& scratch, std::uint32_t pair) const;
   template <class Scalar>
   void find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
             std::uint32_t pair, Manifold<Scalar>& manifold);
@@ -231,7 +238,8 @@ class Detector {
   template <class Scalar> struct Substep;
   template <class Scalar> struct Meeting;
   template <class Does>
-  void look_in(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options, const Does& does);
+  void look_in(WorldState& state, const Listed& contacts, unsigned level, double h, const Options& options,
+               const Does& does);
   template <class Scalar> void find_all(const Substep<Scalar>& look, bool sent);
   template <class Scalar> void meet_in(const Substep<Scalar>& look);
   template <class Scalar> void meet_sent_in(const Substep<Scalar>& look);
@@ -271,14 +279,15 @@ class Detector {
   std::uint64_t serial_ = 0, structure_ = 0;  // of the world that was seen last
   std::uint64_t joint_changes_ = 0;
   std::uint64_t rest_ = 0;
-  std::vector<Part> parts_;  // of bodies, by row; empty where none sleeps
+  std::vector<Part> parts_;             // of bodies, by row; empty where none sleeps
   std::vector<std::uint32_t> touched_;  // of those that sleep
   bool possible_ = false;
   std::vector<Proxy> proxies_;
   std::vector<std::uint32_t> standing_;  // shapes of fixed and kinematic bodies
   float thinnest_ = 0;                   // half the least thickness of what moves by forces [m]
   std::vector<Aabb> tight_;
-  std::vector<double> margins_;        // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]
+  // contacts of a shape are kept up to this gap; of a pair, up to the smaller of the two [m]
+  std::vector<double> margins_;
   std::vector<float> reach_;           // how far a shape may come this step [m]
   std::vector<Twist> twists_;          // of bodies, by row
   AlignedBytes columns_, rows_;        // of shapes, in float: narrow_bounds.inl
@@ -292,39 +301,43 @@ class Detector {
   std::vector<Standing> standings_;    // of contacts, by row
   std::vector<Later> later_;           // of contacts that were looked at within the step; the first of none
   std::vector<Vec3> starts_;           // of bodies: where their centres were when the step began [m]
-  std::vector<float> levers_;          // of bodies: how far a turn of one radian moves any point of their shapes, at most [m]
-  std::vector<Way> ways_;              // of bodies
+  // of bodies: how far a turn of one radian moves any point of their shapes, at most [m]
+  std::vector<float> levers_;
+  std::vector<Way> ways_;               // of bodies
   std::vector<std::uint32_t> twisted_;  // of bodies: the look that their twists are of
-  std::uint32_t meetings_ = 0;         // how many sub-steps it has looked at
+  std::uint32_t meetings_ = 0;          // how many sub-steps it has looked at
   // places in what was listed
   std::vector<std::uint32_t> renewed_, struck_, waiting_, unseen_, on_standing_, inner_, beside_, beside_struck_;
   std::vector<std::uint32_t> touching_;  // by body: how much of what stands it touches
   std::vector<Look> looks_;
-  std::vector<std::uint32_t> alone_;              // pairs that do not go in lanes
-  std::vector<float> times_struck_;               // of bodies, when impacts were looked for last
-  bool none_struck_ = false;                      // since the step has begun
-  std::vector<std::uint32_t> marked_, swept_;     // bodies: struck since then; of the contacts that the sweep may strike
+  std::vector<std::uint32_t> alone_;  // pairs that do not go in lanes
+  std::vector<float> times_struck_;   // of bodies, when impacts were looked for last
+  bool none_struck_ = false;          // since the step has begun
+  // bodies: struck since then; of the contacts that the sweep may strike
+  std::vector<std::uint32_t> marked_, swept_;
   std::vector<std::uint32_t> first_of_, contacts_of_;  // by body, its contacts of a level: numbers in the order of rows
-  Marks of_marked_;                               // of these, those of marked bodies
-  std::vector<double> soonest_;                   // of bodies: when in the sub-step the first impact is [s]
-  unsigned listed_level_ = 0;                     // from 1; 0: none
-  std::vector<std::vector<std::uint32_t>> anew_;  // by level: rows that were renewed in the sub-step before
-  std::vector<Distant> distant_;                  // in ascending order of their rows
-  std::vector<char> sent_elsewhere_;              // bodies that contacts may send elsewhere than they go by themselves
-  std::vector<std::uint32_t> gone_;               // rows that came apart in the step
-  std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();  // where `pairs_` finds it even when this is moved
+  Marks of_marked_;                                    // of these, those of marked bodies
+  std::vector<double> soonest_;                        // of bodies: when in the sub-step the first impact is [s]
+  unsigned listed_level_ = 0;                          // from 1; 0: none
+  std::vector<std::vector<std::uint32_t>> anew_;       // by level: rows that were renewed in the sub-step before
+  std::vector<Distant> distant_;                       // in ascending order of their rows
+  std::vector<char> sent_elsewhere_;  // bodies that contacts may send elsewhere than they go by themselves
+  std::vector<std::uint32_t> gone_;   // rows that came apart in the step
+  // where `pairs_` finds it even when this is moved
+  std::unique_ptr<PairFilter> filter_ = std::make_unique<PairFilter>();
   std::vector<float> went_;           // of bodies: how far a try of this step sent them beyond their reach; else 0 [m]
   bool strays_ = false;               // some body has
   std::vector<std::uint32_t> trees_;  // by body row: the joint tree that it is free in, or 0
   std::vector<float> fastest_;        // of trees, by that number: the speed of their fastest body [m/s]
-  std::vector<float> drawn_;          // of bodies: how far others of their tree may send them in this step; 0: no further
-                                      // than they go by themselves [m]
-  bool draws_ = false;                // some are
+  // of bodies: how far others of their tree may send them in this step; 0: no further
+  std::vector<float> drawn_;
+  // than they go by themselves [m]
+  bool draws_ = false;  // some are
   PairCache pairs_;
   std::vector<std::uint32_t> near_;  // numbers of pairs
   std::span<const std::uint32_t> batch_;
-  Marks marks_;                      // places in the batch of those that may have a manifold; where some shape is round
-  bool round_ = false;               // some shape is: its pairs go in lanes
+  Marks marks_;         // places in the batch of those that may have a manifold; where some shape is round
+  bool round_ = false;  // some shape is: its pairs go in lanes
   std::vector<std::uint32_t> hints_, next_hints_;
   bool hinted_ = false;  // some hint is not 0
   ContactColumns next_;  // of the next step, or of the last one
@@ -347,7 +360,8 @@ template <class Scalar>
 inline Sight<Scalar> Detector::sight(const WorldState& s, const Scratch<Scalar>& scratch, std::uint32_t pair) const {
   const Pair shapes = in_order(pair);
   const std::uint32_t row_a = proxies_[shapes.a].body, row_b = proxies_[shapes.b].body;
-  Sight<Scalar> view = {{shapes.a, shapes.b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[shapes.b], look_margin<Scalar>(shapes)};
+  Sight<Scalar> view = {
+      {shapes.a, shapes.b}, {row_a, row_b}, {0, 0, 0}, scratch.shapes[shapes.b], look_margin<Scalar>(shapes)};
   BodyReader<Scalar>(s.tables).shift(row_a, row_b, view.apart);
   for (int k = 0; k < 3; k++) view.there.p[k] += view.apart[k];
   return view;

@@ -25,8 +25,8 @@ template <class Scalar> double share_of(const Tables& t, std::uint32_t a, std::u
 }
 
 /// Bodies meet across a gap nearer to the heavy one, and nowhere but at the surface of one that stands: `pc_arms` draws
-/// the arms together by the same shares. In an overlap, too, the point is on the light body's own surface, so that a ball
-/// that has sunk into a floor rolls on its whole radius.
+/// the arms together by the same shares. In an overlap, too, the point is on the light body's own surface, so that a
+/// ball that has sunk into a floor rolls on its whole radius.
 template <class Scalar> void to_light_side(Manifold<Scalar>& m, double share) {
   for (std::uint32_t i = 0; i < m.count; i++) {
     const Scalar shift = m.points[i].separation * Scalar(share - 0.5);

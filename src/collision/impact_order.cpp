@@ -44,8 +44,8 @@ template <class Scalar> void Detector::put_off(const Substep<Scalar>& look) {
   std::erase_if(struck_, [&](std::uint32_t at) { return !standing(at).struck; });
 }
 
-/// Marks the bodies that impacts have struck since it was called last, of those that the last sweep looked at: looks and
-/// sweeps go by that.
+/// Marks the bodies that impacts have struck since it was called last, of those that the last sweep looked at: looks
+/// and sweeps go by that.
 template <class Scalar> void Detector::mark_struck(const Substep<Scalar>& look) {
   Scalar* const delta = look.s.tables.template data<Scalar>(Buffer::delta);
   constexpr std::size_t reals = reals_of(Buffer::delta);
@@ -93,7 +93,8 @@ void Detector::find_beside_struck(const Listed& contacts, std::span<const std::u
   const auto row_of = [&](std::uint32_t at) { return contacts.rows[at]; };
   of_marked_.clear(contacts.places.size());
   for (const std::uint32_t at : others)
-    of_marked_.set(std::uint32_t(std::ranges::lower_bound(contacts.places, row_of(at), {}, row_of) - contacts.places.begin()));
+    of_marked_.set(
+        std::uint32_t(std::ranges::lower_bound(contacts.places, row_of(at), {}, row_of) - contacts.places.begin()));
   for (const std::uint32_t body : marked_)
     for (std::uint32_t i = first_of_[body]; i < first_of_[body + 1]; i++) of_marked_.set(contacts_of_[i]);
   beside_struck_.clear();
@@ -146,7 +147,8 @@ template <class Scalar> void Detector::note_swept(const Substep<Scalar>& look) {
     for (const std::uint32_t body : standings_[look.contacts[at]].rows) swept_.push_back(body);
 }
 
-void Detector::meet_again(WorldState& s, const Listed& contacts, unsigned level, bool last, double h, const Options& options) {
+void Detector::meet_again(WorldState& s, const Listed& contacts, unsigned level, bool last, double h,
+                          const Options& options) {
   look_in(s, contacts, level, h, options, [&](auto look) {
     look.last = last;
     list_contacts_of(contacts, level);

@@ -14,7 +14,8 @@ constexpr double beside_share = 0.02;
 
 /// Where a shape is nearest to a point; false where it is further away than `most`.
 template <class Scalar> bool nearest(const ShapeView<Scalar>& shape, const Scalar* point, Scalar most, Scalar* found) {
-  const ShapeView<Scalar> dot{ShapeKind::sphere, {most * Scalar(1e-4), 0, 0}, {point[0], point[1], point[2]}, {0, 0, 0, 1}};
+  const ShapeView<Scalar> dot{
+      ShapeKind::sphere, {most * Scalar(1e-4), 0, 0}, {point[0], point[1], point[2]}, {0, 0, 0, 1}};
   Manifold<Scalar> m;
   std::uint32_t hint = 0;
   narrow(dot, shape, most, hint, m);
@@ -27,8 +28,8 @@ template <class Scalar> bool nearest(const ShapeView<Scalar>& shape, const Scala
 /// Whether a shape that holds `point` to within `seam` reaches further against `normal`, which points into it, `beside`
 /// the point: on the side to which the normal leans from `other` [m].
 template <class Scalar>
-bool reaches_beyond(const ShapeView<Scalar>& shape, const Scalar* point, const Scalar* normal, const Scalar* other, Scalar seam,
-                    Scalar beside) {
+bool reaches_beyond(const ShapeView<Scalar>& shape, const Scalar* point, const Scalar* normal, const Scalar* other,
+                    Scalar seam, Scalar beside) {
   const Scalar along = normal[0] * other[0] + normal[1] * other[1] + normal[2] * other[2];
   Scalar lean[3], size = 0;
   for (int k = 0; k < 3; k++) {
@@ -59,7 +60,8 @@ template <class Scalar> void Detector::point_of(const Meeting<Scalar>& x, std::u
 
 /// Whether y's surface goes on beyond x's normal at a point that x has, and x's does not beyond that of y: the two are
 /// in one surface. (Where each goes on beyond the other's they meet in a hollow, and the body touches both.)
-template <class Scalar> bool Detector::covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const {
+template <class Scalar>
+bool Detector::covers(const Meeting<Scalar>& y, const Meeting<Scalar>& x, std::uint32_t point) const {
   if (y.row == x.row || !y.c.acts) return false;
   Scalar at[3], below = 0;
   point_of(x, point, at);

@@ -46,11 +46,13 @@ constexpr unsigned top_level = 128;  // above every split
 
 }  // namespace
 
-void KdTree::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> active, std::span<const std::uint8_t> flags) {
+void KdTree::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> active,
+                   std::span<const std::uint8_t> flags) {
   bounded_.clear();
   large_.clear();
   refused_.clear();
-  for (const std::uint32_t i : active) (!valid(boxes[i]) ? refused_ : bounded(boxes[i]) ? bounded_ : large_).push_back(i);
+  for (const std::uint32_t i : active)
+    (!valid(boxes[i]) ? refused_ : bounded(boxes[i]) ? bounded_ : large_).push_back(i);
   const Scene scene = measure(boxes);
   set_aside_large(boxes, scene);
   sort_codes(boxes, scene.frame);
@@ -121,11 +123,13 @@ void KdTree::sort_codes(std::span<const Aabb> boxes, const Frame& frame) {
   for (std::size_t n = 0; n < bounded_.size(); ++n) {
     std::uint32_t code = 0;
     for (int k = 0; k < 3; ++k)
-      code |= spread(cell(centre(boxes[bounded_[n]], k), frame.origin[k], frame.cells_per_metre) >> (axis_bits - 10)) << (2 - k);
+      code |= spread(cell(centre(boxes[bounded_[n]], k), frame.origin[k], frame.cells_per_metre) >> (axis_bits - 10))
+              << (2 - k);
     codes_[n] = std::uint64_t{code} << 32 | bounded_[n];
   }
   const auto key = [](std::uint64_t code) { return code; };
-  if (radix_sort(codes_.data(), codes_scratch_.data(), codes_.size(), 32, 62, key) != codes_.data()) codes_.swap(codes_scratch_);
+  if (radix_sort(codes_.data(), codes_scratch_.data(), codes_.size(), 32, 62, key) != codes_.data())
+    codes_.swap(codes_scratch_);
 }
 
 bool KdTree::many_ties() const {
@@ -179,7 +183,8 @@ void KdTree::emit(std::span<const Aabb> boxes, std::span<const std::uint8_t> fla
 }
 
 // Both sides into one bundle; what does not fit becomes blocks, the fuller side first.
-KdTree::Bundle KdTree::joined(Bundle left, Bundle right, std::span<const Aabb> boxes, std::span<const std::uint8_t> flags) {
+KdTree::Bundle KdTree::joined(Bundle left, Bundle right, std::span<const Aabb> boxes,
+                              std::span<const std::uint8_t> flags) {
   const auto fits = [&] { return left.count + right.count <= BoxBlock::lanes; };
   if (!(left.leaf && right.leaf && fits())) {
     if (left.leaf) left = closed(left, boxes, flags);
@@ -269,12 +274,15 @@ bool all_overlap(const Crowd& a, const Crowd& b) {
 }
 
 std::uint64_t crowd_pairs(const Crowd& a, const Crowd& b) { return a.count * b.count - a.fixed * b.fixed; }
-std::uint64_t crowd_pairs(const Crowd& a) { return (a.count * (a.count - 1) - a.fixed * (a.fixed == 0 ? 0 : a.fixed - 1)) / 2; }
+std::uint64_t crowd_pairs(const Crowd& a) {
+  return (a.count * (a.count - 1) - a.fixed * (a.fixed == 0 ? 0 : a.fixed - 1)) / 2;
+}
 
 // Lanes of a block as a crowd of its own.
 Crowd crowd_of(const BoxBlock& block) {
   Crowd crowd = crowd_of(block.box(0), block.mobile & 1);
-  for (std::uint32_t l = 1; l < block.count; ++l) crowd = joined_crowd(crowd, crowd_of(block.box(l), block.mobile >> l & 1));
+  for (std::uint32_t l = 1; l < block.count; ++l)
+    crowd = joined_crowd(crowd, crowd_of(block.box(l), block.mobile >> l & 1));
   return crowd;
 }
 

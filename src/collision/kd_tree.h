@@ -31,7 +31,8 @@ class KdTree {
 
   /// Builds over boxes[i] for each i of `active` (ascending). `flags[i]` is a union of Flag; when empty, all
   /// are `mobile`. Boxes that are none (NaN, inverted) do not enter; see refused().
-  void build(std::span<const Aabb> boxes, std::span<const std::uint32_t> active, std::span<const std::uint8_t> flags = {});
+  void build(std::span<const Aabb> boxes, std::span<const std::uint32_t> active,
+             std::span<const std::uint8_t> flags = {});
   /// New boxes and flags for the same objects, all of them valid boxes; the structure stays.
   void refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> flags = {});
   /// Cost of traversal now over what it was after the last build: 1 after a build, infinite or NaN when a box
@@ -127,8 +128,8 @@ template <class Visit> bool KdTree::pairs_of(const Object& object, std::uint32_t
     const BoxBlock& block = blocks_[at];
     const std::uint32_t start = at * BoxBlock::lanes,
                         skipped = std::min(first_lane - std::min(first_lane, start), BoxBlock::lanes);
-    std::uint32_t hits =
-        overlapping_lanes(block, object.box) & block.allowed(true, object.mobile) & (BoxBlock::all << skipped | block.still);
+    std::uint32_t hits = overlapping_lanes(block, object.box) & block.allowed(true, object.mobile) &
+                         (BoxBlock::all << skipped | block.still);
     for (; hits != 0; hits &= hits - 1)
       if (!visit(object.index, block.index[std::countr_zero(hits)])) return false;
     return true;

@@ -58,7 +58,8 @@ template <class Scalar> void Detector::sort_out(const Options& options, Scratch<
   lanes.run(narrow_lanes<Scalar>(options.lanes), reinterpret_cast<const Scalar*>(scratch.rows.data()), marks_);
 }
 
-template <class Scalar> void Detector::find_manifolds(const WorldState& s, const Options& options, Scratch<Scalar>& scratch) {
+template <class Scalar>
+void Detector::find_manifolds(const WorldState& s, const Options& options, Scratch<Scalar>& scratch) {
   alone_.clear();
   each_candidate([&](std::uint32_t place) {
     if (!round_ || !scratch.lanes.manifold(place)) alone_.push_back(batch_[place]);
@@ -180,7 +181,8 @@ void Detector::drop_distant(ContactColumns& contacts, AlignedBytes& table, std::
 }
 
 template <class Scalar>
-void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last, Found& found) {
+void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t first, std::uint32_t last,
+                    Found& found) {
   if (first == last) return;
   const std::size_t row = next_.keys.size(), bytes = reals_of(Buffer::contact) * sizeof(Scalar);
   const auto copy = [&](const auto& from, auto& to) { to.insert(to.end(), from.begin() + first, from.begin() + last); };
@@ -198,8 +200,8 @@ void Detector::keep(const WorldState& s, Scratch<Scalar>& scratch, std::uint32_t
     found.kept_points += std::uint32_t(s.tables.data<Scalar>(Buffer::contact)[first * reals_of(Buffer::contact) + 3]);
 }
 
-/// The contacts of this step, in ascending order of their keys, from its pairs and the contacts of the last one, which stand in that order
-/// too.
+/// The contacts of this step, in ascending order of their keys, from its pairs and the contacts of the last one, which
+/// stand in that order too.
 template <class Scalar> struct Detector::Merge {
   Detector& d;
   WorldState& s;

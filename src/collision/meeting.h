@@ -83,7 +83,8 @@ void back_to_start(const TwistOf<Scalar>& a, const TwistOf<Scalar>& b, const Sca
   }
 }
 
-/// How two shapes stand at a time of the sub-step, and the manifold there (left as it was where they are too far apart for one).
+/// How two shapes stand at a time of the sub-step, and the manifold there (left as it was where they are too far apart
+/// for one).
 template <class Scalar, class Find> struct Approach {
   Mover<Scalar> a, b;
   const Scalar* apart;
@@ -122,9 +123,10 @@ struct Met {
   double t;
 };
 
-/// Conservative advancement from t on to the instant within h [s] at which the shapes come within `near` [m] of each other, with the manifold
-/// there; else that of `seen`, when they were looked at last. As long as they are apart along the normal that was found last they need no look
-/// for another. Bounded: it creeps where shapes turn fast for how they come together.
+/// Conservative advancement from t on to the instant within h [s] at which the shapes come within `near` [m] of each
+/// other, with the manifold there; else that of `seen`, when they were looked at last. As long as they are apart along
+/// the normal that was found last they need no look for another. Bounded: it creeps where shapes turn fast for how they
+/// come together.
 template <class Scalar, class Find>
 Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m, double& seen) {
   constexpr int looks = 16, along = 8;
@@ -145,8 +147,10 @@ Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, 
   return Advanced::creeps;
 }
 
-/// When the spheres inside two shapes meet, by when the shapes have; below 0 where they do not. Turning does not move them.
-template <class Scalar, class Find> double cores_meet(const Approach<Scalar, Find>& of, double t, double near, double h) {
+/// When the spheres inside two shapes meet, by when the shapes have; below 0 where they do not. Turning does not move
+/// them.
+template <class Scalar, class Find>
+double cores_meet(const Approach<Scalar, Find>& of, double t, double near, double h) {
   ShapeView<Scalar> cores[2] = {*of.a.view, *of.b.view};
   Mover<Scalar> movers[2] = {of.a, of.b};
   for (int side = 0; side < 2; side++) {
@@ -163,12 +167,13 @@ template <class Scalar, class Find> double cores_meet(const Approach<Scalar, Fin
   return advance(way, near, h, t, m, seen) == Advanced::together ? t : -1;
 }
 
-/// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there; or that of when they were
-/// looked at last on ways on which they do not. Where advancement creeps, halving finds an instant before they overlap at the end, or before
-/// what is inside of them meets. What is missed all the same the next sub-step sees.
+/// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there;
+/// or that of when they were looked at last on ways on which they do not. Where advancement creeps, halving finds an
+/// instant before they overlap at the end, or before what is inside of them meets. What is missed all the same the next
+/// sub-step sees.
 template <class Scalar, class Find>
-Met meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h, Find&& find,
-                 Manifold<Scalar>& m) {
+Met meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h,
+                Find&& find, Manifold<Scalar>& m) {
   constexpr int halvings = 20;
   Approach<Scalar, std::remove_reference_t<Find>> way{a, b, apart, find, {}, {}};
   double t = from, seen = from;
@@ -191,11 +196,12 @@ Met meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* ap
   return {true, t};
 }
 
-/// What lies within this share of a thickness of a surface lies in it: so high may a seam between tiles be, and so far may shapes be apart
-/// whose contact lasts.
+/// What lies within this share of a thickness of a surface lies in it: so high may a seam between tiles be, and so far
+/// may shapes be apart whose contact lasts.
 constexpr double seam_share = 2e-3;
 
-/// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand, up to a seam [m].
+/// Shapes are together within this: a millionth of their thickness, or what rounding leaves of where they stand, up to
+/// a seam [m].
 inline double near_of(double thick, double far, double epsilon) {
   return std::min(std::max(1e-6 * thick, 16 * epsilon * far), seam_share * thick);
 }

@@ -11,8 +11,8 @@
 namespace pcphys {
 
 template <class Scalar>
-void Detector::find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a, const ShapeView<Scalar>& b,
-                    std::uint32_t pair, Manifold<Scalar>& manifold) {
+void Detector::find(const Options& options, const Sight<Scalar>& view, const ShapeView<Scalar>& a,
+                    const ShapeView<Scalar>& b, std::uint32_t pair, Manifold<Scalar>& manifold) {
   if (options.narrow == NarrowPhase::fcl)
     fcl_hook()(a, b, view.margin, manifold);
   else
@@ -24,8 +24,8 @@ float Detector::thickness(std::uint32_t a, std::uint32_t b) const {
   return x == 0 ? y : y == 0 ? x : std::min(x, y);
 }
 
-template void Detector::find(const Options&, const Sight<float>&, const ShapeView<float>&, const ShapeView<float>&, std::uint32_t,
-                             Manifold<float>&);
+template void Detector::find(const Options&, const Sight<float>&, const ShapeView<float>&, const ShapeView<float>&,
+                             std::uint32_t, Manifold<float>&);
 template void Detector::find(const Options&, const Sight<double>&, const ShapeView<double>&, const ShapeView<double>&,
                              std::uint32_t, Manifold<double>&);
 
@@ -34,8 +34,8 @@ template <class Scalar> void Detector::find_way(const Substep<Scalar>& look, std
   ways_[body].of = meetings_;
 }
 
-/// All looks, on as many threads as there are: one writes what is of its own contact alone. Then notes whose rows are to be
-/// made anew.
+/// All looks, on as many threads as there are: one writes what is of its own contact alone. Then notes whose rows are
+/// to be made anew.
 template <class Scalar> void Detector::find_all(const Substep<Scalar>& look, bool sent) {
   for (const Look& l : looks_)
     for (const std::uint32_t body : standings_[look.contacts[l.at]].rows) twist_of(look.bodies, body);

@@ -23,7 +23,11 @@ static HullRef hull_of(const ShapeView<Scalar>& s) {
   return h;
 }
 static NarrowShape from_view(const ShapeView<Scalar>& s) {
-  return {uint(s.kind), {s.size[0], s.size[1], s.size[2]}, {s.p[0], s.p[1], s.p[2]}, pc_quaternion({s.q[0], s.q[1], s.q[2]}, s.q[3]), hull_of(s)};
+  return {uint(s.kind),
+          {s.size[0], s.size[1], s.size[2]},
+          {s.p[0], s.p[1], s.p[2]},
+          pc_quaternion({s.q[0], s.q[1], s.q[2]}, s.q[3]),
+          hull_of(s)};
 }
 // What is read of one.
 static inline NarrowShape ball_from_view(const ShapeView<Scalar>& s) {
@@ -34,10 +38,12 @@ static inline NarrowShape ball_from_view(const ShapeView<Scalar>& s) {
 }
 }  // namespace PC_NAMESPACE
 
-void narrow(const ShapeView<PC_SCALAR>& a, const ShapeView<PC_SCALAR>& b, PC_SCALAR margin, std::uint32_t& hint, Manifold<PC_SCALAR>& out) {
+void narrow(const ShapeView<PC_SCALAR>& a, const ShapeView<PC_SCALAR>& b, PC_SCALAR margin, std::uint32_t& hint,
+            Manifold<PC_SCALAR>& out) {
   using namespace PC_NAMESPACE;
-  static_assert(PC_SPHERE == uint(ShapeKind::sphere) && PC_CAPSULE == uint(ShapeKind::capsule) && PC_BOX == uint(ShapeKind::box) &&
-                PC_CYLINDER == uint(ShapeKind::cylinder) && PC_HULL == uint(ShapeKind::hull) && PC_PLANE == uint(ShapeKind::plane));
+  static_assert(PC_SPHERE == uint(ShapeKind::sphere) && PC_CAPSULE == uint(ShapeKind::capsule) &&
+                PC_BOX == uint(ShapeKind::box) && PC_CYLINDER == uint(ShapeKind::cylinder) &&
+                PC_HULL == uint(ShapeKind::hull) && PC_PLANE == uint(ShapeKind::plane));
   NarrowManifold m;
   m.normal = {0, 1, 0};
   m.count = 0;

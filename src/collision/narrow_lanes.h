@@ -1,5 +1,5 @@
-// What the detector does in lanes: the narrow phase for many pairs of one kind, with the text of kernels/narrow and so the bits
-// of `narrow`; and how bodies move and the boxes of shapes.
+// What the detector does in lanes: the narrow phase for many pairs of one kind, with the text of kernels/narrow and so
+// the bits of `narrow`; and how bodies move and the boxes of shapes.
 #pragma once
 #include <cstdint>
 
@@ -22,8 +22,9 @@ template <class Scalar> struct PairBatch {
   std::uint32_t count;
 };
 
-/// Writes the manifolds of pairs within their margins, as seen from a's body, and their places in the batch, in ascending
-/// order; returns how many. One without points: the pair is for `narrow`. `out` and `places` have room for all pairs.
+/// Writes the manifolds of pairs within their margins, as seen from a's body, and their places in the batch, in
+/// ascending order; returns how many. One without points: the pair is for `narrow`. `out` and `places` have room for
+/// all pairs.
 template <class Scalar>
 using NarrowBatch = std::uint32_t (*)(const PairBatch<Scalar>&, Manifold<Scalar>* out, std::uint32_t* places);
 

@@ -65,7 +65,8 @@ bool Neighbours::find_pairs(std::span<const std::uint32_t> moving, double cutoff
   });
 }
 
-/// Lists in the order of ids, by two counting sorts: of pairs by the place of the other, then by the body whose list it is.
+/// Lists in the order of ids, by two counting sorts: of pairs by the place of the other, then by the body whose list it
+/// is.
 void Neighbours::list(std::span<const std::uint32_t> places) {
   const std::size_t count = then_.size();
   const auto each = [&](const auto& visit) {
@@ -93,16 +94,17 @@ void Neighbours::list(std::span<const std::uint32_t> places) {
   for (std::size_t at = 0; at < by_other_.size(); at += 2) rows[starts_[by_other_[at]]++] = by_other_[at + 1];
 }
 
-Status Neighbours::find(const WorldState& s, std::span<const std::uint32_t> moving, std::span<const std::uint32_t> places,
-                        double cutoff, double dt, std::size_t most) {
+Status Neighbours::find(const WorldState& s, std::span<const std::uint32_t> moving,
+                        std::span<const std::uint32_t> places, double cutoff, double dt, std::size_t most) {
   if (cutoff_ == cutoff && needed_.empty() && wide_enough(s, moving, dt)) return {};
   cutoff_ = 0;
   allow(s, moving, cutoff, dt);
   if (!find_pairs(moving, cutoff, most))
-    return Error{ErrorCode::buffer_full,
-                 "Within the cut-off of the pair kernels there are more than " + std::to_string(most) +
-                     " pairs of bodies, for which there is room; raise StepSettings::max_pairs, or make the cut-off smaller. The "
-                     "world is as before the step."};
+    return Error{ErrorCode::buffer_full, "Within the cut-off of the pair kernels there are more than " +
+                                             std::to_string(most) +
+                                             " pairs of bodies, for which there is room; raise "
+                                             "StepSettings::max_pairs, or make the cut-off smaller. The "
+                                             "world is as before the step."};
   list(places);
   cutoff_ = cutoff;
   version++;

@@ -1,5 +1,6 @@
-// Bodies near each other, for pair kernels with a cut-off: lists that hold at least all pairs which come within it during a step.
-// Kernels look at each distance again, so that what they sum depends on positions alone, never on how wide the lists were made.
+// Bodies near each other, for pair kernels with a cut-off: lists that hold at least all pairs which come within it
+// during a step. Kernels look at each distance again, so that what they sum depends on positions alone, never on how
+// wide the lists were made.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -14,8 +15,8 @@ namespace pcphys {
 
 class Neighbours {
  public:
-  /// For a step of `dt` and a cut-off, `moving` and `places` (order of ids, by row) as OwnLists has them. Lists that are wide enough
-  /// still stand. Errors: buffer_full for more than `most` pairs.
+  /// For a step of `dt` and a cut-off, `moving` and `places` (order of ids, by row) as OwnLists has them. Lists that
+  /// are wide enough still stand. Errors: buffer_full for more than `most` pairs.
   Status find(const WorldState& state, std::span<const std::uint32_t> moving, std::span<const std::uint32_t> places,
               double cutoff, double dt, std::size_t most);
   /// After a step: whether some body went further than was allowed for. The next lists allow for it.

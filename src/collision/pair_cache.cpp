@@ -144,8 +144,8 @@ bool PairCache::collect(PairReport& report) {
     return count <= capacity_ || patience-- > 0;
   });
   if (count + pairs_.size() <= capacity_) return true;
-  const auto kept =
-      static_cast<std::uint64_t>(std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& pair) { return keeps(pair); }));
+  const auto kept = static_cast<std::uint64_t>(
+      std::count_if(pairs_.begin(), pairs_.end(), [&](const Pair& pair) { return keeps(pair); }));
   if (count + kept <= capacity_) return true;
   report.overflow = true;
   report.pairs_needed = all_counted ? count + kept : tree_.count_pairs();

@@ -69,8 +69,8 @@ class PairCache {
   const Aabb& fat_box(std::uint32_t proxy) const { return fat_[proxy]; }
   const KdTree& tree() const { return tree_; }
   std::size_t memory_bytes() const {
-    return bytes_of(tree_, fat_, fat_before_, state_, moved_, active_, previous_, next_previous_, pairs_, next_pairs_, found_,
-                    found_scratch_);
+    return bytes_of(tree_, fat_, fat_before_, state_, moved_, active_, previous_, next_previous_, pairs_, next_pairs_,
+                    found_, found_scratch_);
   }
 
  private:

@@ -1,5 +1,5 @@
-// Which pairs of shapes may ever touch: shapes of other bodies, one of them dynamic, no joint between, filters agree. Asked for every pair of
-// boxes that overlap, so what it reads is compact.
+// Which pairs of shapes may ever touch: shapes of other bodies, one of them dynamic, no joint between, filters agree.
+// Asked for every pair of boxes that overlap, so what it reads is compact.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -34,7 +34,8 @@ class PairFilter {
  private:
   struct Bars {
     std::uint32_t first_barred = 1, last_barred = 0;  // bodies that it never touches are in between
-    std::uint64_t barred = 0;                         // which of them, from the first on, where there are no more than `near`
+    // which of them, from the first on, where there are no more than `near`
+    std::uint64_t barred = 0;
     bool known() const { return last_barred - first_barred < near || first_barred > last_barred; }
     friend bool operator==(const Bars&, const Bars&) = default;
   };

@@ -1,4 +1,5 @@
-// Pairs of the narrow phase that go in lanes, gathered by kind, and their manifolds, found by the pair's place in its batch.
+// Pairs of the narrow phase that go in lanes, gathered by kind, and their manifolds, found by the pair's place in its
+// batch.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,8 +15,10 @@ namespace pcphys {
 
 /// In the order of the contact's bodies.
 inline PairKind pair_kind(ShapeKind a, ShapeKind b) {
-  if (a == ShapeKind::sphere) return b == a ? PairKind::spheres : b == ShapeKind::box ? PairKind::sphere_box : PairKind::other;
-  if (a == ShapeKind::capsule) return b == a ? PairKind::capsules : b == ShapeKind::box ? PairKind::capsule_box : PairKind::other;
+  if (a == ShapeKind::sphere)
+    return b == a ? PairKind::spheres : b == ShapeKind::box ? PairKind::sphere_box : PairKind::other;
+  if (a == ShapeKind::capsule)
+    return b == a ? PairKind::capsules : b == ShapeKind::box ? PairKind::capsule_box : PairKind::other;
   return PairKind::other;
 }
 
@@ -74,9 +77,9 @@ template <class Scalar> class PairLanes {
         continue;
       }
       list.pad();
-      const std::uint32_t n =
-          lanes.run[kind]({rows, list.a.data(), list.b.data(), reinterpret_cast<const Scalar*>(list.margins.data()), list.count},
-                          manifolds_.data() + found, places_.data());
+      const std::uint32_t n = lanes.run[kind](
+          {rows, list.a.data(), list.b.data(), reinterpret_cast<const Scalar*>(list.margins.data()), list.count},
+          manifolds_.data() + found, places_.data());
       for (std::uint32_t i = 0; i < n; i++) {
         const std::uint32_t pair = list.pairs[places_[i]];
         marks.set(pair);

@@ -47,7 +47,8 @@ T* sort(T* items, T* scratch, std::size_t count, unsigned begin, unsigned end, K
 
 /// Sorts by key(item), an unsigned integer below 2^end of which the lowest `begin` bits are in order already.
 /// `scratch` has room for `count` items. Returns whichever of the two arrays holds the result.
-template <class T, class Key> T* radix_sort(T* items, T* scratch, std::size_t count, unsigned begin, unsigned end, Key key) {
+template <class T, class Key>
+T* radix_sort(T* items, T* scratch, std::size_t count, unsigned begin, unsigned end, Key key) {
   if (count < 64) {
     insertion_sort(items, count, [&](const T& item) { return key(item) >> begin; });
     return items;

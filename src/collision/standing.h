@@ -19,26 +19,29 @@ struct Standing {
   bool acts = false;                 // its rows do
   bool struck = false;               // as an impact: nothing of it lasts
   bool waits = false;                // for an impact that comes before
-  bool soon = false;                 // its shapes were apart when the step began, and come together in it by their own motion
-  bool bounces = false;              // what is fast enough does
-  bool jointed = false;              // a body of it hangs on joints
-  std::uint8_t together = 0;         // bit i: at point i the shapes are together, now or where they meet in the sub-step
+  // its shapes were apart when the step began, and come together in it by their own motion
+  bool soon = false;
+  bool bounces = false;  // what is fast enough does
+  bool jointed = false;  // a body of it hangs on joints
+  // bit i: at point i the shapes are together, now or where they meet in the sub-step
+  std::uint8_t together = 0;
 };
 
-/// The motion of a contact's bodies since the step began (buffer `delta`): b's displacement against a's, and how each turned.
+/// The motion of a contact's bodies since the step began (buffer `delta`): b's displacement against a's, and how each
+/// turned.
 struct Moved {
   std::array<double, 3> apart{}, turned_a{}, turned_b{};
 };
 
-/// Of a contact that was looked at within the step: how its bodies had moved by then, and where the first body's centre was when the rows
-/// were found, as the contact's points see it [m].
+/// Of a contact that was looked at within the step: how its bodies had moved by then, and where the first body's centre
+/// was when the rows were found, as the contact's points see it [m].
 struct Later {
   Moved moved;
   Vec3 origin;
 };
 
-/// Bounds of what a body's motion does to its shapes: how far it has brought any point of them since the step began, and how far it may
-/// in this sub-step [m].
+/// Bounds of what a body's motion does to its shapes: how far it has brought any point of them since the step began,
+/// and how far it may in this sub-step [m].
 struct Way {
   float went = 0, goes = 0;
   std::uint32_t of = 0;  // the look that it is of (Detector::looks_)

@@ -42,7 +42,8 @@ template <class Scalar> class Bodies {
     return m;
   }
   TwistOf<Scalar> twist(std::uint32_t row) const {
-    const Scalar *motion = motion_ + row * reals_of(Buffer::motion), *inverse = mass_ + row * reals_of(Buffer::mass) + 4;
+    const Scalar *motion = motion_ + row * reals_of(Buffer::motion),
+                 *inverse = mass_ + row * reals_of(Buffer::mass) + 4;
     const Scalar* q = poses_.orientation(row);
     TwistOf<Scalar> t;
     const Scalar back[4] = {-q[0], -q[1], -q[2], q[3]};

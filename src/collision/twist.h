@@ -1,16 +1,17 @@
-// How a body moves, and how two pass each other. For bounds float in both precisions, since nothing but which contacts are listed
-// comes of them; the way to a meeting in flight is in the world's own.
+// How a body moves, and how two pass each other. For bounds float in both precisions, since nothing but which contacts
+// are listed comes of them; the way to a meeting in flight is in the world's own.
 #pragma once
 #include <cmath>
 
 namespace pcphys {
 
-/// Beyond the first, turning closes no gap that is larger than the body: spins of everyday scenes keep their contacts' bits
-/// [rad]. Beyond the second a turning surface comes no further outward [rad].
+/// Beyond the first, turning closes no gap that is larger than the body: spins of everyday scenes keep their contacts'
+/// bits [rad]. Beyond the second a turning surface comes no further outward [rad].
 inline constexpr float wild_turn = 100, largest_turn = 2;
 
 template <class Real> struct TwistOf {
-  // velocity of the centre [m/s], angular velocity [rad/s], world axes; |v|, |w|, and the part of w across the body's y axis
+  // velocity of the centre [m/s], angular velocity [rad/s], world axes; |v|, |w|, and the part of w across the body's y
+  // axis
   Real v[3] = {}, speed = 0, w[3] = {}, turn = 0, across = 0;
   Real unused[3] = {};  // three quads: narrow_lanes.h fills them
 

@@ -16,8 +16,8 @@ namespace pcphys {
 
 #ifdef PCPHYS_HAVE_X86_LANES
 bool has_avx512() {
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512bw");
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
 }
 #endif
 
@@ -109,13 +109,15 @@ class CpuBackend final : public Backend {
   Result<bool> take_flag(Buffer buffer, std::uint32_t quad) override {
     void* const row = buffers_[std::size_t(buffer)];
     if (schema(buffer).reals == 0) return take(static_cast<std::uint32_t*>(row));
-    return kernels_.f64 ? take(static_cast<double*>(row) + quad * 4 + 3) : take(static_cast<float*>(row) + quad * 4 + 3);
+    return kernels_.f64 ? take(static_cast<double*>(row) + quad * 4 + 3)
+                        : take(static_cast<float*>(row) + quad * 4 + 3);
   }
   Status finish() override { return {}; }
   Status prepare(const OwnKernel& kernel) override {
     if (kernel.in_cpp()) return {};
-    return Error{ErrorCode::unavailable,
-                 "The kernel \"" + kernel.name + "\" has no C++ side; put its stage on gl, or write it with PCPHYS_KERNEL."};
+    return Error{
+        ErrorCode::unavailable,
+        "The kernel \"" + kernel.name + "\" has no C++ side; put its stage on gl, or write it with PCPHYS_KERNEL."};
   }
 
  private:
@@ -124,7 +126,8 @@ class CpuBackend final : public Backend {
   static constexpr std::uint32_t grain = 16;  // blocks of lanes that are worth another thread
 
   /// `unit`: what no piece may cut.
-  void share(void (*part)(const KernelCall&), const std::byte* with, std::span<const Range> ranges, std::uint32_t unit) const {
+  void share(void (*part)(const KernelCall&), const std::byte* with, std::span<const Range> ranges,
+             std::uint32_t unit) const {
     for (const Range& range : ranges)
       workers_->run((range.end - range.begin + unit - 1) / unit, grain, [&](std::uint32_t begin, std::uint32_t end) {
         part({buffers_.data(), with, range.begin + begin * unit, range.begin + end * unit});
@@ -149,10 +152,11 @@ Result<std::unique_ptr<Backend>> make_cpu_backend(Precision precision, std::uint
   else
     kernels = find_kernels(precision, lanes);
   if (!kernels)
-    return Error{ErrorCode::unavailable, "There are no kernels of " + std::to_string(lanes) +
-                                             (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)"
-                                                                          : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
-                                             " for this processor; use lanes 0 for the widest it has."};
+    return Error{ErrorCode::unavailable,
+                 "There are no kernels of " + std::to_string(lanes) +
+                     (precision == Precision::f64 ? " lanes in double (1 or 4 with AVX2)"
+                                                  : " lanes in float (1, 4 with SSE4.2, 8 with AVX2)") +
+                     " for this processor; use lanes 0 for the widest it has."};
   return std::unique_ptr<Backend>(std::make_unique<CpuBackend>(*kernels, lanes == 0, workers));
 }
 

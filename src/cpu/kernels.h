@@ -7,8 +7,8 @@
 
 namespace pcphys {
 
-/// One run of a kernel over [begin, end): positions in `bodies` for the body domain (whole lanes from begin on; the list is
-/// padded with row 0), blocks of slots otherwise.
+/// One run of a kernel over [begin, end): positions in `bodies` for the body domain (whole lanes from begin on; the
+/// list is padded with row 0), blocks of slots otherwise.
 struct KernelCall {
   void* const* buffers;  // by Buffer
   const void* info;      // Info of the precision

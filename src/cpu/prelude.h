@@ -40,9 +40,13 @@ struct Index {
 PC_INLINE Real pc_select(Mask m, Real a, Real b) { return m ? a : b; }
 PC_INLINE Mask pc_and(Mask a, Mask b) { return a && b; }
 PC_INLINE Mask pc_or(Mask a, Mask b) { return a || b; }
-PC_INLINE Real pc_abs(Real a) { return sizeof(Real) == 4 ? Real(__builtin_fabsf(float(a))) : Real(__builtin_fabs(double(a))); }
+PC_INLINE Real pc_abs(Real a) {
+  return sizeof(Real) == 4 ? Real(__builtin_fabsf(float(a))) : Real(__builtin_fabs(double(a)));
+}
 PC_INLINE Real pc_div(Real a, Real b) { return a / b; }
-PC_INLINE Real pc_sqrt(Real a) { return sizeof(Real) == 4 ? Real(__builtin_sqrtf(float(a))) : Real(__builtin_sqrt(double(a))); }
+PC_INLINE Real pc_sqrt(Real a) {
+  return sizeof(Real) == 4 ? Real(__builtin_sqrtf(float(a))) : Real(__builtin_sqrt(double(a)));
+}
 PC_INLINE Real pc_load(const Scalar* p) { return *p; }
 PC_INLINE void pc_store(Scalar* p, Real x) { *p = x; }
 PC_INLINE Index pc_index(const uint* p) { return {*p}; }
@@ -68,8 +72,8 @@ struct Vec3 {
 
 PC_INLINE Index pc_each(const uint* list, Slot, uint i) { return pc_index(list + i); }
 
-// Quad k of row i. The product is hidden from the compiler, which would make one of it and k for each quad and then have no
-// registers left for them.
+// Quad k of row i. The product is hidden from the compiler, which would make one of it and k for each quad and then
+// have no registers left for them.
 PC_INLINE const Scalar* pc_at(const Scalar* buffer, uint i, uint quads, uint k) {
   std::size_t row = std::size_t(i) * (quads * 4 * sizeof(Scalar));
   __asm__("" : "+r"(row));
@@ -108,7 +112,9 @@ PC_INLINE Quad pc_row_quad(const Row& r, uint k) {
   return q;
 }
 // Four consecutive reals of row i: quad k of a buffer with `quads` of them a row.
-PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) { return pc_row_quad(pc_row(buffer, i, quads), k); }
+PC_INLINE Quad pc_gather(const Scalar* buffer, Index i, uint quads, uint k) {
+  return pc_row_quad(pc_row(buffer, i, quads), k);
+}
 PC_INLINE void pc_scatter(Scalar* buffer, Index i, uint quads, uint k, const Quad& q) {
 #if PC_LANES == 1
   Scalar* p = pc_at(buffer, i.i, quads, k);
@@ -187,5 +193,6 @@ PC_INLINE void pc_lower(uint* list, uint i, uint value) {
 #define PC_EACH(buffer, slot, i) pc_each(io.buffer, slot, i)
 #define PC_NODE(slot, node) pc_node(slot, node)
 #define PC_IS(flag) pc_mask(flag)
-#define PC_RAISE(mask, buffer, k) if (pc_any(mask)) pc_raise(io.buffer + (k) * 4u + 3u)
+#define PC_RAISE(mask, buffer, k) \
+  if (pc_any(mask)) pc_raise(io.buffer + 4u * (k) + 3u)
 #include "kernels/nodes.inl"

@@ -17,7 +17,9 @@ template <class Scalar> const Scalar* row_of(const WorldState& s, Buffer buffer,
   return row_of<Scalar>(s.tables.bytes(buffer), buffer, row);
 }
 /// Without the sign of a zero, which devices may differ in.
-template <class Scalar> Vec3 vec3(const Scalar* p) { return {double(p[0]) + 0.0, double(p[1]) + 0.0, double(p[2]) + 0.0}; }
+template <class Scalar> Vec3 vec3(const Scalar* p) {
+  return {double(p[0]) + 0.0, double(p[1]) + 0.0, double(p[2]) + 0.0};
+}
 
 TouchingPair pair_of(const WorldState& s, std::uint32_t contact) {
   const auto [row_a, row_b] = s.contacts.ends[contact];
@@ -34,8 +36,8 @@ bool sleeps(const WorldState& s, std::uint32_t contact) {
   return s.asleep(s.contacts.ends[contact][0]) || s.asleep(s.contacts.ends[contact][1]);
 }
 
-/// Of the four points of a contact. What sleeps had no step, and its row of `touch` may be of another, or not be there: its impulses are
-/// those that it rests on.
+/// Of the four points of a contact. What sleeps had no step, and its row of `touch` may be of another, or not be there:
+/// its impulses are those that it rests on.
 template <class Scalar> const Scalar* impulses_of(const WorldState& s, std::uint32_t contact) {
   if (sleeps(s, contact)) return row_of<Scalar>(s, Buffer::contact, contact) + normal_impulse_at;
   return row_of<Scalar>(s, Buffer::touch, contact);
@@ -66,8 +68,10 @@ template <class Scalar> Vec3 mean_point(const Scalar* impulses, const Scalar* fo
   return whole > 0 ? (1 / whole) * mean : deepest;
 }
 
-template <class Scalar> Vec3 meeting_point(const WorldState& s, std::uint32_t contact, const EventRecorder::Before& before) {
-  return before.detector.origin(contact) + mean_point(impulses_of<Scalar>(s, contact), row_of<Scalar>(s, Buffer::contact, contact));
+template <class Scalar>
+Vec3 meeting_point(const WorldState& s, std::uint32_t contact, const EventRecorder::Before& before) {
+  return before.detector.origin(contact) +
+         mean_point(impulses_of<Scalar>(s, contact), row_of<Scalar>(s, Buffer::contact, contact));
 }
 
 /// Places of shapes are used again: whether these are the ones that touched.
@@ -81,7 +85,8 @@ bool same_bodies(const WorldState& s, const ContactKey& key, const TouchingPair&
 
 template <class Scalar>
 ContactBegun EventRecorder::meeting(const WorldState& s, std::uint32_t contact, const Before& before) const {
-  return {pair_of(s, contact), vec3(row_of<Scalar>(s, Buffer::contact, contact)), meeting_point<Scalar>(s, contact, before)};
+  return {pair_of(s, contact), vec3(row_of<Scalar>(s, Buffer::contact, contact)),
+          meeting_point<Scalar>(s, contact, before)};
 }
 
 template <class Scalar> void EventRecorder::find_hits(const WorldState& s, const Before& before, double least_speed) {
@@ -163,7 +168,8 @@ void EventRecorder::follow_sleep(const StepSettings& settings, const WorldState&
   rest_serial_ = s.serial;
   next_asleep_.clear();
   for (std::uint32_t index = 0; index < s.body_ids.size(); index++)
-    if (s.body_ids.alive(index) && s.asleep(s.body_ids.row(index))) next_asleep_.push_back(s.body_ids.id<BodyId>(index));
+    if (s.body_ids.alive(index) && s.asleep(s.body_ids.row(index)))
+      next_asleep_.push_back(s.body_ids.id<BodyId>(index));
   std::ranges::set_difference(next_asleep_, asleep_, std::back_inserter(slept_));
   std::ranges::set_difference(asleep_, next_asleep_, std::back_inserter(woken_));
   std::erase_if(woken_, [&](BodyId body) { return !s.body_ids.valid(body); });  // destroyed, not awake

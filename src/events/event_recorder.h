@@ -27,7 +27,8 @@ class EventRecorder {
   /// Before a step, which may fail. Who touches is remembered.
   void clear() { begun_.clear(), ended_.clear(), hits_.clear(), moved_.clear(), slept_.clear(), woken_.clear(); }
   /// After a step. `moving`: rows of bodies.
-  void record(const StepSettings& settings, const WorldState& state, const Before& before, std::span<const std::uint32_t> moving);
+  void record(const StepSettings& settings, const WorldState& state, const Before& before,
+              std::span<const std::uint32_t> moving);
   /// After `record`, and when it is known who sleeps.
   void follow_sleep(const StepSettings& settings, const WorldState& state);
   /// Of a step that keeps no copy of the poses by itself.
@@ -46,7 +47,8 @@ class EventRecorder {
   template <class Scalar>
   void record_as(const StepSettings& settings, const WorldState& state, const Before& before,
                  std::span<const std::uint32_t> moving);
-  template <class Scalar> ContactBegun meeting(const WorldState& state, std::uint32_t contact, const Before& before) const;
+  template <class Scalar>
+  ContactBegun meeting(const WorldState& state, std::uint32_t contact, const Before& before) const;
   template <class Scalar> void find_hits(const WorldState& state, const Before& before, double least_speed);
   template <class Scalar> void follow_contacts(const WorldState& state, const Before& before);
   template <class Scalar>

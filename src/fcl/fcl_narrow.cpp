@@ -69,8 +69,8 @@ struct Found {
 void reduce(std::vector<std::pair<Vector, double>>& points) {
   std::vector<std::pair<Vector, double>> kept;
   const auto take = [&](auto score) {
-    const auto best =
-        std::max_element(points.begin(), points.end(), [&](const auto& x, const auto& y) { return score(x) < score(y); });
+    const auto best = std::max_element(points.begin(), points.end(),
+                                       [&](const auto& x, const auto& y) { return score(x) < score(y); });
     kept.push_back(*best);
     points.erase(best);
   };
@@ -125,7 +125,9 @@ bool narrow_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double m
   try {
     const Object first = object(a, raise), second = object(b, raise);
     if (!collide(first, second, raise, found) && !plane) apart(first, second, margin, found);
-  } catch (const std::exception&) { return false; }
+  } catch (const std::exception&) {
+    return false;
+  }
   if (found.points.size() > 4) reduce(found.points);
   for (int i = 0; i < 3 && !found.points.empty(); i++) out.normal[i] = found.normal[i];
   for (const auto& [p, separation] : found.points)
@@ -150,7 +152,9 @@ bool distance_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double
     fcl::DistanceRequestd request(false, false, 0, 0, 1e-9, fcl::GST_LIBCCD);
     fcl::DistanceResultd result;
     distance = fcl::distance(first.geometry.get(), first.pose, second.geometry.get(), second.pose, request, result);
-  } catch (const std::exception&) { return false; }
+  } catch (const std::exception&) {
+    return false;
+  }
   return std::isfinite(distance) && distance >= 0;
 }
 

@@ -13,7 +13,8 @@ bool fcl_available();
 bool narrow_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double margin, Manifold<double>& out);
 bool narrow_fcl(const ShapeView<float>& a, const ShapeView<float>& b, float margin, Manifold<float>& out);
 
-/// Distance of two shapes [m], or minus the length of a way out of each other, which may not be the shortest. False as above, and for planes.
+/// Distance of two shapes [m], or minus the length of a way out of each other, which may not be the shortest. False as
+/// above, and for planes.
 bool distance_fcl(const ShapeView<double>& a, const ShapeView<double>& b, double& distance);
 
 }  // namespace pcphys

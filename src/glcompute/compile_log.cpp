@@ -65,7 +65,8 @@ std::string_view line_at(std::string_view text, const Mark& wanted) {
   return {};
 }
 
-/// Mesa says file 0 of what is assigned and must not be, whatever #line gave: then it is of the host's own text, if that has such a line.
+/// Mesa says file 0 of what is assigned and must not be, whatever #line gave: then it is of the host's own text, if
+/// that has such a line.
 std::string_view line_at(const ProgramSource& source, Mark& mark) {
   const Mark host{mark.line, source.host};
   const std::string_view at = mark.file == 0 && source.host != 0 ? line_at(source.text, host) : std::string_view();
@@ -93,7 +94,8 @@ std::string with_quotes(std::string_view log, const ProgramSource& source) {
   const bool refused = speaks_of(log, "error");
   while (!log.empty()) {
     const std::string_view said = take_line(log);
-    if (refused && speaks_of(said, "warning") && !speaks_of(said, "error")) continue;  // drivers warn of what was not asked about
+    // drivers warn of what was not asked about
+    if (refused && speaks_of(said, "warning") && !speaks_of(said, "error")) continue;
     text += (text.empty() ? "" : "\n") + std::string(said);
     Mark mark;
     const std::string_view at = find_mark(said, mark) ? line_at(source, mark) : std::string_view();

@@ -46,16 +46,19 @@ std::uint32_t limit(GLenum name) {
   return std::uint32_t(value);
 }
 
-/// `notified`: a reset of the device is told (glGetGraphicsResetStatus); otherwise results would go on as if nothing was.
+/// `notified`: a reset of the device is told (glGetGraphicsResetStatus); otherwise results would go on as if nothing
+/// was.
 EGLContext create_context(EGLDisplay display, EGLConfig config, int major, int minor, bool notified) {
   std::vector<EGLint> wanted;
   if (major != 0)
-    wanted = {EGL_CONTEXT_MAJOR_VERSION,          major, EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+    wanted = {EGL_CONTEXT_MAJOR_VERSION,       major,
+              EGL_CONTEXT_MINOR_VERSION,       minor,
+              EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
 #ifndef NDEBUG
   if (epoxy_egl_version(display) >= 15) wanted.insert(wanted.end(), {EGL_CONTEXT_OPENGL_DEBUG, EGL_TRUE});
 #endif
-  if (notified) wanted.insert(wanted.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
+  if (notified)
+    wanted.insert(wanted.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET});
   wanted.push_back(EGL_NONE);
   return eglCreateContext(display, config, EGL_NO_CONTEXT, wanted.data());
 }
@@ -117,7 +120,8 @@ void GlBindings::restore() const {
 // ---- creation ---------------------------------------------------------------------------------------
 Result<std::unique_ptr<GlContext>> GlContext::open(int device) {
   if (!epoxy_has_egl())
-    return unavailable("libEGL is not on this machine; install it (Debian, Ubuntu: apt-get install libegl1 libgl1-mesa-dri).");
+    return unavailable(
+        "libEGL is not on this machine; install it (Debian, Ubuntu: apt-get install libegl1 libgl1-mesa-dri).");
   const std::vector<void*> devices = egl_devices();
   if (device >= 0) {
     if (std::size_t(device) >= devices.size())
@@ -140,7 +144,8 @@ Result<std::unique_ptr<GlContext>> GlContext::open(int device) {
 }
 
 Result<std::unique_ptr<GlContext>> GlContext::open_display(void* display, int device) {
-  const std::string cure = " Install a driver with OpenGL 4.3 (Debian, Ubuntu: apt-get install libgl1-mesa-dri libegl-mesa0).";
+  const std::string cure =
+      " Install a driver with OpenGL 4.3 (Debian, Ubuntu: apt-get install libgl1-mesa-dri libegl-mesa0).";
   // drivers that compute on the processor do so on threads that begin in the state of the one that opens the display
   const FlushSubnormals flush;
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr))
@@ -164,16 +169,18 @@ Result<std::unique_ptr<GlContext>> GlContext::open_display(void* display, int de
   if (!scope.status()) return unavailable(scope.status().error().message);
   const Status status = made->describe();
   if (old || !status)
-    return unavailable("pcphys needs OpenGL 4.3; " + (made->report_.renderer.empty() ? "this device" : made->report_.renderer) +
-                       " offers " + made->report_.version + "." + cure);
+    return unavailable("pcphys needs OpenGL 4.3; " +
+                       (made->report_.renderer.empty() ? "this device" : made->report_.renderer) + " offers " +
+                       made->report_.version + "." + cure);
   return made;
 }
 
 Result<std::unique_ptr<GlContext>> GlContext::adopt_current() {
   void* host = current_context();
   if (host == nullptr)
-    return Error{ErrorCode::device_error,
-                 "No GL context is current on this thread; make the host's context current, or ask for a headless one."};
+    return Error{
+        ErrorCode::device_error,
+        "No GL context is current on this thread; make the host's context current, or ask for a headless one."};
   std::unique_ptr<GlContext> made(new GlContext);
   made->host_ = host;
   GlScope scope(*made);
@@ -236,20 +243,20 @@ Status GlContext::enter() {
 Status GlContext::make_current() {
   if (host_ != nullptr) {
     if (current_context() == host_) return {};
-    return Error{
-        ErrorCode::device_error,
-        "The host's GL context is not current on this thread (or was destroyed); make it current before calling pcphys."};
+    return Error{ErrorCode::device_error,
+                 "The host's GL context is not current on this thread (or was destroyed); make it current before "
+                 "calling pcphys."};
   }
   switched_ = eglGetCurrentContext() != context_;
   if (!switched_) return {};
-  before_ = {eglGetCurrentDisplay(), eglGetCurrentSurface(EGL_DRAW), eglGetCurrentSurface(EGL_READ), eglGetCurrentContext(),
-             eglQueryAPI()};
+  before_ = {eglGetCurrentDisplay(), eglGetCurrentSurface(EGL_DRAW), eglGetCurrentSurface(EGL_READ),
+             eglGetCurrentContext(), eglQueryAPI()};
   eglBindAPI(EGL_OPENGL_API);
   if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_)) return {};
   eglBindAPI(before_.api);
-  return Error{
-      ErrorCode::device_error,
-      "The GL context could not be made current; it is in use on another thread, or a GLX context is current on this one."};
+  return Error{ErrorCode::device_error,
+               "The GL context could not be made current; it is in use on another thread, or a GLX context is current "
+               "on this one."};
 }
 
 void GlContext::leave() {

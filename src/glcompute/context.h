@@ -37,8 +37,8 @@ class GlContext {
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
 
-  /// Makes the own context current on this thread; of a host's it checks that it is, and keeps its bindings and its unread errors.
-  /// Calls nest; `leave` of the outermost restores what was.
+  /// Makes the own context current on this thread; of a host's it checks that it is, and keeps its bindings and its
+  /// unread errors. Calls nest; `leave` of the outermost restores what was.
   Status enter();
   void leave();
   /// GL errors since the last look, and lost devices.

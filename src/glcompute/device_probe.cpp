@@ -92,8 +92,9 @@ template <class Real> void Trial<Real>::powers() {
 
 /// Divisors just below a power of two defeat a corrected reciprocal; small integers are what kernels divide by.
 template <class Real> void Trial<Real>::hard_divisors() {
-  const Real divisors[] = {1 - ulp / 2, 2 - ulp, 1 + ulp, 1 + 2 * ulp, Real(1.5) - ulp, Real(1.5) + ulp, 3, 5, 7, 10, 11, 13,
-                           49,          60,      100,     240};
+  const Real divisors[] = {
+      1 - ulp / 2, 2 - ulp, 1 + ulp, 1 + 2 * ulp, Real(1.5) - ulp, Real(1.5) + ulp, 3, 5, 7, 10, 11, 13,
+      49,          60,      100,     240};
   for (const Real divisor : divisors)
     for (int i = 0; i < 48; i++) {
       add(1 + Real(i) * ulp, divisor);
@@ -126,7 +127,8 @@ template <class Real> void Trial<Real>::wide() {
   const int range = std::numeric_limits<Real>::max_exponent - 4;
   for (int i = 0; i < 1024; i++) {
     const int a = random_.exponent(range), b = random_.exponent(range);
-    if (std::abs(a - b) < range) add(std::ldexp(Real(random_.mantissa()), a), std::ldexp(Real(random_.mantissa()), b), Real(0));
+    if (std::abs(a - b) < range)
+      add(std::ldexp(Real(random_.mantissa()), a), std::ldexp(Real(random_.mantissa()), b), Real(0));
   }
 }
 
@@ -208,7 +210,8 @@ Result<GlArithmetic> probe_arithmetic(Precision precision, const ProgramCache& c
     std::memcpy(&found, bytes->data(), sizeof found);
     return found;
   }
-  const Result<GlArithmetic> probed = precision == Precision::f64 ? probe<double>(*source, cache) : probe<float>(*source, cache);
+  const Result<GlArithmetic> probed =
+      precision == Precision::f64 ? probe<double>(*source, cache) : probe<float>(*source, cache);
   if (!probed) return probed;
   const char* bytes = reinterpret_cast<const char*>(&*probed);
   cache.store(key, std::vector<char>(bytes, bytes + sizeof found));

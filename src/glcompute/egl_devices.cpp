@@ -25,12 +25,14 @@ std::vector<void*> egl_devices() {
 }
 
 void* egl_device_display(void* device) {
-  return client_extension("EGL_EXT_platform_device") ? platform_display(EGL_PLATFORM_DEVICE_EXT, device) : EGL_NO_DISPLAY;
+  return client_extension("EGL_EXT_platform_device") ? platform_display(EGL_PLATFORM_DEVICE_EXT, device)
+                                                     : EGL_NO_DISPLAY;
 }
 
 void* egl_surfaceless_display() {
-  return client_extension("EGL_MESA_platform_surfaceless") ? platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY)
-                                                           : EGL_NO_DISPLAY;
+  return client_extension("EGL_MESA_platform_surfaceless")
+             ? platform_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY)
+             : EGL_NO_DISPLAY;
 }
 
 }  // namespace pcphys

@@ -47,7 +47,9 @@ class GlBackend final : public Backend {
   Status finish() override;
 
  private:
-  std::size_t real_bytes() const { return options_.precision == Precision::f64 ? sizeof(std::uint64_t) : sizeof(std::uint32_t); }
+  std::size_t real_bytes() const {
+    return options_.precision == Precision::f64 ? sizeof(std::uint64_t) : sizeof(std::uint32_t);
+  }
   Status resize(Buffer buffer, std::size_t bytes);
   Status transfer(Buffer buffer, void (GlBuffer::*copy)(GlStaging&) const);
   void settle();
@@ -198,8 +200,9 @@ Result<std::int32_t> GlBackend::bind(const KernelRun& run) {
 
 Status GlBackend::prepare(const OwnKernel& kernel) {
   if (kernel.body.empty())
-    return Error{ErrorCode::unavailable,
-                 "The kernel \"" + kernel.name + "\" has no GLSL side; put its stage on cpu, or write it with PCPHYS_KERNEL."};
+    return Error{
+        ErrorCode::unavailable,
+        "The kernel \"" + kernel.name + "\" has no GLSL side; put its stage on cpu, or write it with PCPHYS_KERNEL."};
   GlScope scope(*context_);
   if (!scope.status()) return scope.status();
   return own_.prepare(kernel, options_, cache_);
@@ -267,7 +270,9 @@ Status GlBackend::finish() {
 }  // namespace
 
 /// Trees of which few are alike would leave most lanes of their blocks, and of their memory, empty.
-std::uint32_t gl_width_for(Domain domain, std::uint32_t count) { return of_trees(domain) && count < fewest_alike ? 1 : gl_width; }
+std::uint32_t gl_width_for(Domain domain, std::uint32_t count) {
+  return of_trees(domain) && count < fewest_alike ? 1 : gl_width;
+}
 
 GlTeam& gl_team() {
   static GlTeam team = [] {

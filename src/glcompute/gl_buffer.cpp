@@ -13,8 +13,8 @@ Status allocate(std::string_view label, std::size_t bytes, std::uint32_t& id) {
   glBindBuffer(GL_SHADER_STORAGE_BUFFER, id);
   glBufferData(GL_SHADER_STORAGE_BUFFER, GLsizeiptr(bytes), nullptr, GL_DYNAMIC_COPY);
   if (glGetError() != GL_OUT_OF_MEMORY) return {};
-  return Error{ErrorCode::buffer_full,
-               "The GL device has no memory for the buffer `" + std::string(label) + "` of " + std::to_string(bytes) + " bytes."};
+  return Error{ErrorCode::buffer_full, "The GL device has no memory for the buffer `" + std::string(label) + "` of " +
+                                           std::to_string(bytes) + " bytes."};
 }
 
 void copy(std::uint32_t from, std::uint32_t to, std::size_t bytes) {

@@ -8,9 +8,9 @@
 
 namespace pcphys {
 
-/// What is on its way to the device or back stands in buffers for that alone, which the device copies from and to. Storage that
-/// the host reads and writes itself is moved to the host's memory by NVIDIA's driver (580), where kernels run slower, and where of
-/// two uploads in a row the second was not seen by the kernels after it (docs/gpu.md).
+/// What is on its way to the device or back stands in buffers for that alone, which the device copies from and to.
+/// Storage that the host reads and writes itself is moved to the host's memory by NVIDIA's driver (580), where kernels
+/// run slower, and where of two uploads in a row the second was not seen by the kernels after it (docs/gpu.md).
 class GlStaging {
  public:
   void write(std::uint32_t storage, std::size_t offset, std::size_t bytes, const void* from);

@@ -9,7 +9,9 @@
 namespace pcphys {
 namespace {
 
-std::string_view label_of(Buffer buffer) { return is_own(buffer) ? "a property of the host's own" : schema(buffer).name; }
+std::string_view label_of(Buffer buffer) {
+  return is_own(buffer) ? "a property of the host's own" : schema(buffer).name;
+}
 
 }  // namespace
 
@@ -36,14 +38,15 @@ Status GlMemory::keep(Buffer buffer) { return at(buffer).keep(label_of(buffer));
 
 Status GlMemory::check_transferable(Buffer buffer) {
   if (at(buffer).attached() && at(buffer).transferable()) return {};
-  return Error{ErrorCode::bad_argument,
-               "The buffer `" + std::string(label_of(buffer)) + "` has no memory on the host; attach it before a transfer."};
+  return Error{ErrorCode::bad_argument, "The buffer `" + std::string(label_of(buffer)) +
+                                            "` has no memory on the host; attach it before a transfer."};
 }
 
 void GlMemory::set_infos(const void* infos, std::size_t count) {
   info_staging_.resize(count * info_stride_);
   for (std::size_t i = 0; i < count; i++)
-    std::memcpy(info_staging_.data() + i * info_stride_, static_cast<const char*>(infos) + i * info_bytes_, info_bytes_);
+    std::memcpy(info_staging_.data() + i * info_stride_, static_cast<const char*>(infos) + i * info_bytes_,
+                info_bytes_);
   glBindBuffer(GL_UNIFORM_BUFFER, info_buffer_);
   if (count > info_capacity_) {
     glBufferData(GL_UNIFORM_BUFFER, GLsizeiptr(info_staging_.size()), info_staging_.data(), GL_DYNAMIC_DRAW);
@@ -57,7 +60,8 @@ void GlMemory::set_infos(const void* infos, std::size_t count) {
 Status GlMemory::bind(Buffer buffer, std::uint32_t binding, std::string_view kernel) {
   if (!at(buffer).attached())
     return Error{ErrorCode::bad_argument, "The kernel `" + std::string(kernel) + "` uses the buffer `" +
-                                              std::string(label_of(buffer)) + "`, which was neither attached nor reserved."};
+                                              std::string(label_of(buffer)) +
+                                              "`, which was neither attached nor reserved."};
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, at(buffer).id());
   return {};
 }
@@ -71,8 +75,8 @@ Status GlMemory::bind(std::span<const Access> accesses, std::string_view kernel)
 
 Status GlMemory::bind_info(std::size_t info) {
   if (info >= info_count_)
-    return Error{ErrorCode::bad_argument,
-                 "There is no info block " + std::to_string(info) + "; set_infos gave " + std::to_string(info_count_) + "."};
+    return Error{ErrorCode::bad_argument, "There is no info block " + std::to_string(info) + "; set_infos gave " +
+                                              std::to_string(info_count_) + "."};
   glBindBufferRange(GL_UNIFORM_BUFFER, 0, info_buffer_, GLintptr(info * info_stride_), GLsizeiptr(info_bytes_));
   return {};
 }

@@ -4,8 +4,8 @@
 
 namespace pcphys {
 
-/// Keeps it short: drivers end a context whose work takes them seconds, and other processes on the device make it take longer
-/// (docs/gpu.md). Not more than two batches of dispatches wait.
+/// Keeps it short: drivers end a context whose work takes them seconds, and other processes on the device make it take
+/// longer (docs/gpu.md). Not more than two batches of dispatches wait.
 class GlQueue {
  public:
   /// After each dispatch, in the context.

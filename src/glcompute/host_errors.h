@@ -1,5 +1,6 @@
-// Errors that a host has left unread in its own GL context. pcphys asks the context for errors of its own, which takes the host's along;
-// GL has no call that puts one back, so the host's are raised anew, by calls that are wrong in the same way and change nothing.
+// Errors that a host has left unread in its own GL context. pcphys asks the context for errors of its own, which takes
+// the host's along; GL has no call that puts one back, so the host's are raised anew, by calls that are wrong in the
+// same way and change nothing.
 #pragma once
 #include <array>
 #include <cstddef>

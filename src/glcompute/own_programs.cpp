@@ -17,8 +17,8 @@ void set_parameters(const OwnKernel& kernel, const OwnProgram& program) {
     for (std::uint32_t c = 0; c < components(a.type); c++) {
       const std::int32_t location = program.parameters[i++];
       if (location < 0) continue;
-      const double value = read_number(kernel.parameters.data() + a.place + c * number_bytes(a.type, kernel.real_bytes), a.type,
-                                       kernel.real_bytes);
+      const double value = read_number(kernel.parameters.data() + a.place + c * number_bytes(a.type, kernel.real_bytes),
+                                       a.type, kernel.real_bytes);
       if (a.type == PropertyType::int32)
         glUniform1i(location, GLint(value));
       else if (a.type == PropertyType::uint32)
@@ -66,7 +66,9 @@ void add_terms(const KernelRun& run, const OwnProgram& program, const GlLimits& 
 
 // ---- reductions ---------------------------------------------------------------------------------------
 /// Of each block of rows, and of the levels above.
-std::size_t reduction_values(std::uint32_t count) { return std::size_t{count} / (reduction_block / 2) + reduction_block; }
+std::size_t reduction_values(std::uint32_t count) {
+  return std::size_t{count} / (reduction_block / 2) + reduction_block;
+}
 
 void start_reduction(const OwnProgram& program, const Range& range, const GlLimits& limits) {
   glUniform4ui(program.work, 0, 0, std::uint32_t(reduction_values(range.end - range.begin)), range.begin);
@@ -146,7 +148,8 @@ Status OwnPrograms::run_in_two(const KernelRun& run, std::size_t values, GlMemor
   std::size_t words = 0;
   for (const OwnArgument& a : k.arguments)
     if (a.summed()) words += std::size_t{components(a.type)} * number_words(a.type, k.real_bytes);
-  Status status = sums_.resize("sums of a kernel of the host's own", values * words * 4, memory.limits().storage_block_bytes);
+  Status status =
+      sums_.resize("sums of a kernel of the host's own", values * words * 4, memory.limits().storage_block_bytes);
   if (!status) return status;
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);  // others may still read or write there
   status = memory.bind(k.first, k.name);

@@ -1,5 +1,5 @@
-// Kernels of the host's own on the GPU: their programs, and the runs of those that are two programs each (own_source.cpp). The
-// context must be current.
+// Kernels of the host's own on the GPU: their programs, and the runs of those that are two programs each
+// (own_source.cpp). The context must be current.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -80,15 +80,16 @@ std::string apply(const OwnKernel& k, const OwnText& own) {
     text += own.for_parts(a.type, [&](std::uint32_t c, const std::string& part) {
       const std::string place = own.place(a, c, "pc_row"), sum = "pc_sum_" + a.name + part;
       if (!a.adds()) return "  " + place + " = " + sum + ";\n";
-      return "  " + a.name + part + " = " + place + ";\n  " + a.name + part + " = " + a.name + part + " + " + sum + ";\n  " +
-             place + " = " + a.name + part + ";\n";
+      return "  " + a.name + part + " = " + place + ";\n  " + a.name + part + " = " + a.name + part + " + " + sum +
+             ";\n  " + place + " = " + a.name + part + ";\n";
     });
   }
   return text;
 }
 
 std::string sums_block(const OwnKernel& k, std::size_t binding) {
-  std::string text = "layout(std430, binding = " + std::to_string(binding) + ") restrict buffer Block_sums { uint io_sums[]; };\n";
+  std::string text =
+      "layout(std430, binding = " + std::to_string(binding) + ") restrict buffer Block_sums { uint io_sums[]; };\n";
   text += "uint pc_stride;\n";
   text += "void pc_put(uint word, uint pc_i, uint x) { io_sums[word * pc_stride + pc_i] = x; }\n";
   text += "void pc_put(uint word, uint pc_i, int x) { io_sums[word * pc_stride + pc_i] = uint(x); }\n";
@@ -96,7 +97,8 @@ std::string sums_block(const OwnKernel& k, std::size_t binding) {
   text += "uint pc_get_uint(uint word, uint pc_i) { return io_sums[word * pc_stride + pc_i]; }\n";
   text += "int pc_get_int(uint word, uint pc_i) { return int(io_sums[word * pc_stride + pc_i]); }\n";
   text += "float pc_get_float(uint word, uint pc_i) { return uintBitsToFloat(io_sums[word * pc_stride + pc_i]); }\n";
-  const bool doubles = std::ranges::any_of(k.arguments, [&](const OwnArgument& a) { return a.summed() && wide(k, a.type); });
+  const bool doubles =
+      std::ranges::any_of(k.arguments, [&](const OwnArgument& a) { return a.summed() && wide(k, a.type); });
   if (!doubles) return text;
   text +=
       "void pc_put(uint word, uint pc_i, double x) { uvec2 b = unpackDouble2x32(x); pc_put(word, pc_i, b.x); "

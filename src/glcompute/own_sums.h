@@ -1,4 +1,5 @@
-// Text of what stands between the two programs of a kernel of the host's own: sums in variables, and in a block of their own.
+// Text of what stands between the two programs of a kernel of the host's own: sums in variables, and in a block of
+// their own.
 #pragma once
 #include <functional>
 #include <string>
@@ -17,7 +18,8 @@ std::string clear(const OwnKernel& k, const std::string& prefix);
 std::string combine(const OwnKernel& k, const std::string& into, const std::string& with);
 std::string combined(const OwnArgument& a, const std::string& x, const std::string& y);
 
-/// The block, and numbers in it as bits; pc_stride says how many values there is room for. Words of neighbours stand side by side.
+/// The block, and numbers in it as bits; pc_stride says how many values there is room for. Words of neighbours stand
+/// side by side.
 std::string sums_block(const OwnKernel& k, std::size_t binding);
 /// To and from value `index` of the block.
 std::string put(const OwnKernel& k, const std::string& prefix, const std::string& index);

@@ -13,7 +13,8 @@ bool single(PropertyType type) { return components(type) == 1; }
 }  // namespace
 
 std::string OwnText::type(PropertyType type) {
-  constexpr const char* types[] = {"Real", "Vec3", "Quaternion", "Sym3", "Quad", "Mat3", "float", "double", "int", "uint"};
+  constexpr const char* types[] = {"Real", "Vec3",  "Quaternion", "Sym3", "Quad",
+                                   "Mat3", "float", "double",     "int",  "uint"};
   return types[std::size_t(type)];
 }
 std::string OwnText::number_type(PropertyType type) { return single(type) ? OwnText::type(type) : "Real"; }
@@ -34,7 +35,8 @@ std::string OwnText::part(PropertyType type, std::uint32_t c) {
   }
 }
 
-std::string OwnText::for_parts(PropertyType type, const std::function<std::string(std::uint32_t, const std::string&)>& each) {
+std::string OwnText::for_parts(PropertyType type,
+                               const std::function<std::string(std::uint32_t, const std::string&)>& each) {
   std::string text;
   for (std::uint32_t c = 0; c < components(type); c++) text += each(c, part(type, c));
   return text;
@@ -45,7 +47,8 @@ std::string OwnText::precise(const OwnArgument& a) {
 }
 
 const OwnArgument& OwnText::user_of(Buffer buffer) const {
-  return *std::ranges::find_if(k_.arguments, [&](const OwnArgument& a) { return a.of_property() && a.buffer == buffer; });
+  return *std::ranges::find_if(k_.arguments,
+                               [&](const OwnArgument& a) { return a.of_property() && a.buffer == buffer; });
 }
 /// The name in a program of a buffer of which it uses a property.
 std::string OwnText::label(Buffer buffer) const {
@@ -60,8 +63,8 @@ std::string OwnText::blocks(std::span<const Access> accesses) const {
     if (is_own(access.buffer) && single(user_of(access.buffer).type)) element = type(user_of(access.buffer).type);
     if (!of_table(access.buffer)) element = "uint";
     const std::string name = label(access.buffer);
-    text += "layout(std430, binding = " + std::to_string(binding++) + ") restrict " + (access.write ? "" : "readonly ") +
-            "buffer Block_" + name + " { " + element + " io_" + name + "[]; };\n";
+    text += "layout(std430, binding = " + std::to_string(binding++) + ") restrict " +
+            (access.write ? "" : "readonly ") + "buffer Block_" + name + " { " + element + " io_" + name + "[]; };\n";
   }
   return text;
 }
@@ -101,8 +104,8 @@ std::string OwnText::place(const OwnArgument& a, std::uint32_t c, const std::str
   const std::string array = "io_" + label(a.buffer), at_row = a.single ? "1u" : row;
   if (is_own(a.buffer) && single(a.type)) return array + "[" + at_row + "]";
   const std::uint32_t at = a.offset / std::uint32_t(k_.real_bytes) + c, quad_bytes = std::uint32_t(k_.real_bytes << 2);
-  return array + "[PC_QUAD_AT(" + at_row + ", " + std::to_string(a.row_bytes / quad_bytes) + "u, " + std::to_string(at / 4) + "u)]." +
-         "xyzw"[at % 4];
+  return array + "[PC_QUAD_AT(" + at_row + ", " + std::to_string(a.row_bytes / quad_bytes) + "u, " +
+         std::to_string(at / 4) + "u)]." + "xyzw"[at % 4];
 }
 
 std::string OwnText::load(const std::function<bool(const OwnArgument&)>& wanted, const std::string& row) const {

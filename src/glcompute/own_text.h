@@ -16,7 +16,8 @@ class OwnText {
   std::string blocks(std::span<const Access> accesses) const;
   /// Uniforms of the parameters, and what the kernel's text writes as variables.
   std::string variables() const;
-  /// The head of the function with the host's text: what it reads is const, what it writes stands outside and is precise.
+  /// The head of the function with the host's text: what it reads is const, what it writes stands outside and is
+  /// precise.
   std::string function() const;
   /// A call of it; what it reads has the names that `load` gave it.
   std::string call() const;
@@ -32,7 +33,8 @@ class OwnText {
   /// Component c of a value of that type in the kernel's text: ".x".
   static std::string part(PropertyType type, std::uint32_t c);
   /// Statements for each component, `each` with its suffix.
-  static std::string for_parts(PropertyType type, const std::function<std::string(std::uint32_t, const std::string&)>& each);
+  static std::string for_parts(PropertyType type,
+                               const std::function<std::string(std::uint32_t, const std::string&)>& each);
   static std::string precise(const OwnArgument& a);
 
  private:

@@ -21,7 +21,10 @@
 #define PC_IO
 #define PC_PASS
 
-struct Slot { uint block; uint lane; };
+struct Slot {
+  uint block;
+  uint lane;
+};
 
 #define pc_device_div(a, b) ((a) / (b))
 #define pc_device_sqrt(x) sqrt(x)
@@ -44,16 +47,18 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 // four reals of a lane side by side: 16 or 32 bytes an access, neighbouring lanes adjacent.
 #define PC_INFO(field) pc_info.field
 #define PC_COUNT(field) uint(pc_info.field)
-#define PC_GATHER(buffer, i, k) pc_quad_of(io_##buffer[(i) * quads_##buffer + (k)])
+#define PC_GATHER(buffer, i, k) pc_quad_of(io_##buffer[quads_##buffer * (i) + (k)])
 #define PC_QUAD_AT(i, quads, k) ((i) * (quads) + (k))
-#define PC_ROW(buffer, i) ((i) * quads_##buffer)
+#define PC_ROW(buffer, i) (quads_##buffer * (i))
 #define PC_ROW_QUAD(buffer, row, k) pc_quad_of(io_##buffer[(row) + (k)])
-#define PC_SCATTER(buffer, i, k, q) io_##buffer[(i) * quads_##buffer + (k)] = pc_real4_of(q)
-#define PC_SCATTER_IF(mask, buffer, i, k, q) if (mask) io_##buffer[(i) * quads_##buffer + (k)] = pc_real4_of(q)
+#define PC_SCATTER(buffer, i, k, q) io_##buffer[quads_##buffer * (i) + (k)] = pc_real4_of(q)
+#define PC_SCATTER_IF(mask, buffer, i, k, q) \
+  if (mask) io_##buffer[quads_##buffer * (i) + (k)] = pc_real4_of(q)
 #ifdef PC_DOUBLE  // as scalars: an H200's compiler (driver 580) cannot index a dvec4 by a variable
-#define PC_AT(buffer, slot, f) io_##buffer[(((slot).block * quads_##buffer + ((f) >> 2u)) * PC_W + (slot).lane) * 4u + ((f) & 3u)]
+#define PC_AT(buffer, slot, f) \
+  io_##buffer[(((slot).block * quads_##buffer + ((f) >> 2u)) * PC_W + (slot).lane) * 4u + (3u & (f))]
 #else
-#define PC_AT(buffer, slot, f) io_##buffer[((slot).block * quads_##buffer + ((f) >> 2u)) * PC_W + (slot).lane][(f) & 3u]
+#define PC_AT(buffer, slot, f) io_##buffer[((slot).block * quads_##buffer + ((f) >> 2u)) * PC_W + (slot).lane][3u & (f)]
 #endif
 #define PC_LD(buffer, slot, f) PC_AT(buffer, slot, f)
 #define PC_ST(buffer, slot, f, x) PC_AT(buffer, slot, f) = x
@@ -62,10 +67,12 @@ Real4 pc_real4_of(Quad q) { return Real4(q.v, q.s); }
 // lists: what is the same for all lanes of a block, one of each lane from `i` on, slots of the same lanes elsewhere
 #define PC_UINT(buffer, i) io_##buffer[i]
 // lowers a number of a list, of which many may be at once, and raises the list's flag, its first, where that changed it
-#define PC_LOWER(buffer, i, value) if (io_##buffer[i] > (value) && atomicMin(io_##buffer[i], value) > (value)) io_##buffer[0] = 1u
+#define PC_LOWER(buffer, i, value) \
+  if (io_##buffer[i] > (value) && atomicMin(io_##buffer[i], value) > (value)) io_##buffer[0] = 1u
 #define PC_BLOCK(slot) (slot).block
 #define PC_EACH(buffer, slot, i) io_##buffer[(i) + (slot).lane]
 #define PC_NODE(slot, node) Slot(node, (slot).lane)
 #define PC_IS(flag) ((flag) != 0u)
-#define PC_RAISE(mask, buffer, k) if (mask) io_##buffer[k].w = PC_REAL(1.0)
+#define PC_RAISE(mask, buffer, k) \
+  if (mask) io_##buffer[k].w = PC_REAL(1.0)
 #include "nodes.inl"

@@ -123,7 +123,8 @@ Status check_buffer(GLuint program, Buffer buffer, std::uint32_t binding, Precis
   if (status) status = expect(what.name, "stride", stride, stride_of(program, index));
   if (status) status = expect(what.name, "offset", 0, property_of(program, GL_BUFFER_VARIABLE, index, GL_OFFSET));
   if (status)
-    status = expect(what.name, "binding", binding, property_of(program, GL_SHADER_STORAGE_BLOCK, block, GL_BUFFER_BINDING));
+    status =
+        expect(what.name, "binding", binding, property_of(program, GL_SHADER_STORAGE_BLOCK, block, GL_BUFFER_BINDING));
   return status;
 }
 
@@ -166,7 +167,8 @@ Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, c
     glDeleteProgram(*program);
     return status.error();
   }
-  glProgramUniform1i(*program, glGetUniformLocation(*program, "pc_scattered"), options.scattered);  // none where nothing is shared
+  // none where nothing is shared
+  glProgramUniform1i(*program, glGetUniformLocation(*program, "pc_scattered"), options.scattered);
   return KernelProgram{*program, glGetUniformLocation(*program, "pc_range")};
 }
 
@@ -175,7 +177,8 @@ namespace {
 /// What is said of a joined text is asked for once more, of the text with the lines of its file.
 Result<std::uint32_t> link_own(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache) {
   const Result<ProgramSource> source = own_kernel_source(kernel, options);
-  Result<std::uint32_t> program = source ? link_program(*source, kernel.name, cache) : Result<std::uint32_t>(source.error());
+  Result<std::uint32_t> program =
+      source ? link_program(*source, kernel.name, cache) : Result<std::uint32_t>(source.error());
   if (program || kernel.own_lines) return program;
   const std::optional<KernelLines> lines = read_lines(kernel);
   if (!lines)
@@ -194,14 +197,20 @@ Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& opt
   const Result<std::uint32_t> program = link_own(kernel, options, cache);
   if (!program) return program.error();
   const auto location = [](GLuint id, const std::string& name) { return glGetUniformLocation(id, name.c_str()); };
-  OwnProgram own{
-      *program, location(*program, "pc_range"), location(*program, "pc_work"), location(*program, "pc_cutoff_squared"), {}, {}};
+  OwnProgram own{*program,
+                 location(*program, "pc_range"),
+                 location(*program, "pc_work"),
+                 location(*program, "pc_cutoff_squared"),
+                 {},
+                 {}};
   for (const OwnArgument& a : kernel.arguments)
     for (std::uint32_t c = 0; c < components(a.type); c++)
-      own.parameters.push_back(a.of_property() || a.given ? -1 : location(own.id, "pc_" + a.name + "_" + std::to_string(c)));
+      own.parameters.push_back(a.of_property() || a.given ? -1
+                                                          : location(own.id, "pc_" + a.name + "_" + std::to_string(c)));
   if (kernel.form == OwnKernel::Form::element) return own;
   const Result<ProgramSource> totals = own_totals_source(kernel, options);
-  const Result<std::uint32_t> second = totals ? link_program(*totals, kernel.name, cache) : Result<std::uint32_t>(totals.error());
+  const Result<std::uint32_t> second =
+      totals ? link_program(*totals, kernel.name, cache) : Result<std::uint32_t>(totals.error());
   if (!second) {
     glDeleteProgram(own.id);
     return second.error();
@@ -210,8 +219,8 @@ Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& opt
   return own;
 }
 
-void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits, std::uint32_t rows,
-              std::uint32_t each) {
+void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits,
+              std::uint32_t rows, std::uint32_t each) {
   const std::uint64_t piece = std::uint64_t(limits.work_group_count) * each;
   for (std::uint64_t k = begin; k < end; k += piece) {
     const std::uint32_t stop = std::uint32_t(std::min<std::uint64_t>(end, k + piece));

@@ -23,7 +23,8 @@ struct KernelProgram {
 struct OwnProgram {
   std::uint32_t id = 0;
   std::int32_t range = -1, work = -1, cutoff_squared = -1;  // locations; see own_source.cpp
-  std::vector<std::int32_t> parameters;  // location of each component of each argument in turn; -1: not used, or no parameter
+  // location of each component of each argument in turn; -1: not used, or no parameter
+  std::vector<std::int32_t> parameters;
   struct Totals {
     std::uint32_t id = 0;
     std::int32_t range = -1, work = -1;
@@ -32,9 +33,10 @@ struct OwnProgram {
 Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& options, const ProgramCache& cache);
 Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, const ProgramCache& cache);
 
-/// Runs the program that is bound over [begin, end), in pieces of as many work groups as the device takes; pieces need no barrier.
-/// `range_location`: of its pc_range; `rows`: work groups in the second dimension; `each`: how many a work group does.
-void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits, std::uint32_t rows = 1,
-              std::uint32_t each = gl_work_group);
+/// Runs the program that is bound over [begin, end), in pieces of as many work groups as the device takes; pieces need
+/// no barrier. `range_location`: of its pc_range; `rows`: work groups in the second dimension; `each`: how many a work
+/// group does.
+void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits,
+              std::uint32_t rows = 1, std::uint32_t each = gl_work_group);
 
 }  // namespace pcphys

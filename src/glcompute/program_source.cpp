@@ -7,7 +7,6 @@
 namespace pcphys {
 namespace {
 
-
 /// Elements as the prelude's macros take them.
 std::string element(Buffer buffer, Precision precision) {
   if (schema(buffer).reals == 0) return "uint";
@@ -33,9 +32,11 @@ std::string buffer_declarations(const KernelSchema& kernel, Precision precision,
 
 std::string main_text(Domain domain, bool shared) {
   if (shared)
-    return "layout(local_size_x = PC_TEAM) in;\nuniform uvec2 pc_range;\nvoid main() { pc_kernel(Slot(gl_WorkGroupID.x + "
+    return "layout(local_size_x = PC_TEAM) in;\nuniform uvec2 pc_range;\nvoid main() { pc_kernel(Slot(gl_WorkGroupID.x "
+           "+ "
            "pc_range.x, 0u)); }\n";
-  std::string text = "layout(local_size_x = " + std::to_string(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
+  std::string text =
+      "layout(local_size_x = " + std::to_string(gl_work_group) + ") in;\nuniform uvec2 pc_range;\nvoid main() {\n";
   text += "  uint k = gl_GlobalInvocationID.x + pc_range.x;\n  if (k >= pc_range.y) return;\n";
   text += domain == Domain::body ? "  pc_kernel(io_bodies[k]);\n"
           : one_by_one(domain)   ? "  pc_kernel(k);\n"

@@ -4,17 +4,26 @@
 // Elementary Functions, 2000), _nearest (the step, then the choice among three neighbours by exact
 // residuals: near ties beside powers of four escape the step alone).
 //
-// No residual may under- or overflow: operands of ordinary size are far from both (`pc_easy`), of others the corrections work on
-// mantissas in [1, 4), and exponents are put back as bits. What is no normal number, before or after, takes the built-in, which is
-// exact there.
+// No residual may under- or overflow: operands of ordinary size are far from both (`pc_easy`), of others the
+// corrections work on mantissas in [1, 4), and exponents are put back as bits. What is no normal number, before or
+// after, takes the built-in, which is exact there.
 // The text is also compiled as C++ by tests/gl_rounding.cpp.
 #ifdef PC_DOUBLE
 #define PC_BIAS 1023u
 #define PC_EXPONENT_END 2047u
 PC_FN uint pc_exponent(Real x) { return (unpackDouble2x32(x).y >> 20u) & 2047u; }
-PC_FN Real pc_with_exponent(Real x, uint e) { uvec2 b = unpackDouble2x32(x); return packDouble2x32(uvec2(b.x, (b.y & 0x800fffffu) | (e << 20u))); }
-PC_FN Real pc_above(Real x) { uvec2 b = unpackDouble2x32(x); return packDouble2x32(uvec2(b.x + 1u, b.x == 0xffffffffu ? b.y + 1u : b.y)); }
-PC_FN Real pc_below(Real x) { uvec2 b = unpackDouble2x32(x); return packDouble2x32(uvec2(b.x - 1u, b.x == 0u ? b.y - 1u : b.y)); }
+PC_FN Real pc_with_exponent(Real x, uint e) {
+  uvec2 b = unpackDouble2x32(x);
+  return packDouble2x32(uvec2(b.x, (b.y & 0x800fffffu) | (e << 20u)));
+}
+PC_FN Real pc_above(Real x) {
+  uvec2 b = unpackDouble2x32(x);
+  return packDouble2x32(uvec2(b.x + 1u, b.x == 0xffffffffu ? b.y + 1u : b.y));
+}
+PC_FN Real pc_below(Real x) {
+  uvec2 b = unpackDouble2x32(x);
+  return packDouble2x32(uvec2(b.x - 1u, b.x == 0u ? b.y - 1u : b.y));
+}
 #else
 #define PC_BIAS 127u
 #define PC_EXPONENT_END 255u
@@ -32,7 +41,10 @@ PC_FN bool pc_easy(Real least, Real most) { return least > Real(1.0) / PC_EASY &
 PC_FN bool pc_ordinary(uint exponent) { return exponent != 0u && exponent != PC_EXPONENT_END; }
 
 // ---- division ---------------------------------------------------------------------------------------
-PC_FN Real pc_div_builtin(Real a, Real b) { precise Real q = pc_device_div(a, b); return q; }
+PC_FN Real pc_div_builtin(Real a, Real b) {
+  precise Real q = pc_device_div(a, b);
+  return q;
+}
 
 PC_FN Real pc_div_step(Real a, Real b) {
   precise Real r0 = pc_device_div(Real(1.0), b);
@@ -45,8 +57,11 @@ PC_FN Real pc_div_step(Real a, Real b) {
 }
 // A quotient is never a tie, so the smallest residual decides.
 PC_FN Real pc_div_choice(Real q, Real a, Real b) {
-  Real u = pc_above(q); Real d = pc_below(q);
-  precise Real fq = pc_device_fma(-q, b, a); precise Real fu = pc_device_fma(-u, b, a); precise Real fd = pc_device_fma(-d, b, a);
+  Real u = pc_above(q);
+  Real d = pc_below(q);
+  precise Real fq = pc_device_fma(-q, b, a);
+  precise Real fu = pc_device_fma(-u, b, a);
+  precise Real fd = pc_device_fma(-d, b, a);
   Real best = abs(fu) < abs(fq) ? u : q;
   return abs(fd) < abs(fq) ? d : best;
 }
@@ -61,7 +76,8 @@ PC_FN Real pc_div_result(Real q, Real a, Real b, Real plain) {
 PC_FN Real pc_div_fma(Real a, Real b) {
   Real q = pc_div_step(a, b);
   if (!pc_easy(min(abs(a), abs(b)), max(abs(a), abs(b)))) {
-    Real x = pc_with_exponent(abs(a), PC_BIAS); Real y = pc_with_exponent(abs(b), PC_BIAS);
+    Real x = pc_with_exponent(abs(a), PC_BIAS);
+    Real y = pc_with_exponent(abs(b), PC_BIAS);
     q = pc_div_result(pc_div_step(x, y), a, b, pc_div_builtin(a, b));
   }
   return q;
@@ -69,14 +85,18 @@ PC_FN Real pc_div_fma(Real a, Real b) {
 PC_FN Real pc_div_nearest(Real a, Real b) {
   Real q = pc_div_choice(pc_div_step(a, b), a, b);
   if (!pc_easy(min(abs(a), abs(b)), max(abs(a), abs(b)))) {
-    Real x = pc_with_exponent(abs(a), PC_BIAS); Real y = pc_with_exponent(abs(b), PC_BIAS);
+    Real x = pc_with_exponent(abs(a), PC_BIAS);
+    Real y = pc_with_exponent(abs(b), PC_BIAS);
     q = pc_div_result(pc_div_choice(pc_div_step(x, y), x, y), a, b, pc_div_builtin(a, b));
   }
   return q;
 }
 
 // ---- square root ------------------------------------------------------------------------------------
-PC_FN Real pc_sqrt_builtin(Real x) { precise Real s = pc_device_sqrt(x); return s; }
+PC_FN Real pc_sqrt_builtin(Real x) {
+  precise Real s = pc_device_sqrt(x);
+  return s;
+}
 
 #ifdef PC_DOUBLE
 PC_FN Real pc_sqrt_step(Real x) {
@@ -94,8 +114,10 @@ PC_FN Real pc_sqrt_step(Real x) {
 }
 // s is right when s * pred(s) < x <= s * succ(s).
 PC_FN Real pc_sqrt_choice(Real s, Real x) {
-  Real u = pc_above(s); Real d = pc_below(s);
-  precise Real fu = pc_device_fma(-s, u, x); precise Real fd = pc_device_fma(-s, d, x);
+  Real u = pc_above(s);
+  Real d = pc_below(s);
+  precise Real fu = pc_device_fma(-s, u, x);
+  precise Real fd = pc_device_fma(-s, d, x);
   Real best = fu > Real(0.0) ? u : s;
   return fd <= Real(0.0) ? d : best;
 }

@@ -22,7 +22,9 @@ class SourceText {
  private:
   Status line(std::string_view text, std::size_t file, std::uint32_t at);
   Status constants(std::string_view text, std::string_view file, std::uint32_t at);
-  void locate(std::size_t file, std::uint32_t at) { text_ += "#line " + std::to_string(at) + " " + std::to_string(file) + "\n"; }
+  void locate(std::size_t file, std::uint32_t at) {
+    text_ += "#line " + std::to_string(at) + " " + std::to_string(file) + "\n";
+  }
   std::string literal(double value) const;
 
   Precision precision_;

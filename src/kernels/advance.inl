@@ -6,8 +6,11 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Quad linear = PC_GATHER(motion, i, 0u);
   Quad angular = PC_GATHER(motion, i, 1u);
   Quad inverse = PC_GATHER(mass, i, 1u);
-  BodyPose p; p.place = PC_GATHER(pose, i, 0u); p.turned = PC_GATHER(pose, i, 1u);
-  p.place_low = PC_GATHER(pose, i, 2u); p.turned_low = PC_GATHER(pose, i, 3u);
+  BodyPose p;
+  p.place = PC_GATHER(pose, i, 0u);
+  p.turned = PC_GATHER(pose, i, 1u);
+  p.place_low = PC_GATHER(pose, i, 2u);
+  p.turned_low = PC_GATHER(pose, i, 3u);
   Quad moved = PC_GATHER(delta, i, 0u);
   Quad rotated = PC_GATHER(delta, i, 1u);
 
@@ -21,7 +24,8 @@ PC_FN void pc_kernel(PC_IO Index i) {
   Real two = pc_select(rotation.w < PC_REAL(-1.0), PC_REAL(-2.0), PC_REAL(2.0));
   moved.v = pc_add(moved.v, m.step);
   rotated.v = pc_madd(rotated.v, rotation.v, two);
-  precise Real turned_square = moved.s + pc_four_times(pc_dot(rotation.v, rotation.v)); moved.s = turned_square;
+  precise Real turned_square = moved.s + pc_four_times(pc_dot(rotation.v, rotation.v));
+  moved.s = turned_square;
 
   PC_SCATTER(pose, i, 0u, p.place);
   PC_SCATTER(pose, i, 1u, p.turned);

@@ -10,7 +10,9 @@
 PC_FN Vec3 pc_move(PC_IO PC_INOUT(BodyPose) p, Quad linear) {
   Vec3 step = pc_scale(linear.v, PC_INFO(h));
   TwoSum place = pc_two_sum(p.place.v, pc_add(p.place_low.v, step));
-  p.place.v = place.sum; p.place_low.v = pc_snap3(place.low); return step;
+  p.place.v = place.sum;
+  p.place_low.v = pc_snap3(place.low);
+  return step;
 }
 
 #ifndef PC_STILL
@@ -26,10 +28,18 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
 
 #include "turned.inl"
 
-struct Moved { Vec3 step; Quaternion before; Quaternion change; };  // of the orientation: what it was, and what was added to it
+// Of the orientation: what it was, and what was added to it.
+struct Moved {
+  Vec3 step;
+  Quaternion before;
+  Quaternion change;
+};
 PC_FN Moved pc_advance(PC_IO PC_INOUT(BodyPose) p, Quad linear, PC_INOUT(Quad) angular, Quad inverse) {
-  Real h = PC_INFO(h); Moved moved; moved.step = pc_move(PC_PASS p, linear);
-  Quaternion q = pc_quaternion(p.turned.v, p.turned.s); moved.before = q;
+  Real h = PC_INFO(h);
+  Moved moved;
+  moved.step = pc_move(PC_PASS p, linear);
+  Quaternion q = pc_quaternion(p.turned.v, p.turned.s);
+  moved.before = q;
 #ifdef PC_SEED
   Vec3 w0 = pc_sym_mul(pc_world_inertia(q, inverse.v), angular.v);
   Turn spin = pc_turn(pc_scale(w0, h));
@@ -39,7 +49,8 @@ PC_FN Moved pc_advance(PC_IO PC_INOUT(BodyPose) p, Quad linear, PC_INOUT(Quad) a
   moved.change = pc_free_rotation(q, angular.v, inverse, h);
 #endif
   Turned next = pc_turned(q, p.turned_low, moved.change);
-  p.turned = next.q; p.turned_low = next.low;
+  p.turned = next.q;
+  p.turned_low = next.low;
   return moved;
 }
 #endif

@@ -7,9 +7,13 @@
 #include "begin_motion.inl"
 
 PC_FN void pc_kernel(PC_IO Index i) {
-  BodyMotion m; m.linear = PC_GATHER(motion, i, 0u); m.angular = PC_GATHER(motion, i, 1u);
+  BodyMotion m;
+  m.linear = PC_GATHER(motion, i, 0u);
+  m.angular = PC_GATHER(motion, i, 1u);
 #ifndef PC_SEED
-  BodyForce f; f.push = PC_GATHER(force, i, 0u); f.turn = PC_GATHER(force, i, 1u);
+  BodyForce f;
+  f.push = PC_GATHER(force, i, 0u);
+  f.turn = PC_GATHER(force, i, 1u);
 #endif
   Quad linear_change = PC_GATHER(velocity_parts, i, 0u);
   Quad angular_change = PC_GATHER(velocity_parts, i, 1u);
@@ -18,7 +22,9 @@ PC_FN void pc_kernel(PC_IO Index i) {
 
 #ifdef PC_SEED
   Mask in_phase = pc_in_phase(m.linear, m.angular);
-  VelocityShift shift; shift.u = pc_shift(PC_PASS in_phase, m.linear.v, linear_change.v); shift.l = pc_shift(PC_PASS in_phase, m.angular.v, angular_change.v);
+  VelocityShift shift;
+  shift.u = pc_shift(PC_PASS in_phase, m.linear.v, linear_change.v);
+  shift.l = pc_shift(PC_PASS in_phase, m.angular.v, angular_change.v);
 #else
   VelocityShift shift = pc_velocity_shift(PC_PASS m.linear, m.angular, linear_change, angular_change, f.push, f.turn);
 #endif

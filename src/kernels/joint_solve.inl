@@ -11,17 +11,36 @@
 #endif
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Index ia = PC_ENDS(joint_ends, m, 0u); Index ib = PC_ENDS(joint_ends, m, 1u); Index joint = PC_ORDER(joint_order, m);
-  BodyState a = pc_body_state(PC_PASS ia); BodyState b = pc_body_state(PC_PASS ib);
-  Quad place_a = PC_GATHER(pose, ia, 0u); Quad low_a = PC_GATHER(pose, ia, 2u); Quad place_b = PC_GATHER(pose, ib, 0u); Quad low_b = PC_GATHER(pose, ib, 2u);
-  Quad pin = PC_GATHER(joint_impulse, joint, 0u); Quad angle = PC_GATHER(joint_impulse, joint, 1u);
+  Index ia = PC_ENDS(joint_ends, m, 0u);
+  Index ib = PC_ENDS(joint_ends, m, 1u);
+  Index joint = PC_ORDER(joint_order, m);
+  BodyState a = pc_body_state(PC_PASS ia);
+  BodyState b = pc_body_state(PC_PASS ib);
+  Quad place_a = PC_GATHER(pose, ia, 0u);
+  Quad low_a = PC_GATHER(pose, ia, 2u);
+  Quad place_b = PC_GATHER(pose, ib, 0u);
+  Quad low_b = PC_GATHER(pose, ib, 2u);
+  Quad pin = PC_GATHER(joint_impulse, joint, 0u);
+  Quad angle = PC_GATHER(joint_impulse, joint, 1u);
 
   // angles
-  Sym3 both; Sym3 ja = a.inertia; Sym3 jb = b.inertia;
-  precise Real xx = ja.xx * a.response + jb.xx * b.response; precise Real xy = ja.xy * a.response + jb.xy * b.response; precise Real xz = ja.xz * a.response + jb.xz * b.response;
-  precise Real yy = ja.yy * a.response + jb.yy * b.response; precise Real yz = ja.yz * a.response + jb.yz * b.response; precise Real zz = ja.zz * a.response + jb.zz * b.response;
-  both.xx = xx; both.xy = xy; both.xz = xz; both.yy = yy; both.yz = yz; both.zz = zz;
-  Vec3 wa = pc_angular_velocity(a); Vec3 wb = pc_angular_velocity(b);
+  Sym3 both;
+  Sym3 ja = a.inertia;
+  Sym3 jb = b.inertia;
+  precise Real xx = ja.xx * a.response + jb.xx * b.response;
+  precise Real xy = ja.xy * a.response + jb.xy * b.response;
+  precise Real xz = ja.xz * a.response + jb.xz * b.response;
+  precise Real yy = ja.yy * a.response + jb.yy * b.response;
+  precise Real yz = ja.yz * a.response + jb.yz * b.response;
+  precise Real zz = ja.zz * a.response + jb.zz * b.response;
+  both.xx = xx;
+  both.xy = xy;
+  both.xz = xz;
+  both.yy = yy;
+  both.yz = yz;
+  both.zz = zz;
+  Vec3 wa = pc_angular_velocity(a);
+  Vec3 wb = pc_angular_velocity(b);
   Vec3 couple = pc_angle_steps(PC_PASS m, pc_sub(wb, wa), both, angle);
 
 #ifdef PC_DRIVES
@@ -30,11 +49,17 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 
   // pin, with the angles' couple already acting
   precise Real minus_response = -a.response;
-  Vec3 la = pc_madd(a.l, couple, minus_response); Vec3 lb = pc_madd(b.l, couple, b.response);
-  Vec3 gap = pc_ld3_joint(PC_PASS m, JOINT_GAP); Vec3 frozen_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A); Vec3 frozen_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B);
+  Vec3 la = pc_madd(a.l, couple, minus_response);
+  Vec3 lb = pc_madd(b.l, couple, b.response);
+  Vec3 gap = pc_ld3_joint(PC_PASS m, JOINT_GAP);
+  Vec3 frozen_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A);
+  Vec3 frozen_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B);
   Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
-  PinArms arms = pc_common_arms(frozen_a, frozen_b, apart); Vec3 arm_a = arms.a; Vec3 arm_b = arms.b;
-  Vec3 va = pc_add(a.v, pc_cross(pc_sym_mul(ja, la), arm_a)); Vec3 vb = pc_add(b.v, pc_cross(pc_sym_mul(jb, lb), arm_b));
+  PinArms arms = pc_common_arms(frozen_a, frozen_b, apart);
+  Vec3 arm_a = arms.a;
+  Vec3 arm_b = arms.b;
+  Vec3 va = pc_add(a.v, pc_cross(pc_sym_mul(ja, la), arm_a));
+  Vec3 vb = pc_add(b.v, pc_cross(pc_sym_mul(jb, lb), arm_b));
   precise Vec3 wanted = (vb - va) + gap * PC_INFO(soft_rate);
   Vec3 answer = pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted);
   precise Real minus_scale = -PC_INFO(soft_mass_scale);
@@ -44,6 +69,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, pc_sub(vb, va), pin.v), change);
 #endif
   pin.v = pc_snap3(pc_add(pin.v, change));
-  PC_SCATTER(joint_impulse, joint, 0u, pin); PC_SCATTER(joint_impulse, joint, 1u, angle);
+  PC_SCATTER(joint_impulse, joint, 0u, pin);
+  PC_SCATTER(joint_impulse, joint, 1u, angle);
   pc_joint_apply(PC_PASS ia, ib, a, b, arm_a, arm_b, change, couple);
 }

@@ -4,7 +4,10 @@
 // What a net does in a sub-step that Newton's method did not solve: it makes no energy.
 
 // The energy that the sub-step will have made with the impulses as they are, and what there is of it.
-struct Energy { Real made; Real scale; };
+struct Energy {
+  Real made;
+  Real scale;
+};
 PC_FN Real pc_net_stored(PC_IO Slot s, Real length) {
   precise Real longer = length - PC_LD(net_rows, s, NET_REST);
   precise Real stored = PC_LD(net_rows, s, NET_STIFFNESS) * longer * longer * PC_REAL(0.5);
@@ -68,7 +71,12 @@ PC_FN Energy pc_net_energy(PC_IO Slot m, Net n) {
 }
 
 // The motion of the whole net as one rigid body with its momenta; or, where something holds it, that of what does.
-struct Rigid { Vec3 v; Vec3 l; Vec3 centre; Whole all; };
+struct Rigid {
+  Vec3 v;
+  Vec3 l;
+  Vec3 centre;
+  Whole all;
+};
 PC_FN Rigid pc_net_rigid(PC_IO Slot m, Net n) {
   Rigid r;
   Real zero = PC_REAL(0.0);
@@ -112,9 +120,9 @@ PC_FN Vec3 pc_rigid_spin(Rigid r, Quaternion turn) {
 PC_FN Vec3 pc_rigid_momentum(Sym3 moments, Quaternion turn, Vec3 spin) {
   return pc_rotate(turn, pc_sym_mul(moments, pc_rotate(pc_conjugate(turn), spin)));
 }
-// What the net is given to move so. It moves along the chords of its turn, so that its springs stay as long as they are (along
-// tangents they grow by the square of it), and when it has moved it is given the velocities that it has then. Each body turns
-// freely, which is as the whole turns with the inertia that it has half way.
+// What the net is given to move so. It moves along the chords of its turn, so that its springs stay as long as they are
+// (along tangents they grow by the square of it), and when it has moved it is given the velocities that it has then.
+// Each body turns freely, which is as the whole turns with the inertia that it has half way.
 PC_FN void pc_net_stiffen(PC_IO Slot m, Net n, Rigid r, Mask these) {
   Vec3 sum = pc_zero3();
   Real zero = PC_REAL(0.0);
@@ -207,7 +215,8 @@ PC_FN void pc_net_bound(PC_IO Slot m, Net n, Mask asked) {
     if (i == 0u) pc_net_stiffen(PC_PASS m, n, pc_net_rigid(PC_PASS m, n), makes);
     uint left = rounds - 1u - i;
     Mask goes = pc_and(share > PC_REAL(0.0), PC_IS(left));
-    Real quarter = pc_select(PC_IS(left - 1u), pc_quarter(share), PC_REAL(0.0));  // the last look is at the rigid motion
+    // the last look is at the rigid motion
+    Real quarter = pc_select(PC_IS(left - 1u), pc_quarter(share), PC_REAL(0.0));
     precise Real part = quarter * fresh;
     share = pc_select(goes, part, kept);
     pc_net_blend(PC_PASS m, n, share, makes);

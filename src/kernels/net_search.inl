@@ -1,24 +1,27 @@
 // Conjugate directions for a Newton step of a net: (1 + h R A R) y = R^-1 (what the impulses lack), see net_solve.
 //
-// Along each direction the quadratic form of these is lowered; or, `bent`, that of what the solve lowers (Merit), which is the same with R A R
-// before it: it takes more directions, but leads down however few there were. Directions are conjugate to the one before, in that form.
+// Along each direction the quadratic form of these is lowered; or, `bent`, that of what the solve lowers (Merit), which
+// is the same with R A R before it: it takes more directions, but leads down however few there were. Directions are
+// conjugate to the one before, in that form.
 
 // The preconditioned residual.
-PC_FN Vec3 pc_net_down(PC_IO Slot s) { return pc_sym_mul(pc_lds_net(PC_PASS s, NET_BLOCK), pc_ld3_net(PC_PASS s, NET_LACK)); }
+PC_FN Vec3 pc_net_down(PC_IO Slot s) {
+  return pc_sym_mul(pc_lds_net(PC_PASS s, NET_BLOCK), pc_ld3_net(PC_PASS s, NET_LACK));
+}
 // R A R of it, at NET_SECOND.
 PC_FN void pc_net_answer_down(PC_IO Slot m, Net n) {
   pc_net_clear(PC_PASS m, n, NET_SUM);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
     Vec3 impulse = pc_net_root(PC_PASS s, pc_net_down(PC_PASS s));
-    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_SUM, pc_ld3_net(PC_PASS s, NET_AIM),
-               pc_ld3_net(PC_PASS s, NET_AIM + 3u), impulse);
+    pc_net_add(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), NET_SUM,
+               pc_ld3_net(PC_PASS s, NET_AIM), pc_ld3_net(PC_PASS s, NET_AIM + 3u), impulse);
   }
   pc_net_rates(PC_PASS m, n, NET_SUM);
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u), pc_ld3_net(PC_PASS s, NET_AIM),
-                            pc_ld3_net(PC_PASS s, NET_AIM + 3u));
+    Vec3 rate = pc_net_rate(PC_PASS pc_net_end(PC_PASS m, n, k, 0u), pc_net_end(PC_PASS m, n, k, 1u),
+                            pc_ld3_net(PC_PASS s, NET_AIM), pc_ld3_net(PC_PASS s, NET_AIM + 3u));
     pc_st3_net(PC_PASS s, NET_SECOND, pc_net_root(PC_PASS s, rate));
   }
 }
@@ -34,7 +37,10 @@ PC_FN Real pc_net_product(PC_IO Slot m, Net n) {
   return product;
 }
 // The next direction, with so much of the last one in it; answers with its slope and its curvature.
-struct Bend { Real slope; Real curvature; };
+struct Bend {
+  Real slope;
+  Real curvature;
+};
 PC_FN Bend pc_net_turn(PC_IO Slot m, Net n, Real kept, Mask bent) {
   Bend all;
   all.slope = PC_REAL(0.0);
@@ -60,8 +66,10 @@ PC_FN Bend pc_net_turn(PC_IO Slot m, Net n, Real kept, Mask bent) {
 PC_FN void pc_net_go(PC_IO Slot m, Net n, Real step) {
   for (uint k = 0u; k < n.springs; k++) {
     Slot s = pc_net_spring(PC_PASS m, n, k);
-    pc_st3_net(PC_PASS s, NET_FOUND, pc_net_further(pc_ld3_net(PC_PASS s, NET_FOUND), pc_ld3_net(PC_PASS s, NET_WAY), step));
-    pc_st3_net(PC_PASS s, NET_LACK, pc_net_further(pc_ld3_net(PC_PASS s, NET_LACK), pc_ld3_net(PC_PASS s, NET_IMAGE), -step));
+    pc_st3_net(PC_PASS s, NET_FOUND,
+               pc_net_further(pc_ld3_net(PC_PASS s, NET_FOUND), pc_ld3_net(PC_PASS s, NET_WAY), step));
+    pc_st3_net(PC_PASS s, NET_LACK,
+               pc_net_further(pc_ld3_net(PC_PASS s, NET_LACK), pc_ld3_net(PC_PASS s, NET_IMAGE), -step));
   }
 }
 // Finds a step, where `wants`.

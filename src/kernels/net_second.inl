@@ -1,6 +1,10 @@
-// The second half of a spring's impulse, after the bodies have moved (net_settle.inl): its impulse on b, and what it turns a and b by about
-// their centres.
-struct Second { Vec3 impulse; Vec3 turn_a; Vec3 turn_b; };
+// The second half of a spring's impulse, after the bodies have moved (net_settle.inl): its impulse on b, and what it
+// turns a and b by about their centres.
+struct Second {
+  Vec3 impulse;
+  Vec3 turn_a;
+  Vec3 turn_b;
+};
 
 PC_FN Real pc_net_looseness(PC_IO Slot b) {
   Sym3 i = pc_lds_net(PC_PASS b, NET_INERTIA);
@@ -33,7 +37,11 @@ PC_FN Second pc_second_half(PC_IO Slot s, Slot a, Slot b, Vec3 line, Vec3 couple
   Vec3 left_b = pc_scale(left, pc_div(loose_a, pc_max(loose, PC_TINY)));
   precise Vec3 turn_a = (left_a - pc_cross(mid_a, same)) - pc_cross(arm_a, across);
   precise Vec3 turn_b = (left_b + pc_cross(mid_b, same)) + pc_cross(arm_b, across);
-  Second d; d.impulse = pc_add(same, across); d.turn_a = turn_a; d.turn_b = turn_b; return d;
+  Second d;
+  d.impulse = pc_add(same, across);
+  d.turn_a = turn_a;
+  d.turn_b = turn_b;
+  return d;
 }
 // Adds it to sums of their bodies.
 PC_FN void pc_add_second(PC_IO Slot a, Slot b, uint sums, Second d) {

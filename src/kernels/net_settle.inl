@@ -49,7 +49,8 @@ PC_FN void pc_settle_line(PC_IO Slot m, Net n, uint k) {
 PC_FN void pc_settle_second(PC_IO Slot s, Slot a, Slot b) {
   Vec3 line = pc_ld3_net(PC_PASS s, NET_NOW);
   Vec3 couple = pc_ld3_net(PC_PASS s, NET_WAY);
-  Second d = pc_second_half(PC_PASS s, a, b, line, couple, pc_ld3_net(PC_PASS s, NET_START), pc_ld3_net(PC_PASS s, NET_START + 3u));
+  Second d = pc_second_half(PC_PASS s, a, b, line, couple, pc_ld3_net(PC_PASS s, NET_START),
+                            pc_ld3_net(PC_PASS s, NET_START + 3u));
   pc_add_second(PC_PASS a, b, NET_PUSH, d);
   pc_st3_net(PC_PASS s, NET_SECOND, d.impulse);
 }
@@ -80,7 +81,10 @@ PC_FN Real pc_settle_work(PC_IO Slot b) {
 }
 // What the springs' ends would have of energy along their lines to give, by plastic impulses that each makes alone: the
 // first two terms of its change, in one share of these impulses.
-struct Dues { Real first; Real second; };
+struct Dues {
+  Real first;
+  Real second;
+};
 PC_FN Dues pc_settle_dues(PC_IO Slot m, Net n) {
   Dues d;
   d.first = PC_REAL(0.0);

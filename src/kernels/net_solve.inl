@@ -192,8 +192,9 @@ PC_FN void pc_net_begin(PC_IO Slot m, Net n, Mask asked) {
     pc_st3_net(PC_PASS s, NET_AIM + 3u, pc_ld3_net(PC_PASS s, NET_ARM_B));
   }
 }
-// What the first halves do to a body's energy: their momenta times the means of the velocities before all of them and after, with what contacts
-// did in between (what only presses on something does no work); of one that moves as it is told what it took from the springs.
+// What the first halves do to a body's energy: their momenta times the means of the velocities before all of them and
+// after, with what contacts did in between (what only presses on something does no work); of one that moves as it is
+// told what it took from the springs.
 PC_FN Real pc_net_count(PC_IO Slot b) {
   Vec3 push = pc_ld3_net(PC_PASS b, NET_PUSH);
   Vec3 turn = pc_ld3_net(PC_PASS b, NET_PUSH + 3u);
@@ -207,7 +208,11 @@ PC_FN Real pc_net_count(PC_IO Slot b) {
 
 // What the solve lowers: the energy of what the impulses change, and what the springs will have been stretched by; with
 // it the square of what the impulses lack, and of the impulses themselves, in the same unit.
-struct Merit { Real level; Real open; Real given; };
+struct Merit {
+  Real level;
+  Real open;
+  Real given;
+};
 PC_FN Merit pc_net_merit(PC_IO Slot m, Net n, Real share) {
   Merit all;
   all.level = PC_REAL(0.0);

@@ -1,5 +1,12 @@
 // A net as one rigid body: where its centre is, and how it answers.
-struct Whole { Vec3 centre; Real light; Sym3 loose; Sym3 tensor; Real unit; };  // light: 1 / mass; loose: inverse inertia, in units of 1 / unit
+// Light: 1 / mass; loose: inverse inertia, in units of 1 / unit.
+struct Whole {
+  Vec3 centre;
+  Real light;
+  Sym3 loose;
+  Sym3 tensor;
+  Real unit;
+};
 PC_FN Vec3 pc_net_place(PC_IO Slot m, Net n, uint k) {
   Index first = pc_net_row(PC_PASS m, n, 0u);
   Index row = pc_net_row(PC_PASS m, n, k);
@@ -14,7 +21,8 @@ PC_FN Sym3 pc_net_moments(PC_IO Index row) {
 }
 // `ahead`: 1 at the places that are foreseen for the end of the sub-step, 0 at those of now.
 PC_FN Vec3 pc_net_place_then(PC_IO Slot m, Net n, uint k, Real ahead) {
-  return pc_net_further(pc_net_place(PC_PASS m, n, k), pc_ld3_net(PC_PASS pc_net_body(PC_PASS m, n, k), NET_STEP), ahead);
+  return pc_net_further(pc_net_place(PC_PASS m, n, k), pc_ld3_net(PC_PASS pc_net_body(PC_PASS m, n, k), NET_STEP),
+                        ahead);
 }
 PC_FN Whole pc_net_whole(PC_IO Slot m, Net n, Real ahead) {
   Whole r;
@@ -72,8 +80,8 @@ PC_FN Vec3 pc_net_spin(Whole all, Vec3 l) {
   Vec3 spin = pc_sym_mul(all.loose, momentum);
   return pc_add(spin, pc_sym_mul(all.loose, pc_sub(momentum, pc_sym_mul(all.tensor, spin))));
 }
-// What the rigid motion gives once the bodies have moved, by its share in what the net does, as sums to add to. What of its
-// angular momentum it lacks where the bodies have gone elsewhere the net is given as one body.
+// What the rigid motion gives once the bodies have moved, by its share in what the net does, as sums to add to. What of
+// its angular momentum it lacks where the bodies have gone elsewhere the net is given as one body.
 PC_FN void pc_net_begin_after(PC_IO Slot m, Net n, uint sums, Real ahead) {
   Slot keeper = pc_net_body(PC_PASS m, n, 0u);
   Real rigid = PC_LD(net_rows, keeper, NET_BOUND);
@@ -99,6 +107,7 @@ PC_FN void pc_net_begin_after(PC_IO Slot m, Net n, uint sums, Real ahead) {
     Vec3 arm = pc_sub(pc_net_place_then(PC_PASS m, n, k, ahead), all.centre);
     Vec3 turn = pc_sym_mul(pc_net_moments(PC_PASS pc_net_row(PC_PASS m, n, k)), spin);
     pc_st3_net(PC_PASS b, sums, pc_madd(pc_ld3_net(PC_PASS b, sums), pc_cross(spin, arm), heavy));
-    pc_st3_net(PC_PASS b, sums + 3u, pc_add(pc_ld3_net(PC_PASS b, sums + 3u), pc_select3(heavy > PC_REAL(0.0), turn, pc_zero3())));
+    pc_st3_net(PC_PASS b, sums + 3u,
+               pc_add(pc_ld3_net(PC_PASS b, sums + 3u), pc_select3(heavy > PC_REAL(0.0), turn, pc_zero3())));
   }
 }

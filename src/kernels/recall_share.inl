@@ -1,10 +1,10 @@
 // The share of what its contacts remember that acts on a body.
 //
-// A load that lasts is balanced, or undoes what forces did. A blow is no load, nor is what presses on a body from all sides
-// and has turned against it: repeated they would be energy. So what is remembered may make a body faster, but by no more
-// than struck_speed^2 / N, where N is how much its velocity has changed since this was asked in the sub-step before: little
-// where it was struck, much where it lies still under a load that it is just taking up. In a step's first sub-step N is
-// what it would change now.
+// A load that lasts is balanced, or undoes what forces did. A blow is no load, nor is what presses on a body from all
+// sides and has turned against it: repeated they would be energy. So what is remembered may make a body faster, but by
+// no more than struck_speed^2 / N, where N is how much its velocity has changed since this was asked in the sub-step
+// before: little where it was struck, much where it lies still under a load that it is just taking up. In a step's
+// first sub-step N is what it would change now.
 
 PC_FN void pc_kernel(PC_IO Index i) {
   Real zero = PC_REAL(0.0);

@@ -1,7 +1,8 @@
 // After the contacts: the pins at the new prediction, with the same factor (Newton's second step, and what the contacts
-// have undone), again where a gap is left, a limit is crossed or one throws back; then the push that closes the gaps left over, which the relax
-// phase takes back once the bodies have moved by it. All are rounds of one loop, so that compilers translate what they share once
-// (with a second look ahead in it NVIDIA's makes other bits of it in double precision, where a work group shares a tree).
+// have undone), again where a gap is left, a limit is crossed or one throws back; then the push that closes the gaps
+// left over, which the relax phase takes back once the bodies have moved by it. All are rounds of one loop, so that
+// compilers translate what they share once (with a second look ahead in it NVIDIA's makes other bits of it in double
+// precision, where a work group shares a tree).
 #include "body_state.inl"
 #include "tree_rows.inl"
 #include "tree_store.inl"
@@ -14,14 +15,16 @@
 #include "tree_trust.inl"
 #include "tree_rebound.inl"
 
-// How fast a limit that acts is crossed by the end of the sub-step, below 0; `rate`: that of its slack. What is beyond it already is not asked back
-// here: velocities of that would meet the contacts of the relax phase.
+// How fast a limit that acts is crossed by the end of the sub-step, below 0; `rate`: that of its slack. What is beyond
+// it already is not asked back here: velocities of that would meet the contacts of the relax phase.
 PC_FN Real pc_crosses(PC_IO Slot n, uint i, Real rate) {
-  Mask acts = pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(2.0));
+  Mask acts =
+      pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) < PC_REAL(2.0));
   precise Real over = rate + pc_max(PC_LD(tree_rows, n, TREE_SLACK + i), PC_REAL(0.0)) * PC_INFO(inverse_h);
   return pc_select(acts, pc_min(over, PC_REAL(0.0)), PC_REAL(0.0));
 }
-// Limits are not crossed and else keep what they carry, unless they throw back (where `rebounds`); locked rows are corrected like pins.
+// Limits are not crossed and else keep what they carry, unless they throw back (where `rebounds`); locked rows are
+// corrected like pins.
 PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted, Real most, bool rebounds) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return;  // lint: allow (zeros otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
@@ -35,8 +38,11 @@ PC_FN void pc_again_rates(PC_IO Slot n, Slot up, Real wanted, Real most, bool re
 }
 // Speed at which a gap closes: within the sub-step, but not faster than joint_push_speed.
 PC_FN Vec3 pc_closing(PC_IO Vec3 gap) {
-  precise Vec3 v = gap * PC_INFO(inverse_h); Real size = pc_length(v); Real most = PC_INFO(joint_push_speed);
-  Real share = pc_share_within(size, most); return pc_scale(v, share);
+  precise Vec3 v = gap * PC_INFO(inverse_h);
+  Real size = pc_length(v);
+  Real most = PC_INFO(joint_push_speed);
+  Real share = pc_share_within(size, most);
+  return pc_scale(v, share);
 }
 // 1 where a limit is crossed by more than rounding, or one that throws back is left too slowly.
 PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
@@ -52,14 +58,19 @@ PC_FN Real pc_limit_lacks(PC_IO Slot n, Slot up) {
 }
 // A gap is wide beyond 4e-5 of the arm: its square.
 #define PC_WIDE_OPEN PC_REAL(2e-9)
-// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a limit is crossed
-// or has not thrown back yet.
-struct Left { Real some; Real much; };
+// 1 where some gap of the tree at the prediction is more than rounding, and more than 4e-5 of the arm; in both, where a
+// limit is crossed or has not thrown back yet.
+struct Left {
+  Real some;
+  Real much;
+};
 // Run after pc_tree_residual.
 PC_FN Left pc_left(PC_IO Slot m, Tree t) {
   precise Real share = pc_quarter(PC_INFO(rounding));
   precise Real noise = share * share;
-  Left left; left.some = PC_REAL(0.0); left.much = PC_REAL(0.0);
+  Left left;
+  left.some = PC_REAL(0.0);
+  left.much = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
     Vec3 gap = pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), PC_INFO(h));
@@ -76,11 +87,12 @@ PC_FN Real pc_always_again(PC_IO Slot m, Tree t) {
   if (pc_is_pivot(PC_PASS t) == 1u) return PC_REAL(1.0);
   Real kind = PC_REAL(0.0);
   PC_NODES(k, 1u, t)
-    for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
-  PC_MOST(kind); return pc_select(kind > PC_REAL(1.0), PC_REAL(1.0), PC_REAL(0.0));
+  for (uint i = 0u; i < 3u; i++) kind = pc_max(kind, PC_LD(tree_rows, PC_NODE(m, t.first + k), TREE_KIND + i));
+  PC_MOST(kind);
+  return pc_select(kind > PC_REAL(1.0), PC_REAL(1.0), PC_REAL(0.0));
 }
-// What the push undoes of a joint's angles, as rates of its rows: as gaps, within the sub-step. 1 where there is any. Where contacts have begun it
-// (`begun`), what that turns over limits as well.
+// What the push undoes of a joint's angles, as rates of its rows: as gaps, within the sub-step. 1 where there is any.
+// Where contacts have begun it (`begun`), what that turns over limits as well.
 PC_FN Real pc_push_angles(PC_IO Slot n, Slot up, Mask begun) {
   Real any = PC_REAL(0.0);
   pc_st3_tree(PC_PASS n, TREE_RATE, pc_zero3());
@@ -123,11 +135,18 @@ PC_FN Real pc_move_by_push(PC_IO Slot m, Tree t) {
   if (PC_ANY(begun)) pc_tree_move(PC_PASS m, t, begun);  // lint: allow (nothing changes otherwise)
   return pc_select(begun, PC_REAL(1.0), PC_REAL(0.0));
 }
-// What the push goes on with: gaps of more than 32 epsilon of the arm are closed, also those that contacts have opened, and
-// what is beyond its limits is turned back.
-struct Push { Real open; Real turned; Real most; };
+// What the push goes on with: gaps of more than 32 epsilon of the arm are closed, also those that contacts have opened,
+// and what is beyond its limits is turned back.
+struct Push {
+  Real open;
+  Real turned;
+  Real most;
+};
 PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise, Real begun) {
-  Push push; push.open = begun; push.turned = begun; push.most = PC_INFO(largest_state);
+  Push push;
+  push.open = begun;
+  push.turned = begun;
+  push.most = PC_INFO(largest_state);
   Mask moves = begun > PC_REAL(0.5);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
@@ -138,7 +157,10 @@ PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise, Real begun) {
     pc_st3_tree(PC_PASS n, TREE_C, pc_madd(opened, pc_closing(PC_PASS gap), here));
     push.turned = pc_max(push.turned, pc_push_angles(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), moves));
   }
-  if (pc_is_pivot(PC_PASS t) == 1u) { push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0); }  // pivot_turn closes it
+  if (pc_is_pivot(PC_PASS t) == 1u) {
+    push.open = PC_REAL(0.0);
+    push.turned = PC_REAL(0.0);
+  }  // pivot_turn closes it
   push.open = pc_max(push.open, push.turned);
   PC_MOST(push.open);
   PC_MOST(push.turned);
@@ -159,11 +181,17 @@ PC_FN Real pc_crossing_rates(PC_IO Slot n, Slot up, Real goes) {
   }
   return crossed;
 }
-// Where it turns, the arms' arcs open gaps again, and limits are crossed: those are closed with it, as long as less is left than at first (`most`, a
-// speed squared). Run after pc_tree_residual. `much`: 1 where that is more than 4e-5 of an arm.
-struct Rest { Real much; Real most; };
+// Where it turns, the arms' arcs open gaps again, and limits are crossed: those are closed with it, as long as less is
+// left than at first (`most`, a speed squared). Run after pc_tree_residual. `much`: 1 where that is more than 4e-5 of
+// an arm.
+struct Rest {
+  Real much;
+  Real most;
+};
 PC_FN Rest pc_continue_push(PC_IO Slot m, Tree t, Real noise, Real turned, Real most) {
-  Rest rest; rest.much = PC_REAL(0.0); rest.most = PC_REAL(0.0);
+  Rest rest;
+  rest.much = PC_REAL(0.0);
+  rest.most = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
     Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
@@ -208,8 +236,8 @@ PC_FN void pc_newton_rates(PC_IO Slot m, Tree t, Real wanted, Real most, bool re
     pc_st3_tree(PC_PASS n, TREE_C, pc_scale(pc_ld3_tree(PC_PASS n, TREE_C), wanted));
   }
 }
-// A sweep from TREE_C and TREE_RATE: what it changes goes to the bodies, its impulses to the joints, or its velocities to the push; or all of
-// it to what limits throw back.
+// A sweep from TREE_C and TREE_RATE: what it changes goes to the bodies, its impulses to the joints, or its velocities
+// to the push; or all of it to what limits throw back.
 PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool throws, bool pushes) {
   pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PUSH, PC_REAL(1.0));
   PC_NODES(k, 0u, t) {
@@ -218,7 +246,8 @@ PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool throws, bool pushes) {
       pc_st3_tree(PC_PASS n, TREE_PIN, pc_add(pc_ld3_tree(PC_PASS n, TREE_PIN), pc_ld3_tree(PC_PASS n, TREE_PUSH)));
       pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_add(pc_ld3_tree(PC_PASS n, TREE_LIMIT), pc_row_impulses(PC_PASS t, n, k)));
     }
-    pc_st3_tree(PC_PASS n, TREE_CHANGE, pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
+    pc_st3_tree(PC_PASS n, TREE_CHANGE,
+                pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_BODY), pc_ld3_tree(PC_PASS n, TREE_X + 3u)));
   }
   pc_tree_conserve(PC_PASS m, t, pc_zero3(), pc_zero3());
   if (!throws) pc_tree_move(PC_PASS m, t, PC_IS(1u));
@@ -230,26 +259,30 @@ PC_FN void pc_solve_round(PC_IO Slot m, Tree t, bool throws, bool pushes) {
     }
   }
 }
-// After Newton's steps where `steps` is 1: 1 where they have not found their way, or where what they throw back is `late`; these are taken back.
+// After Newton's steps where `steps` is 1: 1 where they have not found their way, or where what they throw back is
+// `late`; these are taken back.
 PC_FN Real pc_judge_steps(PC_IO Slot m, Tree t, Real steps, Real thrown, Real late) {
   Real strayed = pc_min(pc_strayed(PC_PASS m, t), steps);
-  if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);  // tension of a loop works as it closes
+  // tension of a loop works as it closes
+  if (pc_is_pivot(PC_PASS t) == 1u || pc_has_loop(PC_PASS t) == 1u) strayed = PC_REAL(0.0);
   // (of what is thrown back the energy before the solve tells, not what a stop has left of it)
   Real again = pc_select(thrown > PC_REAL(0.5), late, strayed);
-  if (PC_ANY(again > PC_REAL(0.5))) pc_take_back(PC_PASS m, t, again > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
+  if (PC_ANY(again > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
+    pc_take_back(PC_PASS m, t, again > PC_REAL(0.5));
+  }
   return again;
 }
 
-// Rounds 0 to 3 are Newton's steps; then it is seen what limits throw back, two more steps follow where those were taken back, what is thrown
-// late, and the push.
+// Rounds 0 to 3 are Newton's steps; then it is seen what limits throw back, two more steps follow where those were
+// taken back, what is thrown late, and the push.
 const uint ROUND_JUDGE = 4u;
 const uint ROUND_AGAIN = 5u;
 const uint ROUND_THROW = 7u;
 const uint ROUND_PUSH = 11u;
 const uint ROUND_END = 15u;
 
-// What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on where more than
-// 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
+// What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on
+// where more than 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
@@ -258,7 +291,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real steps = PC_REAL(0.0);
   Real thrown = PC_REAL(0.0);
   Real late = PC_REAL(0.0);
-  Push push; push.open = PC_REAL(0.0); push.turned = PC_REAL(0.0); push.most = PC_REAL(0.0);
+  Push push;
+  push.open = PC_REAL(0.0);
+  push.turned = PC_REAL(0.0);
+  push.most = PC_REAL(0.0);
   for (uint round = 0u; round < ROUND_END; round++) {
     bool throws = round >= ROUND_THROW && round < ROUND_PUSH;
     if (round == ROUND_JUDGE) {
@@ -267,18 +303,23 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     }
     if (round == ROUND_AGAIN) {
       wanted = PC_REAL(0.0);
-      if (PC_ANY(steps > PC_REAL(0.5))) wanted = pc_judge_steps(PC_PASS m, t, steps, thrown, late);  // lint: allow (nothing changes otherwise)
+      if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
+        wanted = pc_judge_steps(PC_PASS m, t, steps, thrown, late);
+      }
     }
     if (round == ROUND_THROW) wanted = late;
     if (round == ROUND_PUSH) {
       if (PC_ANY(late > PC_REAL(0.5))) pc_end_throw(PC_PASS m, t, late > PC_REAL(0.5));  // lint: allow (as above)
-      if (PC_ANY(thrown > PC_REAL(0.5))) pc_tell_blow(PC_PASS m, t, thrown > PC_REAL(0.5), late > PC_REAL(0.5));  // lint: allow (as above)
+      if (PC_ANY(thrown > PC_REAL(0.5))) {                                               // lint: allow (as above)
+        pc_tell_blow(PC_PASS m, t, thrown > PC_REAL(0.5), late > PC_REAL(0.5));
+      }
       PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
       wanted = pc_move_by_push(PC_PASS m, t);
     }
     if (round > ROUND_PUSH) wanted = pc_min(wanted, push.turned);
     Real most = PC_REAL(1.0);
-    if (PC_ANY(wanted > PC_REAL(0.5)) && !(throws && round > ROUND_THROW)) {  // lint: allow (rounds of nothing change nothing)
+    bool goes_on = PC_ANY(wanted > PC_REAL(0.5)) && !(throws && round > ROUND_THROW);
+    if (goes_on) {  // lint: allow (rounds of nothing change nothing)
       if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(stale_share);
       pc_tree_residual_to(PC_PASS m, t, wanted, most);
     }
@@ -291,7 +332,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
       late = pc_min(pc_throws_too_far(PC_PASS m, t), thrown);
       continue;
     }
-    Left left; left.some = PC_REAL(1.0); left.much = PC_REAL(1.0);
+    Left left;
+    left.some = PC_REAL(1.0);
+    left.much = PC_REAL(1.0);
     if (round < ROUND_JUDGE) left = pc_left(PC_PASS m, t);
     if (round == 0u) {
       wanted = pc_max(pc_always_again(PC_PASS m, t), left.some);
@@ -309,6 +352,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_solve_round(PC_PASS m, t, throws, round >= ROUND_PUSH);
     wanted = pc_min(wanted, left.much);
   }
-  if (PC_ANY(late > PC_REAL(0.5))) pc_push_against_throw(PC_PASS m, t, late > PC_REAL(0.5));  // lint: allow (nothing changes otherwise)
+  if (PC_ANY(late > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
+    pc_push_against_throw(PC_PASS m, t, late > PC_REAL(0.5));
+  }
   pc_end_push(PC_PASS m, t);
 }

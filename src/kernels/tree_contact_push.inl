@@ -1,6 +1,6 @@
-// What overlaps, of a manifold with a body of a tree, by more than its rows undo (tree_push_speed), is pushed apart for this
-// one advance, at most at push_speed; tree_relax and push_back take these velocities back. The rows' impulses know nothing
-// of it, and there is no friction: what undoes an overlap is no motion.
+// What overlaps, of a manifold with a body of a tree, by more than its rows undo (tree_push_speed), is pushed apart for
+// this one advance, at most at push_speed; tree_relax and push_back take these velocities back. The rows' impulses know
+// nothing of it, and there is no friction: what undoes an overlap is no motion.
 #define PC_TREES
 #include "tree_math.inl"
 #include "contact_way.inl"
@@ -13,8 +13,8 @@
 #include "kept_meeting.inl"
 #include "reach_motion.inl"
 
-// What a row asks for, so that what is pushed leaves it the room it has, or makes what it lacks: at most at push_speed, and
-// with no more energy than the lighter body has at that, or what can move only as others turn fast is flung about
+// What a row asks for, so that what is pushed leaves it the room it has, or makes what it lacks: at most at push_speed,
+// and with no more energy than the lighter body has at that, or what can move only as others turn fast is flung about
 // (docs/joint-trees.md).
 PC_FN Real pc_row_push(PC_IO Way w, Slot m, uint i, Twist v, Real light) {
   precise Real vn = v.vn + PC_LD(contact_rows, m, ROW_B + i) * v.w1 - PC_LD(contact_rows, m, ROW_A + i) * v.w2;
@@ -35,9 +35,16 @@ PC_FN BodyState pc_push_state(PC_IO Index i, Mask free, BodyState b) {
 }
 PC_FN Twist pc_push_twist(PC_IO Index ia, Index ib, Mask free_a, Mask free_b, Meeting now, Vec3 n, Vec3 t1, Vec3 t2) {
   Real none = PC_REAL(0.0);
-  Twist v; v.v1 = none; v.v2 = none; v.vn = none; v.w1 = none; v.w2 = none; v.wn = none;
+  Twist v;
+  v.v1 = none;
+  v.v2 = none;
+  v.vn = none;
+  v.w1 = none;
+  v.w2 = none;
+  v.wn = none;
   if (!PC_ANY(pc_or(free_a, free_b))) return v;  // lint: allow (zeros otherwise)
-  return pc_twist(pc_push_state(PC_PASS ia, free_a, now.a), pc_push_state(PC_PASS ib, free_b, now.b), now.arms, n, t1, t2);
+  return pc_twist(pc_push_state(PC_PASS ia, free_a, now.a), pc_push_state(PC_PASS ib, free_b, now.b), now.arms, n, t1,
+                  t2);
 }
 // On a body in no tree; what is left of it once it has moved is push_back's.
 PC_FN void pc_note_free(PC_IO Index i, Mask moves, Vec3 impulse, Vec3 torque) {
@@ -65,8 +72,12 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Mask turns = pc_and(acts, PC_LD(contact_rows, m, ROW_RADIUS) > none);  // rows of couples are set where one acts alone
   uint turning = PC_ANY(turns) ? pc_reach_all(w) : 0u;
   Twist v = pc_push_twist(PC_PASS ia, ib, free_a, free_b, now, n, t1, t2);
-  Six rate = pc_with_pending(PC_PASS w, m, 1u, turning, pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
-  v.vn = rate.l.z; v.w1 = rate.a.x; v.w2 = rate.a.y;
+  Six rate = pc_with_pending(
+      PC_PASS w, m, 1u, turning,
+      pc_with_pending(PC_PASS w, m, 0u, turning, pc_six(Vec3(v.v1, v.v2, v.vn), Vec3(v.w1, v.w2, v.wn))));
+  v.vn = rate.l.z;
+  v.w1 = rate.a.x;
+  v.w2 = rate.a.y;
   Real light = pc_inverse_or_zero(pc_max(now.a.inverse_mass, now.b.inverse_mass));
   Real e0 = pc_row_push(PC_PASS w, m, 0u, v, light);
   Real e1 = pc_row_push(PC_PASS w, m, 1u, v, light);
@@ -74,7 +85,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Real e3 = pc_row_push(PC_PASS w, m, 3u, v, light);
   Mask some = pc_max(pc_max(e0, e1), pc_max(e2, e3)) > PC_REAL(0.0);
   if (!PC_ANY(some)) return;  // lint: allow (nothing changes nothing)
-  FourRows mass = pc_four(PC_LD(contact_rows, m, ROW_MASS), PC_LD(contact_rows, m, ROW_MASS + 1u), PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u));
+  FourRows mass = pc_four(PC_LD(contact_rows, m, ROW_MASS), PC_LD(contact_rows, m, ROW_MASS + 1u),
+                          PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u));
   Real share = pc_common_share(pc_four(none, none, none, none), pc_four(e0, e1, e2, e3), mass, pc_couplings(PC_PASS m));
   precise Real f0 = e0 * share;
   precise Real f1 = e1 * share;

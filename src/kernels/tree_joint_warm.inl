@@ -1,7 +1,8 @@
 // joint_warm with bodies of trees: what lasts goes into the solve of the tree (tree_collect), as it would answer it.
 //
-// That is the angle rows' couple. Of a pin nothing lasts: its one visit solves it, and where many of them close loops in one tree, what each
-// pushed in the sub-step before is more than the visits take back (nets gained 200 times the energy of their fall).
+// That is the angle rows' couple. Of a pin nothing lasts: its one visit solves it, and where many of them close loops
+// in one tree, what each pushed in the sub-step before is more than the visits take back (nets gained 200 times the
+// energy of their fall).
 #include "tree_math.inl"
 #include "joint_way.inl"
 #include "node_push.inl"

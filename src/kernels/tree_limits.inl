@@ -1,6 +1,7 @@
-// After the contacts: limits over which they turn a joint act as well, and the tree is factored anew with them, for tree_again. Without, a joint
-// that is struck goes beyond its limit by all of the sub-step's turn. Contacts of the relax phase see the tree as it was: rows whose masses
-// are those of another factor do not take back all that they pushed, and bridges under heavy ragdolls gained energy by it.
+// After the contacts: limits over which they turn a joint act as well, and the tree is factored anew with them, for
+// tree_again. Without, a joint that is struck goes beyond its limit by all of the sub-step's turn. Contacts of the
+// relax phase see the tree as it was: rows whose masses are those of another factor do not take back all that they
+// pushed, and bridges under heavy ragdolls gained energy by it.
 #include "tree_rows.inl"
 #include "tree_store.inl"
 #ifdef PC_DRIVES

@@ -1,8 +1,9 @@
 // What a tree's limits throw back makes no energy. Newton's law leaves each row at a share of its own approach; where
 // several are met at once, with shares of their own, or what one throws drives another that leans on its limit, that
-// may be more than there was. Such a throw, and one that would cross a limit within the sub-step (the other one of its joint, or that of
-// another), is late: the sub-step ends at the limits, and bodies have the throw once they have moved. Of it no more comes back than the solve took,
-// which stops all of them; what exceeds it is left out of the whole throw.
+// may be more than there was. Such a throw, and one that would cross a limit within the sub-step (the other one of its
+// joint, or that of another), is late: the sub-step ends at the limits, and bodies have the throw once they have moved.
+// Of it no more comes back than the solve took, which stops all of them; what exceeds it is left out of the whole
+// throw.
 
 const uint TREE_THROW = TREE_INERTIA;  // change of velocity and of angular momentum; tree_trust.inl is done with it
 
@@ -31,7 +32,8 @@ PC_FN Real pc_tree_is_thrown(PC_IO Slot m, Tree t) {
 // Of a limit that is met and throws back, how far `rate` lacks of that at which it is to be left; else 0.
 PC_FN Real pc_lacks_rebound(PC_IO Slot n, uint i, Real rate) {
   Real away = PC_LD(tree_rows, n, TREE_REBOUND + i);
-  Mask acts = pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(0.5));
+  Mask acts =
+      pc_and(PC_LD(tree_rows, n, TREE_ON + i) > PC_REAL(0.5), PC_LD(tree_rows, n, TREE_KIND + i) > PC_REAL(0.5));
   Mask rebounds = pc_and(pc_throws_back(PC_PASS n), pc_and(acts, away > PC_REAL(0.0)));
   precise Real lack = rate - away;
   return pc_select(rebounds, pc_min(lack, PC_REAL(0.0)), PC_REAL(0.0));
@@ -73,8 +75,8 @@ PC_FN Real pc_throws_too_far(PC_IO Slot m, Tree t) {
   precise Real most = energy + energy * pc_max(noise, PC_SLIGHT);
   return pc_select(now > most, PC_REAL(1.0), far);
 }
-// Rates that the throw has to make up for: first of the limits that throw back, which lack all of it, then what a sweep has left, of the others that
-// act too. 1 where a limit is left too slowly by much.
+// Rates that the throw has to make up for: first of the limits that throw back, which lack all of it, then what a sweep
+// has left, of the others that act too. 1 where a limit is left too slowly by much.
 PC_FN Real pc_throw_rates_of(PC_IO Slot n, Slot up, bool first) {
   Real lacks = PC_REAL(0.0);
   pc_st3_tree(PC_PASS n, TREE_C, pc_zero3());
@@ -106,7 +108,8 @@ PC_FN Real pc_throw_rates(PC_IO Slot m, Tree t, bool first) {
 // After a sweep.
 PC_FN void pc_add_to_throw(PC_IO Slot n) {
   pc_st3_tree(PC_PASS n, TREE_THROW, pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW), pc_ld3_tree(PC_PASS n, TREE_X)));
-  pc_st3_tree(PC_PASS n, TREE_THROW + 3u, pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
+  pc_st3_tree(PC_PASS n, TREE_THROW + 3u,
+              pc_add(pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), pc_ld3_tree(PC_PASS n, TREE_CHANGE)));
 }
 // The share of the throw that may stay.
 PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
@@ -150,8 +153,8 @@ PC_FN Real pc_rebound_share(PC_IO Slot m, Tree t) {
   precise Real most = back + slightly;
   return pc_select(made > most, share, PC_REAL(1.0));
 }
-// What a limit throws back is a blow to its whole tree, and no acceleration (half_changes.inl): but for gravity it counts as if it had been there
-// before.
+// What a limit throws back is a blow to its whole tree, and no acceleration (half_changes.inl): but for gravity it
+// counts as if it had been there before.
 PC_FN void pc_tell_blow(PC_IO Slot m, Tree t, Mask these, Mask late) {
   Vec3 gravity = Vec3(PC_INFO(gravity_x), PC_INFO(gravity_y), PC_INFO(gravity_z));
   Vec3 fall = pc_scale(gravity, PC_INFO(h));
@@ -164,7 +167,8 @@ PC_FN void pc_tell_blow(PC_IO Slot m, Tree t, Mask these, Mask late) {
     Quad angular = PC_GATHER(velocity_parts, body, 1u);
     Mask moves = pc_and(these, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
     Vec3 v = pc_select3(late, pc_add(b.v, pc_ld3_tree(PC_PASS n, TREE_THROW)), b.v);
-    Vec3 l = pc_select3(late, pc_madd(b.l, pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), PC_LD(tree_rows, n, TREE_TOTAL)), b.l);
+    Vec3 l =
+        pc_select3(late, pc_madd(b.l, pc_ld3_tree(PC_PASS n, TREE_THROW + 3u), PC_LD(tree_rows, n, TREE_TOTAL)), b.l);
     PC_SCATTER_IF(moves, velocity_parts, body, 0u, pc_quad(pc_sub(v, fall), linear.s));
     PC_SCATTER_IF(moves, velocity_parts, body, 1u, pc_quad(l, angular.s));
   }

@@ -1,6 +1,19 @@
 // Where a tree's nodes stand, and its topology.
-struct Tree { uint first; uint count; uint at; };  // at: of its lists (glcompute/team.glsl)
-PC_FN Tree pc_tree(PC_IO Slot m) { uint block = PC_BLOCK(m); uint at = block * 3u; Tree t; t.first = PC_UINT(tree_blocks, at); t.count = PC_UINT(tree_blocks, at + 1u); t.at = PC_UINT(tree_blocks, at + 2u); return t; }
+// At: of its lists (glcompute/team.glsl)
+struct Tree {
+  uint first;
+  uint count;
+  uint at;
+};
+PC_FN Tree pc_tree(PC_IO Slot m) {
+  uint block = PC_BLOCK(m);
+  uint at = block * 3u;
+  Tree t;
+  t.first = PC_UINT(tree_blocks, at);
+  t.count = PC_UINT(tree_blocks, at + 1u);
+  t.at = PC_UINT(tree_blocks, at + 2u);
+  return t;
+}
 #ifndef PC_NO_PARENTS
 PC_FN uint pc_parent(PC_IO Tree t, uint k) { return PC_UINT(tree_parents, t.first + k) >> 1u; }
 // whether the tree is one body that a pin holds to a fixed one: it turns about the pin (pivot_turn.inl)

@@ -14,8 +14,8 @@
 #include "tree_momentum.inl"
 #include "tree_predict.inl"
 
-// The limit of a row is the one that is nearer halfway through the sub-step: a joint that turns fast goes from one to beyond the other within one.
-// (A cone is left on its other side; its limit stays the same.)
+// The limit of a row is the one that is nearer halfway through the sub-step: a joint that turns fast goes from one to
+// beyond the other within one. (A cone is left on its other side; its limit stays the same.)
 PC_FN void pc_choose_limit(PC_IO Slot n, uint i, Vec3 turn) {
   Vec3 axis = pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u);
   Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
@@ -24,7 +24,8 @@ PC_FN void pc_choose_limit(PC_IO Slot n, uint i, Vec3 turn) {
   Real on = PC_LD(tree_rows, n, TREE_ON + i);
   Real span = PC_LD(tree_rows, n, TREE_SPAN + i);
   precise Real doubled = slack * PC_REAL(2.0) + pc_dot(axis, turn) * PC_INFO(h);
-  Mask is_limit = pc_and(pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0)), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
+  Mask is_limit =
+      pc_and(pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0)), PC_LD(tree_rows, n, TREE_PIVOT) < PC_REAL(0.5));
   Mask other = pc_and(is_limit, doubled > span);
   if (!PC_ANY(other)) return;  // lint: allow (rows stay otherwise)
   precise Real left = span - slack;
@@ -40,7 +41,8 @@ PC_FN void pc_choose_limit(PC_IO Slot n, uint i, Vec3 turn) {
   Real back = PC_LD(tree_rows, n, TREE_REBOUND + i);
   PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(other, pc_abs(back), back));
 }
-// Of an angle row its limit, the axis of halfway, and the rate at which the limit is come to; of its slack the rate over the sub-step.
+// Of an angle row its limit, the axis of halfway, and the rate at which the limit is come to; of its slack the rate
+// over the sub-step.
 PC_FN Real pc_begin_row(PC_IO Slot n, Slot up, uint i, Vec3 turn) {
   pc_choose_limit(PC_PASS n, i, turn);
   Real now = pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
@@ -55,7 +57,8 @@ PC_FN void pc_tree_rates(PC_IO Slot n, Slot up) {
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
     Real ahead = pc_begin_row(PC_PASS n, up, i, turn);
-    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i); Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Real slack = PC_LD(tree_rows, n, TREE_SLACK + i);
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask open = pc_and(slack > PC_REAL(0.0), kind < PC_REAL(2.0));
     Real wanted = pc_angle_bias(PC_PASS pc_select(open, slack, pc_little_beyond(PC_PASS slack, kind)), open);
     precise Real rate = ahead + wanted;
@@ -69,17 +72,25 @@ PC_FN void pc_tree_rebounds(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_throws_back(PC_PASS n))) return;  // lint: allow (not read otherwise)
   Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
   for (uint i = 0u; i < 3u; i++) {
-    precise Real approach = -pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn); precise Real away = approach * PC_LD(tree_rows, n, TREE_REBOUND + i);
-    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Mask meets = pc_and(approach > PC_INFO(restitution_threshold), kind < PC_REAL(2.0));
-    Real rate = pc_select(meets, pc_max(away, PC_REAL(0.0)), PC_REAL(0.0)); PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(kind < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_REBOUND + i), rate));  // (pivot_turn's)
+    precise Real approach = -pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS + i * 3u), turn);
+    precise Real away = approach * PC_LD(tree_rows, n, TREE_REBOUND + i);
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Mask meets = pc_and(approach > PC_INFO(restitution_threshold), kind < PC_REAL(2.0));
+    // (pivot_turn's)
+    Real rate = pc_select(meets, pc_max(away, PC_REAL(0.0)), PC_REAL(0.0));
+    PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(kind < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_REBOUND + i), rate));
   }
 }
 // After a sweep: rows that pull leave, and those enter that it violates. 1 where any did.
 PC_FN Real pc_tree_revise(PC_IO Slot n, Slot up) {
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return PC_REAL(0.0);  // lint: allow (zeros otherwise)
-  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u)); Real changed = PC_REAL(0.0); Real one = PC_REAL(1.0);
+  Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+  Real changed = PC_REAL(0.0);
+  Real one = PC_REAL(1.0);
   for (uint i = 0u; i < 3u; i++) {
-    Real kind = PC_LD(tree_rows, n, TREE_KIND + i); Real on = PC_LD(tree_rows, n, TREE_ON + i); Real impulse = pc_row_impulse(PC_PASS n, i, turn);
+    Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
+    Real on = PC_LD(tree_rows, n, TREE_ON + i);
+    Real impulse = pc_row_impulse(PC_PASS n, i, turn);
     Mask is_limit = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));
     Mask leaves = pc_and(is_limit, pc_and(on > PC_REAL(0.5), impulse < PC_REAL(0.0)));
     Mask enters = pc_enters(PC_PASS n, i, turn);
@@ -96,13 +107,18 @@ PC_FN void pc_rates_left(PC_IO Slot n, Slot up) {
 }
 
 #define PC_EARLY_DAMPING PC_REAL(0.02)
-// Share of what a sub-step cannot resolve that is damped, 0 to 1; `fast` = x / (1 + x) of a body's pins. Alone a tree needs it near the
-// limit of stability, x = 1: 4 fast^2 is a damping of fourth order in x, and what the sub-step resolves keeps its energy. Loops and contacts
-// act on a tree from outside of its solve and feed its modes: there it begins at x = 0.02, and where an arm swings by more than a
-// seventh of a radian in the sub-step.
+// Share of what a sub-step cannot resolve that is damped, 0 to 1; `fast` = x / (1 + x) of a body's pins. Alone a tree
+// needs it near the limit of stability, x = 1: 4 fast^2 is a damping of fourth order in x, and what the sub-step
+// resolves keeps its energy. Loops and contacts act on a tree from outside of its solve and feed its modes: there it
+// begins at x = 0.02, and where an arm swings by more than a seventh of a radian in the sub-step.
 PC_FN Real pc_damped_share(PC_IO Real fast, Real swing, Mask held) {
-  Real zero = PC_REAL(0.0); precise Real beyond = fast - PC_EARLY_DAMPING; precise Real swung = swing - PC_EARLY_DAMPING; precise Real whip = swung * pc_div(PC_REAL(1.0), PC_INFO(stale_share));
-  precise Real early = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0)); precise Real square = fast * fast; Real late = pc_four_times(square);
+  Real zero = PC_REAL(0.0);
+  precise Real beyond = fast - PC_EARLY_DAMPING;
+  precise Real swung = swing - PC_EARLY_DAMPING;
+  precise Real whip = swung * pc_div(PC_REAL(1.0), PC_INFO(stale_share));
+  precise Real early = pc_max(beyond, zero) * pc_inverse_or_zero(fast) + pc_clamp(whip, zero, PC_REAL(1.0));
+  precise Real square = fast * fast;
+  Real late = pc_four_times(square);
   Real alone = pc_select(fast > PC_LITTLE, late, zero);  // less is rounding, and its squares would be subnormal
   return pc_min(pc_select(held, early, alone), PC_REAL(1.0));
 }
@@ -115,34 +131,50 @@ PC_FN Real pc_at_limit(PC_IO Slot n) {
   }
   return most;
 }
-// An impulse against the turning of bodies with stiff pins. `held`: something acts on the tree from outside, or a limit does. Run after pc_tree_residual.
+// An impulse against the turning of bodies with stiff pins. `held`: something acts on the tree from outside, or a limit
+// does. Run after pc_tree_residual.
 PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
   PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    Slot n = PC_NODE(m, t.first + k);
+    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
     // (how far the arm swings against the parent, as an angle squared: a top may spin about it as it likes)
-    Vec3 arm = pc_ld3_tree(PC_PASS n, TREE_RC); Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
-    Vec3 way = pc_scale(pc_cross(turn, arm), PC_INFO(h)); precise Real swing = pc_dot(way, way) * pc_inverse_or_zero(pc_dot(arm, arm));
-    Real share = pc_damped_share(PC_PASS PC_LD(tree_rows, n, TREE_FAST), swing, held); precise Real scale = share * PC_INFO(tree_damping) * PC_REAL(-2.0);
+    Vec3 arm = pc_ld3_tree(PC_PASS n, TREE_RC);
+    Vec3 turn = pc_sub(pc_ld3_tree(PC_PASS n, TREE_X + 3u), pc_ld3_tree(PC_PASS up, TREE_X + 3u));
+    Vec3 way = pc_scale(pc_cross(turn, arm), PC_INFO(h));
+    precise Real swing = pc_dot(way, way) * pc_inverse_or_zero(pc_dot(arm, arm));
+    Real share = pc_damped_share(PC_PASS PC_LD(tree_rows, n, TREE_FAST), swing, held);
+    precise Real scale = share * PC_INFO(tree_damping) * PC_REAL(-2.0);
     Sym3 stiffness = pc_sym_sub(pc_lds_tree(PC_PASS n, TREE_INERTIA), pc_lds_tree(PC_PASS n, TREE_BODY));
-    pc_st3_tree(PC_PASS n, TREE_OUTSIDE + 3u, pc_madd(pc_ld3_tree(PC_PASS n, TREE_OUTSIDE + 3u), pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), scale));
+    pc_st3_tree(PC_PASS n, TREE_OUTSIDE + 3u,
+                pc_madd(pc_ld3_tree(PC_PASS n, TREE_OUTSIDE + 3u),
+                        pc_sym_mul(stiffness, pc_ld3_tree(PC_PASS n, TREE_X + 3u)), scale));
   }
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m); Real one = PC_REAL(1.0);
+  Tree t = pc_tree(PC_PASS m);
+  Real one = PC_REAL(1.0);
   pc_tree_residual(PC_PASS m, t, one);
-  Vec3 push = pc_zero3(); Vec3 turn = pc_zero3(); Real load = PC_REAL(0.0);  // what contacts and loops give to the tree as a whole, and whether they do
+  // what contacts and loops give to the tree as a whole, and whether they do
+  Vec3 push = pc_zero3();
+  Vec3 turn = pc_zero3();
+  Real load = PC_REAL(0.0);
   PC_ALL(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k); Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE); push = pc_add(push, f.l);
+    Slot n = PC_NODE(m, t.first + k);
+    Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE);
+    push = pc_add(push, f.l);
     load = pc_max(load, pc_max(pc_largest(f.l), pc_largest(f.a)));
-    precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l); turn = moment;
+    precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l);
+    turn = moment;
   }
   PC_NODES(k, 1u, t) load = pc_max(load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
   PC_MOST(load);
   Real throws = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
-    Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-    pc_tree_rates(PC_PASS n, up); pc_tree_rebounds(PC_PASS n, up);
+    Slot n = PC_NODE(m, t.first + k);
+    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    pc_tree_rates(PC_PASS n, up);
+    pc_tree_rebounds(PC_PASS n, up);
     throws = pc_select(pc_throws_back(PC_PASS n), PC_REAL(1.0), throws);
   }
   PC_MOST(throws);
@@ -158,18 +190,23 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_factor(PC_PASS m, t, round == 0u);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
     if (round == 3u) break;  // what acts is what the factor knows of
-    Real changed = PC_REAL(0.0); PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
+    Real changed = PC_REAL(0.0);
+    PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
     PC_NODES(k, 1u, t) {
-      Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k)); Real here = pc_tree_revise(PC_PASS n, up);
+      Slot n = PC_NODE(m, t.first + k);
+      Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+      Real here = pc_tree_revise(PC_PASS n, up);
 #ifdef PC_DRIVES
       here = pc_max(here, pc_drive_revise(PC_PASS n, up, round == 0u));
 #endif
-      PC_ST(tree_rows, n, TREE_STALE, here); changed = pc_max(changed, here);
+      PC_ST(tree_rows, n, TREE_STALE, here);
+      changed = pc_max(changed, here);
     }
     PC_MOST(changed);
     if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
     PC_UP(k, t) {
-      Slot n = PC_NODE(m, t.first + k); Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+      Slot n = PC_NODE(m, t.first + k);
+      Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
       PC_ST(tree_rows, up, TREE_STALE, pc_max(PC_LD(tree_rows, up, TREE_STALE), PC_LD(tree_rows, n, TREE_STALE)));
     }
   }

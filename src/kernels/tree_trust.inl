@@ -1,12 +1,16 @@
-// Whether Newton's steps have found their way. From far off, after a blow or in a whip, they do not, and what they add is energy of any size.
-// Where they more than double the energy of the motion within the tree, all is taken back, and bodies are seen ahead until they have turned by
-// `stale_share`: pins then make none, and gaps that this leaves are closed by the push.
+// Whether Newton's steps have found their way. From far off, after a blow or in a whip, they do not, and what they add
+// is energy of any size. Where they more than double the energy of the motion within the tree, all is taken back, and
+// bodies are seen ahead until they have turned by `stale_share`: pins then make none, and gaps that this leaves are
+// closed by the push.
 #include "tree_energy.inl"
 
-const uint TREE_KEPT_MOTION = TREE_INERTIA;  // velocity and angular momentum before the steps; the solve has used the other
+// velocity and angular momentum before the steps; the solve has used the other
+const uint TREE_KEPT_MOTION = TREE_INERTIA;
 const uint TREE_KEPT_LIMIT = TREE_H + 18u;  // impulses of the angle rows, beside TREE_SEEN
 
-PC_FN void pc_keep(PC_IO Slot n, Mask these, uint f, Vec3 v) { pc_st3_tree(PC_PASS n, f, pc_select3(these, v, pc_ld3_tree(PC_PASS n, f))); }
+PC_FN void pc_keep(PC_IO Slot n, Mask these, uint f, Vec3 v) {
+  pc_st3_tree(PC_PASS n, f, pc_select3(these, v, pc_ld3_tree(PC_PASS n, f)));
+}
 PC_FN void pc_keep_motion(PC_IO Slot m, Tree t, Mask these) {
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);

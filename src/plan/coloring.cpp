@@ -16,8 +16,8 @@ template <class T> void assign_with_room(std::vector<T>& values, std::size_t cou
 }
 }  // namespace
 
-void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,
-                      std::span<const std::uint16_t> kinds) {
+void Colouring::build(std::uint32_t unit_count, std::span<const std::uint32_t> units,
+                      std::span<const std::uint32_t> priorities, std::span<const std::uint16_t> kinds) {
   assert(units.size() == 2 * priorities.size() && (kinds.empty() || kinds.size() == priorities.size()));
   sort_by_priority(priorities);
   colour_of_.resize(order_.size());
@@ -37,12 +37,14 @@ void Colouring::sort_by_priority(std::span<const std::uint32_t> priorities) {
   order_scratch_.resize(count);
   for (std::size_t i = 0; i < count; ++i) order_[i] = std::uint64_t{priorities[i]} << 32 | i;
   const auto key = [](std::uint64_t item) { return item; };
-  if (radix_sort(order_.data(), order_scratch_.data(), count, 32, 64, key) != order_.data()) order_.swap(order_scratch_);
+  if (radix_sort(order_.data(), order_scratch_.data(), count, 32, 64, key) != order_.data())
+    order_.swap(order_scratch_);
 }
 
 // Row `unit_count` stands for all fixed units: its mask is cleared whenever it was set.
 std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::uint32_t> units,
-                                std::span<const std::uint16_t> kinds, bool with_fixed, bool leads, std::uint32_t first) {
+                                std::span<const std::uint16_t> kinds, bool with_fixed, bool leads,
+                                std::uint32_t first) {
   taken_.assign(std::size_t{unit_count} + 1, 0);
   next_above_.clear();
   std::uint32_t above = first;
@@ -51,12 +53,14 @@ std::uint32_t Colouring::choose(std::uint32_t unit_count, std::span<const std::u
     const auto i = static_cast<std::uint32_t>(item);
     const std::uint32_t a = std::min(units[2 * std::size_t{i}], unit_count),
                         b = std::min(units[2 * std::size_t{i} + 1], unit_count);
-    if ((a == unit_count || b == unit_count) != with_fixed || (!kinds.empty() && (kinds[i] >= first_leading) != leads)) continue;
+    if ((a == unit_count || b == unit_count) != with_fixed || (!kinds.empty() && (kinds[i] >= first_leading) != leads))
+      continue;
     const std::uint64_t free = ~(taken[a] | taken[b]), lowest = free & (0 - free);
     taken[a] |= lowest;
     taken[b] |= lowest;
     taken[unit_count] = 0;
-    colour_of_[i] = first + (free ? static_cast<std::uint32_t>(std::countr_zero(free)) : choose_above(a, b, unit_count));
+    colour_of_[i] =
+        first + (free ? static_cast<std::uint32_t>(std::countr_zero(free)) : choose_above(a, b, unit_count));
     above = std::max(above, colour_of_[i] + 1);
   }
   return above;
@@ -106,8 +110,9 @@ void pack_slots(const Colouring& colouring, std::uint32_t width, std::span<const
   std::uint32_t blocks = 0;
   each_range([&](unsigned octave, std::uint32_t c, Range& range) {
     const std::span<const std::uint32_t> all = colouring.of_colour(c);
-    const auto count =
-        of.octaves.empty() ? all.size() : std::size_t(std::ranges::count_if(all, [&](auto i) { return of.is(i, octave); }));
+    const auto count = of.octaves.empty()
+                           ? all.size()
+                           : std::size_t(std::ranges::count_if(all, [&](auto i) { return of.is(i, octave); }));
     const std::uint32_t first = blocks;
     blocks += (static_cast<std::uint32_t>(count) + width - 1) / width;
     range = {first, blocks};

@@ -41,11 +41,11 @@ class Colouring {
   static constexpr std::uint32_t first_leading = 3, most_kinds = first_leading + 512;
 
   /// Constraint i acts on units[2i] and units[2i + 1], each below `unit_count` or `fixed_unit`. Lower
-  /// priorities choose first; of equal ones the constraint with the lower index. `kinds`: from `first_leading` on where a
-  /// constraint belongs to the first group of colours; those of a kind stand together within a colour, in ascending order.
-  /// Empty where there is one group of one kind.
-  /// The first 64 colours of either kind are greedy exactly. What finds none of them free goes on above: it takes the colour
-  /// after the last one above 63 on either unit. Only a unit with more than 64 constraints comes to that.
+  /// priorities choose first; of equal ones the constraint with the lower index. `kinds`: from `first_leading` on where
+  /// a constraint belongs to the first group of colours; those of a kind stand together within a colour, in ascending
+  /// order. Empty where there is one group of one kind.
+  /// The first 64 colours of either kind are greedy exactly. What finds none of them free goes on above: it takes the
+  /// colour after the last one above 63 on either unit. Only a unit with more than 64 constraints comes to that.
   void build(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint32_t> priorities,
              std::span<const std::uint16_t> kinds = {});
 
@@ -68,9 +68,10 @@ class Colouring {
   static constexpr std::uint32_t mask_colours = 64;
 
   void sort_by_priority(std::span<const std::uint32_t> priorities);
-  /// Colours the constraints of a group with a fixed unit, or those without, from `first` on; the first colour above them.
-  std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units, std::span<const std::uint16_t> kinds,
-                       bool with_fixed, bool leads, std::uint32_t first);
+  /// Colours the constraints of a group with a fixed unit, or those without, from `first` on; the first colour above
+  /// them.
+  std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units,
+                       std::span<const std::uint16_t> kinds, bool with_fixed, bool leads, std::uint32_t first);
   std::uint32_t choose_above(std::uint32_t a, std::uint32_t b, std::uint32_t unit_count);
   void group(std::span<const std::uint16_t> kinds);
 

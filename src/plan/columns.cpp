@@ -13,8 +13,9 @@ namespace pcphys {
 namespace {
 constexpr std::uint32_t none = ~0u;
 
-/// How far its mass extends along a direction: twice the radius of gyration for bodies of equal moments, and by the second moment of mass
-/// along the direction, tr(I) / 2 - u I u, for others. A beam that lies is as high as it is thick.
+/// How far its mass extends along a direction: twice the radius of gyration for bodies of equal moments, and by the
+/// second moment of mass along the direction, tr(I) / 2 - u I u, for others. A beam that lies is as high as it is
+/// thick.
 double size_along(const WorldState& state, std::uint32_t row, Vec3 up) {
   const Vec3 u = rotate(conjugate(state.orientation(row)), up), m = state.tables.get3(Buffer::mass, row, 0);
   const double second = 0.5 * (m.x + m.y + m.z) - (m.x * u.x * u.x + m.y * u.y * u.y + m.z * u.z * u.z);
@@ -44,8 +45,8 @@ void Columns::list(const WorldState& state, const TreeNodes& trees, Islands& isl
   }
 }
 
-void Columns::want(const WorldState& state, const TreeNodes& trees, double h, std::uint8_t highest_octave, Islands& islands,
-                   std::vector<Wanted>& wanted) {
+void Columns::want(const WorldState& state, const TreeNodes& trees, double h, std::uint8_t highest_octave,
+                   Islands& islands, std::vector<Wanted>& wanted) {
   const double g = length(state.gravity), frequency = constants::soft_frequency_times_h / h;
   if (g == 0 || highest_octave == 0) return;
   if (!listed_) list(state, trees, islands);
@@ -59,7 +60,8 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
   for (std::uint32_t contact = 1; contact < state.contact_rows(); contact++) {
     if (state.tables.get(Buffer::contact, contact, 3) < 2) continue;
     for (const std::uint32_t body : state.contacts.ends[contact])
-      if (state.responds(body) && column_of_[islands.root(body)] != none) columns_[column_of_[islands.root(body)]].faces = true;
+      if (state.responds(body) && column_of_[islands.root(body)] != none)
+        columns_[column_of_[islands.root(body)]].faces = true;
   }
   const Vec3 up = (-1 / g) * state.gravity;
   const Vec3 beside = std::fabs(up.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -77,7 +79,8 @@ void Columns::want(const WorldState& state, const TreeNodes& trees, double h, st
   // how far the weight of one body presses in one as heavy [m]
   const double give = g / (frequency * frequency);
   const auto want = [&](std::uint32_t root, double share, double most) {
-    if (const std::uint8_t octave = octave_for(share, most, highest_octave); octave > 0) wanted.push_back({root, octave});
+    if (const std::uint8_t octave = octave_for(share, most, highest_octave); octave > 0)
+      wanted.push_back({root, octave});
   };
   for (const Column& column : columns_) {
     if (!column.faces) continue;

@@ -1,6 +1,7 @@
-// Sub-steps for what stands high on bodies that are small for the sub-step. A contact gives by the load over its lighter body's mass, times
-// the square of the sub-step (docs/impulses.md): where that is no longer small beside the bodies, piles sink, lean and fall, slender ones
-// sooner. How many bodies of its own kind a body may carry is taken from how high its island is, so that it is known before the load is there.
+// Sub-steps for what stands high on bodies that are small for the sub-step. A contact gives by the load over its
+// lighter body's mass, times the square of the sub-step (docs/impulses.md): where that is no longer small beside the
+// bodies, piles sink, lean and fall, slender ones sooner. How many bodies of its own kind a body may carry is taken
+// from how high its island is, so that it is known before the load is there.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -18,7 +19,8 @@ class Columns {
  public:
   /// Follows a change of contacts.
   void forget() { listed_ = false; }
-  /// Adds what sub-steps of `h` need, up to `highest_octave`: a function of the present state, whatever was measured before.
+  /// Adds what sub-steps of `h` need, up to `highest_octave`: a function of the present state, whatever was measured
+  /// before.
   void want(const WorldState& state, const TreeNodes& trees, double h, std::uint8_t highest_octave, Islands& islands,
             std::vector<Wanted>& wanted);
   std::size_t memory_bytes() const { return bytes_of(bodies_, columns_, column_of_); }

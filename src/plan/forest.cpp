@@ -6,7 +6,8 @@
 
 namespace pcphys {
 
-void Forest::build(std::span<const JointLink> links, std::span<const double> masses, std::span<const std::uint32_t> ids) {
+void Forest::build(std::span<const JointLink> links, std::span<const double> masses,
+                   std::span<const std::uint32_t> ids) {
   links_.assign(links.begin(), links.end());
   std::ranges::sort(links_, {}, &JointLink::id);
   masses_.assign(masses.begin(), masses.end());
@@ -28,8 +29,9 @@ void Forest::build(std::span<const JointLink> links, std::span<const double> mas
   std::vector<std::uint32_t> rows;
   for (std::uint32_t row = 0; row < masses.size(); row++)
     if (masses[row] > 0 && !reached_[row] && begin_[row] != begin_[row + 1]) rows.push_back(row);
-  std::ranges::sort(
-      rows, [&](std::uint32_t x, std::uint32_t y) { return masses[x] != masses[y] ? masses[x] > masses[y] : ids[x] < ids[y]; });
+  std::ranges::sort(rows, [&](std::uint32_t x, std::uint32_t y) {
+    return masses[x] != masses[y] ? masses[x] > masses[y] : ids[x] < ids[y];
+  });
   for (const std::uint32_t row : rows)
     if (!reached_[row]) {
       reached_[row] = 1;

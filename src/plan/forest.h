@@ -1,9 +1,10 @@
 // Joint trees: a spanning forest of the joint graph. Each tree is solved directly (docs/joints.md); joints that close a
 // loop, or tie a tree to a second fixed body, are left over for rows.
 //
-// A joint to a fixed or kinematic body begins a tree with that body as its root, unless a lower one holds the same body already; all
-// of them grow at once, so that a net or a bridge hangs from each of its anchors by the shortest way. A tree without such a joint has its
-// heaviest body as its root. Breadth first, joints in the order of their ids: trees that were made alike come out alike.
+// A joint to a fixed or kinematic body begins a tree with that body as its root, unless a lower one holds the same body
+// already; all of them grow at once, so that a net or a bridge hangs from each of its anchors by the shortest way. A
+// tree without such a joint has its heaviest body as its root. Breadth first, joints in the order of their ids: trees
+// that were made alike come out alike.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,7 +16,8 @@
 
 namespace pcphys {
 
-/// A joint as the forest sees it: body rows, and its id for the order. Those that yield (JointDef::largest_force) stand in no tree.
+/// A joint as the forest sees it: body rows, and its id for the order. Those that yield (JointDef::largest_force) stand
+/// in no tree.
 struct JointLink {
   std::uint32_t row, a, b, id;
   bool yields = false;
@@ -23,8 +25,9 @@ struct JointLink {
 
 struct TreeNode {
   std::uint32_t body, joint;  // rows; of the root the joint is 0
-  std::uint32_t parent;  // position in the tree, before this node's; of the root 1 where some joint closes a loop with its tree
-  bool flipped;          // the joint's body a is the child; of a root: set_pivot
+  // position in the tree, before this node's; of the root 1 where some joint closes a loop with its tree
+  std::uint32_t parent;
+  bool flipped;  // the joint's body a is the child; of a root: set_pivot
 };
 
 class Forest {
@@ -36,7 +39,9 @@ class Forest {
   /// Place of a tree's first node among all nodes.
   std::uint32_t first(std::size_t i) const { return first_[i]; }
   /// Parents before children; the first is the root.
-  std::span<const TreeNode> tree(std::size_t i) const { return std::span(nodes_).subspan(first_[i], first_[i + 1] - first_[i]); }
+  std::span<const TreeNode> tree(std::size_t i) const {
+    return std::span(nodes_).subspan(first_[i], first_[i + 1] - first_[i]);
+  }
   /// Marks a tree's root: its one other body turns about their joint.
   void set_pivot(std::size_t tree) { nodes_[first_[tree]].flipped = true; }
   /// Whether a joint that stands in no tree holds a body of this one: its root's mark in `parent`.
@@ -62,14 +67,16 @@ class Forest {
   std::vector<std::uint32_t> first_, closing_;
 };
 
-/// The forest laid out for `width` lanes: trees of one shape share blocks, one tree a lane; what is left over of a block
-/// is padding (rows 0).
+/// The forest laid out for `width` lanes: trees of one shape share blocks, one tree a lane; what is left over of a
+/// block is padding (rows 0).
 ///
-/// Levels are there where a block is one tree, for a work group that shares it (glcompute/team.glsl): the number of spans of nodes; of each, and of
-/// what follows the last, its first node, and its first group << 1 | whether it is a chain; then of each group, and of what follows the last, its
-/// first node. The root is a span, each level below it is another, and levels of one node in a row are one, a chain. Groups: nodes of one parent.
+/// Levels are there where a block is one tree, for a work group that shares it (glcompute/team.glsl): the number of
+/// spans of nodes; of each, and of what follows the last, its first node, and its first group << 1 | whether it is a
+/// chain; then of each group, and of what follows the last, its first node. The root is a span, each level below it is
+/// another, and levels of one node in a row are one, a chain. Groups: nodes of one parent.
 struct TreeBlocks {
-  std::vector<std::uint32_t> blocks;   // of each block its first node, their number, and where its levels begin; then levels
+  // of each block its first node, their number, and where its levels begin; then levels
+  std::vector<std::uint32_t> blocks;
   std::vector<std::uint32_t> parents;  // of each node parent << 1 | flipped
   std::vector<std::uint32_t> ends;     // ends[(node * 2 + side) * width + lane]: body row, joint row
   std::vector<std::uint32_t> order;    // order[node * width + lane]: 1 + the node's place in the forest; 0 pads

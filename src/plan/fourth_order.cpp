@@ -25,7 +25,8 @@ double response(const WorldState& state, std::uint32_t row, Vec3 arm) {
 std::uint32_t of_body(const WorldState& state, std::uint32_t row) {
   std::uint32_t why = 0;
   if (!state.responds(row) && !state.stands(row)) why |= bit(SecondOrder::carried);
-  if (state.responds(row) && (state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0))
+  if (state.responds(row) &&
+      (state.tables.get(Buffer::force, row, 3) > 0 || state.tables.get(Buffer::force, row, 7) > 0))
     why |= bit(SecondOrder::drag);
   return why;
 }
@@ -51,7 +52,8 @@ bool spins_faster(const WorldState& state, std::span<const TreeNode> tree, doubl
 
 std::array<const char*, 2> reason(SecondOrder why) {
   switch (why) {
-    case SecondOrder::pivot: return {"fourth order of bodies on one pin", "their turning about it is of fourth order already"};
+    case SecondOrder::pivot:
+      return {"fourth order of bodies on one pin", "their turning about it is of fourth order already"};
     case SecondOrder::loop:
       return {"fourth order of loops", "a joint that closes one, or a spring, acts from outside of the tree"};
     case SecondOrder::angles: return {"fourth order of joints with angles", "limits and locks act once a sub-step"};
@@ -59,7 +61,8 @@ std::array<const char*, 2> reason(SecondOrder why) {
     case SecondOrder::drag: return {"fourth order with drag", "drag acts by the exact terms of second order"};
     case SecondOrder::carried: return {"fourth order of what is carried", "a kinematic body may carry several trees"};
     case SecondOrder::contact: return {"fourth order of what is touched", "contacts act once a sub-step"};
-    case SecondOrder::stiff: return {"fourth order of loaded pins", "they swing too fast for the sub-step without stiffness"};
+    case SecondOrder::stiff:
+      return {"fourth order of loaded pins", "they swing too fast for the sub-step without stiffness"};
     case SecondOrder::fast:
       return {"fourth order of fast turns", "it does not stay stable where a sub-step turns a body too far"};
     default: return {"fourth order", "kernels of the host's own act in each sub-step"};
@@ -84,7 +87,8 @@ void FourthOrder::find_trees(const WorldState& state, const Forest& forest, cons
     first_pin_.push_back(std::uint32_t(pins_.size()));
   }
   for (const std::uint32_t row : closing)
-    for (const std::uint32_t body : {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)})
+    for (const std::uint32_t body :
+         {state.body_ids.row(state.joints[row].body_a), state.body_ids.row(state.joints[row].body_b)})
       if (tree_of_[body] > 0) why_not_[tree_of_[body] - 1] |= bit(SecondOrder::loop);
 }
 
@@ -93,7 +97,8 @@ void FourthOrder::find_pins(const WorldState& state, std::span<const TreeNode> t
     const JointDef& def = joints.def(state, node.joint);
     const Vec3 own = node.flipped ? def.frame_a.position : def.frame_b.position;
     const Vec3 parents = node.flipped ? def.frame_b.position : def.frame_a.position;
-    pins_.push_back({node.joint, std::max(response(state, node.body, own), response(state, tree[node.parent].body, parents)),
+    pins_.push_back({node.joint,
+                     std::max(response(state, node.body, own), response(state, tree[node.parent].body, parents)),
                      state.tables.get(Buffer::mass, node.body, 3)});
   }
   if (state.responds(tree.front().body)) return;
@@ -110,8 +115,8 @@ void FourthOrder::find_touched(const WorldState& state) {
       if (tree_of_[body] > 0) touched_[tree_of_[body] - 1] = true;
 }
 
-/// (h w / 2)^2 of what the pins' forces turn fastest, from above: those of the last sub-step, or of the weight that hangs there where
-/// that is not known.
+/// (h w / 2)^2 of what the pins' forces turn fastest, from above: those of the last sub-step, or of the weight that
+/// hangs there where that is not known.
 double FourthOrder::stiffness(const WorldState& state, std::uint32_t tree, double h) const {
   double most = 0, weight = 0;
   for (std::uint32_t i = first_pin_[tree]; i < first_pin_[tree + 1]; i++) {
@@ -141,7 +146,8 @@ void FourthOrder::choose(const WorldState& state, const Forest& forest, const So
     reasons_ |= why;
     if (why != 0) continue;
     chosen_.push_back(i);
-    bodies_ += std::uint32_t(std::ranges::count_if(tree, [&](const TreeNode& node) { return state.responds(node.body); }));
+    bodies_ +=
+        std::uint32_t(std::ranges::count_if(tree, [&](const TreeNode& node) { return state.responds(node.body); }));
   }
 }
 

@@ -1,5 +1,5 @@
-// Which joint trees move in fourth order (StepSettings::order, docs/integrate.md): those on which nothing but forces and pins acts,
-// softly enough for the sub-step.
+// Which joint trees move in fourth order (StepSettings::order, docs/integrate.md): those on which nothing but forces
+// and pins acts, softly enough for the sub-step.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -15,7 +15,19 @@
 namespace pcphys {
 
 /// Why a tree stays at second order.
-enum class SecondOrder : std::uint8_t { pivot, loop, angles, drive, drag, carried, contact, stiff, fast, own_kernel, count };
+enum class SecondOrder : std::uint8_t {
+  pivot,
+  loop,
+  angles,
+  drive,
+  drag,
+  carried,
+  contact,
+  stiff,
+  fast,
+  own_kernel,
+  count
+};
 /// What and why, of the plan.
 std::array<const char*, 2> reason(SecondOrder why);
 
@@ -24,10 +36,10 @@ class FourthOrder {
   /// Follows a change of objects; of contacts.
   void forget() { trees_known_ = contacts_known_ = false; }
   void forget_contacts() { contacts_known_ = false; }
-  /// Of a step of `dt`; none where StepSettings::order is 2. `closing`: rows of joints that stand in no tree. `own`: kernels of the
-  /// host's own act in sub-steps.
-  void choose(const WorldState& state, const Forest& forest, const SolvedJoints& joints, std::span<const std::uint32_t> closing,
-              bool own, const StepSettings& settings, double dt);
+  /// Of a step of `dt`; none where StepSettings::order is 2. `closing`: rows of joints that stand in no tree. `own`:
+  /// kernels of the host's own act in sub-steps.
+  void choose(const WorldState& state, const Forest& forest, const SolvedJoints& joints,
+              std::span<const std::uint32_t> closing, bool own, const StepSettings& settings, double dt);
 
   /// Trees of fourth order, ascending.
   std::span<const std::uint32_t> trees() const { return chosen_; }
@@ -38,8 +50,8 @@ class FourthOrder {
   std::size_t memory_bytes() const { return bytes_of(tree_of_, why_not_, pins_, first_pin_, touched_, chosen_); }
 
  private:
-  /// A pin, how much a force on it turns its two bodies (the larger |r| / trace of the inertia) [1/(kg m)], and the mass that
-  /// hangs on it.
+  /// A pin, how much a force on it turns its two bodies (the larger |r| / trace of the inertia) [1/(kg m)], and the
+  /// mass that hangs on it.
   struct Pin {
     std::uint32_t joint;  // row
     double response, mass;

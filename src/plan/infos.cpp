@@ -27,7 +27,8 @@ double soft_substep_length(double before, double h, double dt) {
 
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
   const double h = from.h / double(1u << octave), step = from.h * from.substeps, gravity = length(from.gravity);
-  const Soft rows = soft(constants::soft_frequency_times_h * (from.h / from.soft_substep), constants::soft_damping_ratio, h);
+  const Soft rows =
+      soft(constants::soft_frequency_times_h * (from.h / from.soft_substep), constants::soft_damping_ratio, h);
 
   InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
   biased = {};

@@ -1,5 +1,5 @@
-// Sub-step classes: islands of octave k make 2^k times the sub-steps that the settings ask for; of fourth order they are the class
-// octave_count + k (docs/substeps.md, docs/integrate.md).
+// Sub-step classes: islands of octave k make 2^k times the sub-steps that the settings ask for; of fourth order they
+// are the class octave_count + k (docs/substeps.md, docs/integrate.md).
 #pragma once
 #include <bit>
 #include <cstdint>

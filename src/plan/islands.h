@@ -1,5 +1,5 @@
-// Islands: bodies that act on each other, by contacts or joints. Kinematic bodies belong to islands, since what they carry follows their
-// way from sub-step to sub-step; fixed ones do not.
+// Islands: bodies that act on each other, by contacts or joints. Kinematic bodies belong to islands, since what they
+// carry follows their way from sub-step to sub-step; fixed ones do not.
 #pragma once
 #include <cstdint>
 #include <vector>

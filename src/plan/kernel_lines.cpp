@@ -92,8 +92,8 @@ std::optional<KernelLines> find_lines(std::string_view source, const OwnKernel& 
     const std::size_t end = at + k.name.size();
     Cursor file(source.substr(end), line + count_lines(source.substr(opens, end - opens)));
     KernelLines lines;
-    if (file.take(',') && lay_out(file, k.signature, lines.signature) && file.take(',') && lay_out(file, k.body, lines.body) &&
-        (k.body.empty() || file.take(')')))
+    if (file.take(',') && lay_out(file, k.signature, lines.signature) && file.take(',') &&
+        lay_out(file, k.body, lines.body) && (k.body.empty() || file.take(')')))
       found = std::move(lines);
   }
   return found;

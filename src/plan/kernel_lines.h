@@ -1,4 +1,5 @@
-// The lines of a text that the preprocessor joined: PCPHYS_KERNEL stringises its signature and its body, which leaves one line of each.
+// The lines of a text that the preprocessor joined: PCPHYS_KERNEL stringises its signature and its body, which leaves
+// one line of each.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -20,13 +21,15 @@ struct KernelLines {
   Text signature, body;
 };
 
-/// Finds a kernel in the text of its file, at the line that the macro gave or before it (GCC gives the macro's first line, Clang its
-/// last). Nothing where no such text stands there: the file is another by now, or a macro of the host's own made the kernel.
+/// Finds a kernel in the text of its file, at the line that the macro gave or before it (GCC gives the macro's first
+/// line, Clang its last). Nothing where no such text stands there: the file is another by now, or a macro of the host's
+/// own made the kernel.
 std::optional<KernelLines> find_lines(std::string_view source, const OwnKernel& kernel);
 /// The same, reading the file; nothing where it cannot be read. Only to tell an error.
 std::optional<KernelLines> read_lines(const OwnKernel& kernel);
 
-/// "FILE:LINE" of a place in a kernel's signature; of the kernel where its lines are not found, and empty where it names no file.
+/// "FILE:LINE" of a place in a kernel's signature; of the kernel where its lines are not found, and empty where it
+/// names no file.
 std::string place_in_signature(const OwnKernel& kernel, std::size_t place);
 
 }  // namespace pcphys

@@ -24,7 +24,8 @@ void leave_out(const PlanSignature& s, OwnKernels::Ordered own, StepPlan& plan) 
   if (!s.joints() && !s.trees && !s.nets)
     out("joints", idle ? all_sleep : s.sleepers ? "no body that is awake has any" : "the world has no joints");
   if (!s.joints() && s.trees) out("joint rows", "no joint closes a loop");
-  if ((s.joints() || s.trees) && !s.nets && !s.tree_drives && !s.joint_drives) out("motors and springs", "no joint has any");
+  if ((s.joints() || s.trees) && !s.nets && !s.tree_drives && !s.joint_drives)
+    out("motors and springs", "no joint has any");
   if (s.trees && !s.pivots) out("pivots", "no body hangs on a fixed one by one pin alone");
   if (s.trees && !s.solves_trees()) out("tree solve", "every joint is a pin that one body turns about");
   if (s.trees && s.solves_trees() && !s.limits_after_contacts())
@@ -46,7 +47,8 @@ void leave_out(const PlanSignature& s, OwnKernels::Ordered own, StepPlan& plan) 
   if (!s.touches)
     out("events of contacts", s.contact_events ? "nothing touches in this step" : "the settings do not ask for them");
   if (!s.body_events) out("events of bodies", "the settings do not ask for them");
-  if (std::ranges::all_of(own, [](const auto& k) { return k->of_library(); })) out("kernels of the host's own", "none was added");
+  if (std::ranges::all_of(own, [](const auto& k) { return k->of_library(); }))
+    out("kernels of the host's own", "none was added");
 }
 
 }  // namespace pcphys

@@ -1,5 +1,6 @@
-// Sub-steps for what pulls: a joint that stands in no tree (it closes a loop, or gives way) and a spring between two points need sub-steps
-// that resolve how fast their bodies swing in them (docs/joint-trees.md). They are chosen by the tension that a step left.
+// Sub-steps for what pulls: a joint that stands in no tree (it closes a loop, or gives way) and a spring between two
+// points need sub-steps that resolve how fast their bodies swing in them (docs/joint-trees.md). They are chosen by the
+// tension that a step left.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -15,11 +16,14 @@ namespace pcphys {
 
 class Loops {
  public:
-  /// Follows a change of objects. `pulling`: rows of the joints that stand in no tree, and of springs. `parallel`: by row, whether another
-  /// joint holds the same two bodies already, so that this one lets nothing swing.
-  void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling, std::span<const char> parallel);
-  /// Adds what sub-steps of `h` need, up to `highest` octaves, for the tension that impulses of sub-steps of `impulse_h` were of.
-  void want(const WorldState& state, double impulse_h, double h, std::uint8_t highest, std::vector<Wanted>& wanted) const;
+  /// Follows a change of objects. `pulling`: rows of the joints that stand in no tree, and of springs. `parallel`: by
+  /// row, whether another joint holds the same two bodies already, so that this one lets nothing swing.
+  void find(const WorldState& state, const SolvedJoints& joints, std::span<const std::uint32_t> pulling,
+            std::span<const char> parallel);
+  /// Adds what sub-steps of `h` need, up to `highest` octaves, for the tension that impulses of sub-steps of
+  /// `impulse_h` were of.
+  void want(const WorldState& state, double impulse_h, double h, std::uint8_t highest,
+            std::vector<Wanted>& wanted) const;
   std::size_t memory_bytes() const { return bytes_of(loops_); }
 
  private:

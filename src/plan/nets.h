@@ -17,7 +17,7 @@ struct Net {
   std::vector<std::uint32_t> springs;  // joint rows, in the order of their ids
   std::vector<std::uint32_t> links;    // of each spring the places in `bodies` of a and of b
   std::size_t memory_bytes() const { return bytes_of(bodies, springs, links); }
-  std::uint32_t moving = 0;            // row of a body that moves
+  std::uint32_t moving = 0;  // row of a body that moves
 };
 
 /// What the kernels read, for blocks of `width` nets of one shape; see net_rows.inl.
@@ -25,7 +25,7 @@ struct NetBlocks {
   std::vector<std::uint32_t> list;
   std::vector<Range> ranges;  // of blocks, by octave
   std::size_t memory_bytes() const { return bytes_of(list, ranges); }
-  std::uint32_t slots = 0;    // of one lane
+  std::uint32_t slots = 0;  // of one lane
 };
 
 class Nets {

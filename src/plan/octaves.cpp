@@ -12,14 +12,16 @@ namespace pcphys {
 
 std::uint8_t highest_octave(const StepSettings& settings) {
   std::uint8_t octave = 0;
-  while (octave + 1u < octave_count && 2u << octave <= settings.refinement && settings.substeps << (octave + 1) <= most_substeps)
+  while (octave + 1u < octave_count && 2u << octave <= settings.refinement &&
+         settings.substeps << (octave + 1) <= most_substeps)
     octave++;
   return octave;
 }
 
 std::uint8_t highest_loop_octave(const StepSettings& settings) {
   std::uint8_t octave = highest_octave(settings);
-  while (octave > 0 && octave + 1u < octave_count && settings.substeps << (octave + 1) <= constants::most_loop_substeps) octave++;
+  while (octave > 0 && octave + 1u < octave_count && settings.substeps << (octave + 1) <= constants::most_loop_substeps)
+    octave++;
   return octave;
 }
 
@@ -83,7 +85,8 @@ void Octaves::assign(const WorldState& state, bool together) {
   count_limited();
   for (std::uint32_t row = 1; row < of_bodies_.size(); row++) {
     if (!state.goes(row)) continue;
-    of_bodies_[row] = together ? highest_of_all : of_bodies_[islands_.root(row)];  // a root is the lowest row of its island
+    // a root is the lowest row of its island
+    of_bodies_[row] = together ? highest_of_all : of_bodies_[islands_.root(row)];
     refined_ += of_bodies_[row] > 0;
   }
 }
@@ -100,7 +103,8 @@ bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
   loops_.want(state, h_, h_, highest_of_loops_, wanted_);
   const std::size_t before = again_.size();
   for (const Wanted& w : wanted_)
-    if (const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]); w.octave > made) again_.push_back(w);
+    if (const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]); w.octave > made)
+      again_.push_back(w);
   return again_.size() > before;
 }
 

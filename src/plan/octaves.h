@@ -1,5 +1,6 @@
-// Sub-step classes: an island of octave k makes 2^k times the sub-steps that the settings ask for, and all others go on as they
-// are (docs/substeps.md); of fourth order the octave counts from octave_count on (plan/island_class.h). Chosen before the step from what the world's tables hold, so that it is the same on any backend.
+// Sub-step classes: an island of octave k makes 2^k times the sub-steps that the settings ask for, and all others go on
+// as they are (docs/substeps.md); of fourth order the octave counts from octave_count on (plan/island_class.h). Chosen
+// before the step from what the world's tables hold, so that it is the same on any backend.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -36,8 +37,9 @@ class Octaves {
   }
   /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
-  /// Of a step of `dt`. `faces`: some contact has more than one point, so that something may stand on something. False: they are
-  /// those of the step before. `fourth`: the trees of fourth order. `together`: all bodies act on each other, and have one octave.
+  /// Of a step of `dt`. `faces`: some contact has more than one point, so that something may stand on something. False:
+  /// they are those of the step before. `fourth`: the trees of fourth order. `together`: all bodies act on each other,
+  /// and have one octave.
   bool choose(const WorldState& state, const Forest& forest, const TreeNodes& trees, bool faces,
               std::span<const std::uint32_t> fourth, bool together, const StepSettings& settings, double dt);
 

@@ -28,7 +28,8 @@ struct Found {
 };
 bool find_property(const WorldState& s, std::string_view name, Found& found) {
   for (const PropertySchema& p : properties())
-    if (p.name == name) return found = {p.table, p.buffer, std::uint32_t(p.offset * s.tables.real_bytes()), p.type, false}, true;
+    if (p.name == name)
+      return found = {p.table, p.buffer, std::uint32_t(p.offset * s.tables.real_bytes()), p.type, false}, true;
   for (const OwnProperty& p : s.own.list)
     if (p.used && p.name == name) return found = {p.table, p.buffer, 0, p.type, true}, true;
   return false;
@@ -54,8 +55,9 @@ Error wrong_table(const OwnKernel& k, const OwnArgument& a, Table table) {
     return bad(k, "says PC_A or PC_B of " + quoted(a.name) + ", and " + quoted(a.property) +
                       " is no property of bodies; the joint's own are PC_IN, PC_INOUT and PC_OUT.");
   if (k.table == Table::joint && table == Table::body)
-    return bad(k, "runs over joints and uses " + quoted(a.property) + ", a property of bodies; say of which body: PC_A(T) " +
-                      a.property + "_a or PC_B(T) " + a.property + "_b, and PC_ADD_A(T) or PC_ADD_B(T) for what it is given.");
+    return bad(k, "runs over joints and uses " + quoted(a.property) +
+                      ", a property of bodies; say of which body: PC_A(T) " + a.property + "_a or PC_B(T) " +
+                      a.property + "_b, and PC_ADD_A(T) or PC_ADD_B(T) for what it is given.");
   return bad(k, "runs over another table than that of its property " + quoted(a.property) +
                     "; all of them must be of one table, or what is read of a table of one row.");
 }
@@ -63,21 +65,23 @@ Error wrong_table(const OwnKernel& k, const OwnArgument& a, Table table) {
 Status bind_property(const WorldState& s, OwnKernel& k, OwnArgument& a) {
   Found f;
   // `part_of_a` is of the property part_of where there is one, else of part
-  if (const std::string whole = whole_property_of(a); whole != a.property && find_property(s, whole, f) && f.table == Table::body)
+  if (const std::string whole = whole_property_of(a);
+      whole != a.property && find_property(s, whole, f) && f.table == Table::body)
     a.property = whole;
   if (!find_property(s, a.property, f))
-    return Error{ErrorCode::unknown_name, "The kernel " + quoted(k.name) + " uses the property " + quoted(a.property) +
-                                              ", which the world does not have; add it first (World::add_property), or make it a "
-                                              "PC_PARAM."};
+    return Error{ErrorCode::unknown_name,
+                 "The kernel " + quoted(k.name) + " uses the property " + quoted(a.property) +
+                     ", which the world does not have; add it first (World::add_property), or make it a "
+                     "PC_PARAM."};
   if (f.type != a.type)
     return Error{ErrorCode::wrong_type, "The kernel " + quoted(k.name) + " declares " + quoted(a.name) + " as " +
-                                            std::string(name(a.type)) + "; the property is of type " + std::string(name(f.type)) +
-                                            "."};
+                                            std::string(name(a.type)) + "; the property is of type " +
+                                            std::string(name(f.type)) + "."};
   // a total goes into a table of one row, and every kernel may read there
   const bool total = k.form == OwnKernel::Form::reduction && a.summed();
   const Table wanted = a.of_three() == 0 ? k.table : Table::body;
-  a.single =
-      f.table != wanted && f.table >= Table::count && s.tables.rows(f.table) == 2 && (total || !a.writes()) && a.of_three() == 0;
+  a.single = f.table != wanted && f.table >= Table::count && s.tables.rows(f.table) == 2 && (total || !a.writes()) &&
+             a.of_three() == 0;
   if (total && !a.single)
     return bad(k, "makes one value of all rows, " + quoted(a.name) +
                       ", which is a property of many; add it to a table of one row (World::add_table(name, 1)).");
@@ -116,8 +120,8 @@ Status check_ending(const OwnKernel& k, const OwnArgument& a) {
   const char* ending = a.kind == Kind::other ? "_other" : a.of_three() == 1 ? "_a" : a.of_three() == 2 ? "_b" : nullptr;
   if (!ending || a.name != a.property) return {};
   const std::string word(word_of(a.kind));
-  return bad(k, "says " + word + " of " + quoted(a.name) + "; the name of such an argument ends in " + ending + ": " + a.name +
-                    ending + ".");
+  return bad(k, "says " + word + " of " + quoted(a.name) + "; the name of such an argument ends in " + ending + ": " +
+                    a.name + ending + ".");
 }
 
 /// Of a joint with its bodies: what does not go with that.
@@ -128,10 +132,10 @@ Status check_joined(OwnKernel& k) {
   for (const OwnArgument& a : k.arguments) {
     k.reached = a.at;
     if (a.kind == Kind::self || a.kind == Kind::other || (a.summed() && a.of_three() == 0))
-      return bad(k,
-                 "is of a joint and its bodies, and says " + std::string(word_of(a.kind)) + " of " + quoted(a.name) +
-                     "; what bodies are given is PC_ADD_A or PC_ADD_B, and a total of all joints is made by another kernel of a "
-                     "property that this one writes (PC_OUT).");
+      return bad(k, "is of a joint and its bodies, and says " + std::string(word_of(a.kind)) + " of " + quoted(a.name) +
+                        "; what bodies are given is PC_ADD_A or PC_ADD_B, and a total of all joints is made by another "
+                        "kernel of a "
+                        "property that this one writes (PC_OUT).");
   }
   k.reached = 0;
   return {};
@@ -152,9 +156,10 @@ Status find_form(OwnKernel& k) {
   if (k.form == Form::joined)
     if (Status ok = check_joined(k); !ok) return ok;
   if ((k.form == Form::pair || k.form == Form::reduction) && has(Kind::inout, Kind::out))
-    return bad(k,
-               "is of pairs, or makes one value of all rows; what it writes is then a sum (PC_ADD, PC_SUM) or, of all rows, "
-               "PC_SUM, PC_MIN or PC_MAX, and neither PC_INOUT nor PC_OUT.");
+    return bad(
+        k,
+        "is of pairs, or makes one value of all rows; what it writes is then a sum (PC_ADD, PC_SUM) or, of all rows, "
+        "PC_SUM, PC_MIN or PC_MAX, and neither PC_INOUT nor PC_OUT.");
   if (k.form == Form::pair && has(Kind::least, Kind::most))
     return bad(k, "is of pairs and says PC_MIN or PC_MAX; pairs are summed: PC_ADD or PC_SUM.");
   if (k.form != Form::pair && has(Kind::add))
@@ -164,10 +169,11 @@ Status find_form(OwnKernel& k) {
     if (Status ok = check_ending(k, a); !ok) return ok;
     const bool ordered = components(a.type) == 1 || a.type == PropertyType::vec3 || a.type == PropertyType::vec4;
     if (a.summed() && (a.type == PropertyType::quat || (a.kind >= Kind::least && !ordered)))
-      return Error{ErrorCode::wrong_type, "The kernel " + quoted(k.name) + " makes a sum, least or most of " + quoted(a.name) +
-                                              ", of type " + std::string(name(a.type)) +
-                                              ", which has none; sums are of numbers, vectors and matrices, PC_MIN and PC_MAX of "
-                                              "numbers and vectors."};
+      return Error{ErrorCode::wrong_type,
+                   "The kernel " + quoted(k.name) + " makes a sum, least or most of " + quoted(a.name) + ", of type " +
+                       std::string(name(a.type)) +
+                       ", which has none; sums are of numbers, vectors and matrices, PC_MIN and PC_MAX of "
+                       "numbers and vectors."};
   }
   k.reached = 0;
   if ((k.form == Form::pair ? k.loop != nullptr : k.pairs != nullptr))
@@ -216,9 +222,10 @@ Status check_blocks(const OwnKernel& k) {
   for (const Access& a : bound)
     if (!of_table(a.buffer)) list += element ? ", and the list of bodies" : ", " + std::string(schema(a.buffer).doc);
   if (!element) list += ", and its sums";
-  return bad(k, "needs " + std::to_string(blocks) + " storage blocks (" + list +
-                    "); a GPU has eight for a program. Properties of the library that stand in one buffer share a block "
-                    "(docs/properties.md); a vec4 or a mat3 may hold several of your own.");
+  return bad(k,
+             "needs " + std::to_string(blocks) + " storage blocks (" + list +
+                 "); a GPU has eight for a program. Properties of the library that stand in one buffer share a block "
+                 "(docs/properties.md); a vec4 or a mat3 may hold several of your own.");
 }
 
 Status fill(const WorldState& s, const KernelDef& def, OwnKernel& k) {
@@ -226,7 +233,8 @@ Status fill(const WorldState& s, const KernelDef& def, OwnKernel& k) {
   if (k.body.empty() && !k.in_cpp()) return bad(k, "has neither a C++ nor a GLSL side; write it with PCPHYS_KERNEL.");
   if (Status ok = check_body(k); !ok) return ok;
   if (k.stage == Stage::islands)
-    return bad(k, "is of the stage islands, which has kernels of the library alone; use integrate, joints or impulses.");
+    return bad(k,
+               "is of the stage islands, which has kernels of the library alone; use integrate, joints or impulses.");
   const Result<Table> table = s.table_of(def.over);
   if (!table) return table.error();
   k.table = *table;
@@ -248,12 +256,12 @@ Status fill(const WorldState& s, const KernelDef& def, OwnKernel& k) {
   if (forces && (k.stage != Stage::integrate || k.after))
     return bad(k, "writes force or torque, which the stage integrate takes up; run it before that stage.");
   if (std::ranges::none_of(k.accesses, &Access::write))
-    return bad(k,
-               k.form == OwnKernel::Form::pair ? "writes nothing; declare what it sums as PC_ADD or PC_SUM."
-               : k.form == OwnKernel::Form::joined
-                   ? "writes nothing; declare what it gives to bodies as PC_ADD_A or PC_ADD_B, or what it changes of the joint "
-                     "as PC_INOUT or PC_OUT."
-                   : "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
+    return bad(k, k.form == OwnKernel::Form::pair ? "writes nothing; declare what it sums as PC_ADD or PC_SUM."
+                  : k.form == OwnKernel::Form::joined
+                      ? "writes nothing; declare what it gives to bodies as PC_ADD_A or PC_ADD_B, or what it changes "
+                        "of the joint "
+                        "as PC_INOUT or PC_OUT."
+                      : "writes nothing; declare what it changes as PC_INOUT or PC_OUT.");
   return {};
 }
 
@@ -288,7 +296,8 @@ Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& s, const KernelDef&
   k->once_a_step = def.once_a_step;
   k->follows = def.follows;
   if (def.stage > Stage::impulses)
-    return bad(*k, "is to run at stage " + std::to_string(unsigned(def.stage)) + "; there are integrate, joints and impulses.");
+    return bad(*k, "is to run at stage " + std::to_string(unsigned(def.stage)) +
+                       "; there are integrate, joints and impulses.");
   const Status ok = fill(s, def, *k);
   if (ok) return k;
   const std::string place = place_in_signature(*k, k->reached);
@@ -305,11 +314,12 @@ Status check_properties(const WorldState& s, const OwnKernel& k) {
                        ", which was removed; remove the kernel too (Stepper::remove_kernel), and add it again where "
                        "there is a new one of that name. The world is as it was."};
     if (a.single && s.tables.rows(a.table) != 2)
-      return Error{ErrorCode::bad_argument,
-                   "The kernel " + quoted(k.name) + " uses " + quoted(a.property) + " of a table of one row, which has " +
-                       std::to_string(s.tables.rows(a.table) - 1) +
-                       " now; give it one again (World::resize), or remove the kernel (Stepper::remove_kernel). The world is as "
-                       "it was."};
+      return Error{
+          ErrorCode::bad_argument,
+          "The kernel " + quoted(k.name) + " uses " + quoted(a.property) + " of a table of one row, which has " +
+              std::to_string(s.tables.rows(a.table) - 1) +
+              " now; give it one again (World::resize), or remove the kernel (Stepper::remove_kernel). The world is as "
+              "it was."};
   }
   return {};
 }
@@ -322,8 +332,8 @@ Status set(OwnKernel& k, const KernelParameter& value) {
     return Error{ErrorCode::unknown_name,
                  "The kernel " + quoted(k.name) + " has no parameter " + quoted(value.name) + " that a host gives."};
   if (value.type != a->type)
-    return Error{ErrorCode::wrong_type, "The kernel " + quoted(k.name) + " declares its parameter " + quoted(a->name) + " as " +
-                                            std::string(name(a->type)) + "; the value given is of type " +
+    return Error{ErrorCode::wrong_type, "The kernel " + quoted(k.name) + " declares its parameter " + quoted(a->name) +
+                                            " as " + std::string(name(a->type)) + "; the value given is of type " +
                                             std::string(name(value.type)) + "."};
   const std::uint32_t count = components(a->type);
   if (a->type != PropertyType::int32 && a->type != PropertyType::uint32)

@@ -77,14 +77,14 @@ struct OwnKernel {
   }
 };
 
-/// How many of `count` others a pair kernel sums in one go: a function of the number alone, so that sums are the same everywhere;
-/// the fewer there are, the more work groups share them.
+/// How many of `count` others a pair kernel sums in one go: a function of the number alone, so that sums are the same
+/// everywhere; the fewer there are, the more work groups share them.
 std::uint32_t pair_chunk(std::uint32_t count);
 /// Rows that a level of a reduction makes one of.
 inline constexpr std::uint32_t reduction_block = 64;
 
-/// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers), unknown_name, wrong_type;
-/// they name the kernel's file and line, within the signature the line of the argument.
+/// Reads and checks a kernel for a world. Errors: bad_argument (the signature, or more than eight buffers),
+/// unknown_name, wrong_type; they name the kernel's file and line, within the signature the line of the argument.
 Result<std::shared_ptr<OwnKernel>> resolve(const WorldState& state, const KernelDef& def);
 
 /// Whether the properties that it was resolved to are still there; stale_id, naming the one that is not.
@@ -96,7 +96,8 @@ Status set(OwnKernel& kernel, const KernelParameter& parameter);
 /// The kernels of a world in the order in which those of one moment run.
 class OwnKernels {
  public:
-  /// Errors: name_taken, and bad_argument where two write the same anew or the order goes in a circle; nothing is added then.
+  /// Errors: name_taken, and bad_argument where two write the same anew or the order goes in a circle; nothing is added
+  /// then.
   Status add(std::shared_ptr<OwnKernel> kernel);
   Status remove(std::string_view name);
   OwnKernel* find(std::string_view name) const;

@@ -17,7 +17,8 @@ bool follows(const Kernels& all, const OwnKernel& later, const OwnKernel& earlie
     for (const std::string& name : reached[i]->follows) {
       if (name == earlier.name) return true;
       const auto found = std::ranges::find(all, name, [](const auto& k) -> const std::string& { return k->name; });
-      if (found != all.end() && std::ranges::find(reached, found->get()) == reached.end()) reached.push_back(found->get());
+      if (found != all.end() && std::ranges::find(reached, found->get()) == reached.end())
+        reached.push_back(found->get());
     }
   return false;
 }
@@ -29,7 +30,8 @@ bool precedes(const Kernels& all, const OwnKernel& a, const OwnKernel& b) {
   const auto rank = [](const OwnArgument& argument) { return argument.anew() ? 0 : argument.writes() ? 1 : 2; };
   for (const OwnArgument& x : a.arguments)
     for (const OwnArgument& y : b.arguments)
-      if (x.of_property() && y.of_property() && x.property == y.property && x.writes() && rank(x) < rank(y)) return true;
+      if (x.of_property() && y.of_property() && x.property == y.property && x.writes() && rank(x) < rank(y))
+        return true;
   return false;
 }
 bool same_moment(const OwnKernel& a, const OwnKernel& b) {
@@ -63,7 +65,8 @@ Error circle(const Kernels& all, const Kernels& left) {
 }  // namespace
 
 bool OwnKernels::pairs_of_bodies() const {
-  return std::ranges::any_of(kernels_, [](const auto& k) { return k->form == OwnKernel::Form::pair && k->table == Table::body; });
+  return std::ranges::any_of(kernels_,
+                             [](const auto& k) { return k->form == OwnKernel::Form::pair && k->table == Table::body; });
 }
 double OwnKernels::cutoff() const {
   double largest = 0;
@@ -103,10 +106,9 @@ Status OwnKernels::add(std::shared_ptr<OwnKernel> kernel) {
       for (const OwnArgument& b : kernel->arguments)
         if (a.anew() && b.anew() && a.property == b.property && !follows(kernels_, *kernel, *other) &&
             !follows(kernels_, *other, *kernel))
-          return bad(
-              *kernel,
-              "and " + quoted(other->name) + " both write " + quoted(a.property) +
-                  " anew at the same moment; say which follows which (KernelDef::follows), or let one change it (PC_INOUT).");
+          return bad(*kernel, "and " + quoted(other->name) + " both write " + quoted(a.property) +
+                                  " anew at the same moment; say which follows which (KernelDef::follows), or let one "
+                                  "change it (PC_INOUT).");
   }
   kernels_.push_back(std::move(kernel));
   std::vector<std::shared_ptr<OwnKernel>> ordered;

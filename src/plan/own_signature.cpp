@@ -65,10 +65,10 @@ class Tokens {
 }  // namespace
 
 Status parse_signature(OwnKernel& k) {
-  const Error wrong =
-      bad(k, "has the signature `" + k.signature +
-                 "`; write it as (PC_IN(Vec3) position, PC_INOUT(Real) fuel, PC_PARAM(Real) flow), with PC_OUT for what "
-                 "is written anew, and types Real, Vec3, Quaternion, Quad, Sym3, Mat3, float, double, int or uint.");
+  const Error wrong = bad(
+      k, "has the signature `" + k.signature +
+             "`; write it as (PC_IN(Vec3) position, PC_INOUT(Real) fuel, PC_PARAM(Real) flow), with PC_OUT for what "
+             "is written anew, and types Real, Vec3, Quaternion, Quad, Sym3, Mat3, float, double, int or uint.");
   Tokens tokens(k.signature, k.reached);
   if (!tokens.take("(")) return wrong;
   std::string_view sign = ",";

@@ -14,7 +14,8 @@ Status check_body(const OwnKernel& kernel);
 
 /// PC_IN and so on.
 std::string_view word_of(OwnArgument::Kind kind);
-/// Of an argument of a body that a joint joins, the property with nothing but _a or _b taken away: `heat_of_a` may be heat or heat_of.
+/// Of an argument of a body that a joint joins, the property with nothing but _a or _b taken away: `heat_of_a` may be
+/// heat or heat_of.
 std::string whole_property_of(const OwnArgument& argument);
 
 }  // namespace pcphys

@@ -14,7 +14,8 @@ inline Error bad(const OwnKernel& k, const std::string& what) {
   return {ErrorCode::bad_argument, "The kernel " + quoted(k.name) + " " + what};
 }
 
-template <class List, class Value, class Of = std::identity> bool contains(const List& list, const Value& value, Of of = {}) {
+template <class List, class Value, class Of = std::identity>
+bool contains(const List& list, const Value& value, Of of = {}) {
   return std::ranges::find(list, value, of) != std::ranges::end(list);
 }
 

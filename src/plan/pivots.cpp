@@ -40,8 +40,8 @@ About about_hinge(const MassProperties& m, Vec3 arm, Vec3 axis) {
 
 bool is_locked(double lower, double upper) { return upper - lower < constants::locked_interval; }
 bool is_hinge(const AngleFreedom& f) {
-  return f.kind == AngleFreedom::Kind::pitch_yaw_roll && !is_locked(f.lower.x, f.upper.x) && is_locked(f.lower.y, f.upper.y) &&
-         is_locked(f.lower.z, f.upper.z) && f.lower.y == 0 && f.lower.z == 0;
+  return f.kind == AngleFreedom::Kind::pitch_yaw_roll && !is_locked(f.lower.x, f.upper.x) &&
+         is_locked(f.lower.y, f.upper.y) && is_locked(f.lower.z, f.upper.z) && f.lower.y == 0 && f.lower.z == 0;
 }
 bool turns_freely(const AngleFreedom& f) {
   return f.kind == AngleFreedom::Kind::free || (is_hinge(f) && std::isinf(f.lower.x) && std::isinf(f.upper.x));

@@ -13,8 +13,11 @@
 namespace pcphys {
 namespace {
 /// Of Detector::meet.
-constexpr Access collide_accesses[] = {
-    {Buffer::pose, false}, {Buffer::motion, false}, {Buffer::mass, false}, {Buffer::delta, false}, {Buffer::contact, true}};
+constexpr Access collide_accesses[] = {{Buffer::pose, false},
+                                       {Buffer::motion, false},
+                                       {Buffer::mass, false},
+                                       {Buffer::delta, false},
+                                       {Buffer::contact, true}};
 
 /// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
 class Builder {
@@ -39,7 +42,8 @@ class Builder {
   void kernel(Kernel kernel, Phase phase, std::uint32_t substep, std::uint32_t again = 0) {
     const KernelSchema& k = schema(kernel);
     const Place place = k.stage == Stage::islands ? Place::gl : signature_.places[std::size_t(k.stage)];
-    add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses, k.domain);
+    add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses,
+        k.domain);
   }
 
   /// The narrow phase of a sub-step, on the host: Detector::meet.
@@ -82,7 +86,8 @@ class Builder {
 
   void results(std::uint32_t substep) {
     for (std::size_t b = 0; b < buffers_.size(); b++)
-      if (is_result(Buffer(b))) leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
+      if (is_result(Buffer(b)))
+        leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
   }
 
  private:
@@ -93,8 +98,8 @@ class Builder {
     bool of_library = false;  // a column of the library's beside those of the host's own: of one step
   };
   Known& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
-  /// What the host reads after a step: every buffer that holds state, or that events are made of, or that the host's own kernels
-  /// wrote; and of what both sides wrote the last version, since the next step begins with the host's.
+  /// What the host reads after a step: every buffer that holds state, or that events are made of, or that the host's
+  /// own kernels wrote; and of what both sides wrote the last version, since the next step begins with the host's.
   bool is_result(Buffer b) const {
     const Known& known = buffers_[std::size_t(b)];
     if (!of_table(b) || known.of_library) return false;
@@ -104,14 +109,16 @@ class Builder {
 
   /// Whether the device may keep it.
   bool leave(Buffer b) const {
-    return plan_.flight && signature_.resident && !is_own(b) && !buffers_[std::size_t(b)].current[std::size_t(Place::cpu)];
+    return plan_.flight && signature_.resident && !is_own(b) &&
+           !buffers_[std::size_t(b)].current[std::size_t(Place::cpu)];
   }
 
   void add(const OwnKernel& k, std::uint32_t substep) {
     Place place = signature_.places[std::size_t(k.stage)];
     if (k.body.empty()) place = Place::cpu;
     if (!k.in_cpp()) place = Place::gl;
-    add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, &k, 0}, k.accesses, Domain::body);
+    add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, &k, 0}, k.accesses,
+        Domain::body);
   }
   void add(PlanEntry entry, std::span<const Access> accesses, Domain domain) {
     const Place place = entry.place;
@@ -139,8 +146,16 @@ class Builder {
     if (here) return;
     here = true;
     const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
-    plan_.entries.push_back(
-        {kind, place, {}, buffer, Phase::biased, kind == PlanEntry::Kind::download, substep, octave_, user_of(buffer), 0});
+    plan_.entries.push_back({kind,
+                             place,
+                             {},
+                             buffer,
+                             Phase::biased,
+                             kind == PlanEntry::Kind::download,
+                             substep,
+                             octave_,
+                             user_of(buffer),
+                             0});
     if (kind == PlanEntry::Kind::upload) return;
     overwrite(buffer);
     settle();
@@ -172,10 +187,12 @@ struct Motion {
 Motion motion(const PlanSignature& s) {
   const Kernel round = s.rotates ? Kernel::advance_round : Kernel::advance_still;  // the same in every scheme
   if (s.integrator == Integrator::seed)
-    return {Kernel::begin_seed, s.drag ? Kernel::integrate_seed : Kernel::integrate, s.gyroscopic ? Kernel::advance_seed : round,
-            Kernel::synchronise_seed, Kernel::restagger};  // one octave alone
+    return {Kernel::begin_seed, s.drag ? Kernel::integrate_seed : Kernel::integrate,
+            s.gyroscopic ? Kernel::advance_seed : round, Kernel::synchronise_seed,
+            Kernel::restagger};  // one octave alone
   const Kernel advance = s.gyroscopic ? Kernel::advance : round;
-  if (s.drag) return {Kernel::begin_drag, Kernel::integrate_drag, advance, Kernel::synchronise_drag, Kernel::restagger_drag};
+  if (s.drag)
+    return {Kernel::begin_drag, Kernel::integrate_drag, advance, Kernel::synchronise_drag, Kernel::restagger_drag};
   return {Kernel::begin, Kernel::integrate, advance, Kernel::synchronise, Kernel::restagger};
 }
 
@@ -198,7 +215,8 @@ Contacts contacts(const PlanSignature& s) {
 // what acts on trees first: the floor under what lies on them comes later (see Colouring)
 void solve_on_trees(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.tree_joints && phase == Phase::relax) b.kernel(Kernel::tree_joint_arms, phase, substep);
-  if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_solve_driven : Kernel::tree_joint_solve, phase, substep);
+  if (s.tree_joints)
+    b.kernel(s.joint_drives ? Kernel::tree_joint_solve_driven : Kernel::tree_joint_solve, phase, substep);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_solve, phase, substep);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_flush, phase, substep);
 }
@@ -211,7 +229,8 @@ void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32
 void look_at_inertia(Builder& b, const PlanSignature& s, std::uint32_t substep) {
   if (s.joints() || s.solves_trees() || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
 }
-/// Which act in the sub-step, and where; in the sent phase, which of limbs that contacts and joints have sent elsewhere.
+/// Which act in the sub-step, and where; in the sent phase, which of limbs that contacts and joints have sent
+/// elsewhere.
 void look_at_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (!s.contacts()) return;
   b.collide(phase, substep);
@@ -270,7 +289,8 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.solves_trees()) b.kernel(s.tree_drives ? Kernel::tree_solve_driven : Kernel::tree_solve, Phase::biased, k);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_respond, Phase::biased, k);
   if (s.tree_joints) b.kernel(Kernel::tree_answer, Phase::biased, k);
-  if (s.tree_joints) b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
+  if (s.tree_joints)
+    b.kernel(s.joint_drives ? Kernel::tree_joint_mass_driven : Kernel::tree_joint_mass, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_prepare, Phase::biased, k);
   b.own(Stage::joints, true, k, count);
   solve_contacts(b, s, Phase::biased, k);
@@ -283,7 +303,8 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.nets && s.contacts()) b.kernel(Kernel::net_solve, Phase::biased, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_push, Phase::push, k);
   if (s.tree_contacts) b.kernel(Kernel::tree_flush, Phase::push, k);
-  if (s.limits_after_contacts()) b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
+  if (s.limits_after_contacts())
+    b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);
@@ -304,7 +325,8 @@ void fly(Builder& b, const PlanSignature& s) {
   b.enter(0);
   b.own(Stage::integrate, false, 0, s.substeps);
   const Kernel still = s.drag ? Kernel::fly_still_drag : Kernel::fly_still;
-  const Kernel round = s.drag ? Kernel::fly_round_drag : Kernel::fly_round, any = s.drag ? Kernel::fly_drag : Kernel::fly;
+  const Kernel round = s.drag ? Kernel::fly_round_drag : Kernel::fly_round,
+               any = s.drag ? Kernel::fly_drag : Kernel::fly;
   b.kernel(!s.rotates ? still : s.gyroscopic ? any : round, Phase::first, 0);
   b.own(Stage::impulses, true, last, s.substeps, true);
 }
@@ -339,7 +361,8 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
   b.own(Stage::impulses, true, last, count, true);
 }
 
-/// All sub-steps of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on them.
+/// All sub-steps of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on
+/// them.
 void smooth_substeps(Builder& b, const PlanSignature& s, unsigned octave) {
   const std::uint32_t count = s.substeps << octave, last = count - 1;
   b.enter(std::uint8_t(octave_count + octave));
@@ -370,7 +393,8 @@ Stage stage(const PlanEntry& entry) { return entry.own ? entry.own->stage : sche
 
 bool in_flight(const PlanSignature& s, OwnKernels::Ordered own) {
   const bool alone = !s.trees && !s.joints() && !s.nets && !s.contacts();
-  return s.bodies && alone && s.octaves == 1 && s.integrator == Integrator::verlet && std::ranges::all_of(own, [](const auto& k) {
+  return s.bodies && alone && s.octaves == 1 && s.integrator == Integrator::verlet &&
+         std::ranges::all_of(own, [](const auto& k) {
            return k->form == OwnKernel::Form::reduction ||
                   (k->once_a_step && (k->after ? k->stage == Stage::impulses : k->stage == Stage::integrate));
          });

@@ -17,8 +17,8 @@ struct PlanSignature {
   std::uint32_t order = 2;         // StepSettings::order
   std::uint32_t second_order = 0;  // of order 4, why some trees are not: bits by SecondOrder
   Integrator integrator = Integrator::verlet;
-  bool resident = false;                    // StepSettings::resident
-  bool sleep = false;                       // and what else it asks for
+  bool resident = false;  // StepSettings::resident
+  bool sleep = false;     // and what else it asks for
   bool contact_events = false;
   bool body_events = false;
   std::array<Place, stage_count> places{};  // by Stage
@@ -59,7 +59,8 @@ struct PlanSignature {
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 
-/// Whether each body moves by itself: nothing holds or meets it, and no kernel of the host's own looks at it between sub-steps.
+/// Whether each body moves by itself: nothing holds or meets it, and no kernel of the host's own looks at it between
+/// sub-steps.
 bool in_flight(const PlanSignature& signature, OwnKernels::Ordered own);
 
 /// `own`: kernels of the host's own, in the order in which those of one moment run.

@@ -9,7 +9,8 @@ namespace pcphys {
 
 namespace {
 
-/// How far a sub-step of `h` would take the body: in sizes of it (twice its radius of gyration), or radians, whichever is more.
+/// How far a sub-step of `h` would take the body: in sizes of it (twice its radius of gyration), or radians, whichever
+/// is more.
 double pull(const WorldState& state, std::uint32_t row, double h) {
   const double size = state.size(row);
   if (!(size > 0)) return 0;  // it does not rotate: no joint holds it by an angle
@@ -27,7 +28,8 @@ void Pulls::want(const WorldState& state, const Forest& forest, double h, std::u
     const std::uint32_t row = state.body_ids.row(force.body);
     if (row == 0 || !state.responds(row)) continue;  // 0: the force was removed
     const double most = pull(state, row, h);
-    if (const std::uint8_t octave = octave_for(most, constants::largest_give, highest_octave); octave > 0) pulled_.push_back({row, octave});
+    if (const std::uint8_t octave = octave_for(most, constants::largest_give, highest_octave); octave > 0)
+      pulled_.push_back({row, octave});
   }
   if (pulled_.empty()) return;
   std::ranges::sort(pulled_, {}, &Wanted::body);

@@ -67,7 +67,8 @@ bool count_time(WorldState& state, std::span<const std::uint32_t> moved, const A
   for (const std::uint32_t row : moved) {
     if (state.stands(row)) continue;  // it pads, or was frozen by this step
     Scalar& time = rest[row * rest_fields + rest_quiet_time];
-    const bool slow = rest[row * rest_fields + rest_can_sleep] > 0 && (restless.empty() || !restless[row]) && slowness.slow(row);
+    const bool slow =
+        rest[row * rest_fields + rest_can_sleep] > 0 && (restless.empty() || !restless[row]) && slowness.slow(row);
     time = slow ? std::min(Scalar(double(time) + dt), enough) : Scalar(0);
     some |= time >= enough;
   }
@@ -123,7 +124,8 @@ std::uint32_t Sleepers::wake_marked(WorldState& state) {
   std::uint32_t woke = 0;
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
     if (!state.asleep(row) || !awake_[root(row)]) continue;
-    for (const RestField field : {rest_quiet_time, rest_asleep, rest_stirred}) state.tables.set(Buffer::rest, row, field, 0);
+    for (const RestField field : {rest_quiet_time, rest_asleep, rest_stirred})
+      state.tables.set(Buffer::rest, row, field, 0);
     woke++;
   }
   if (woke > 0) state.count_rest();
@@ -134,7 +136,9 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
                       const StepSettings& settings, std::span<const std::uint32_t> labels, StepReport& report) {
   labels_ = labels;
   const bool single = state.tables.precision() == Precision::f32;
-  const double wanted = settings.sleep_time, sleep_time = single ? double(normal<float>(wanted)) : normal<double>(wanted);  // as in the table
+  // as in the table
+  const double wanted = settings.sleep_time,
+               sleep_time = single ? double(normal<float>(wanted)) : normal<double>(wanted);
   const bool some = single ? count_time<float>(state, moved, before, dt, restless_, settings)
                            : count_time<double>(state, moved, before, dt, restless_, settings);
   if (!moved.empty()) {
@@ -152,7 +156,8 @@ void Sleepers::follow(WorldState& state, std::span<const std::uint32_t> moved, c
 std::uint32_t Sleepers::choose(WorldState& state, std::span<const std::uint32_t> moved, double sleep_time) {
   build(state);
   for (const std::uint32_t row : moved)
-    if (!state.stands(row) && state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time) awake_[root(row)] = true;
+    if (!state.stands(row) && state.tables.get(Buffer::rest, row, rest_quiet_time) < sleep_time)
+      awake_[root(row)] = true;
   mark_kept_awake(state);
   if (together_ && std::ranges::find(awake_, true) != awake_.end()) return 0;
   return lay_down(state, moved);

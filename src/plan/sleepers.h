@@ -1,5 +1,6 @@
-// Who sleeps (docs/sleeping.md): whole islands, once all of their bodies have been slow for a time, until something wakes them. Decided on the
-// host from the tables, whatever the places of the stages, so it is the same for all of them.
+// Who sleeps (docs/sleeping.md): whole islands, once all of their bodies have been slow for a time, until something
+// wakes them. Decided on the host from the tables, whatever the places of the stages, so it is the same for all of
+// them.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -45,7 +46,8 @@ class Idle {
  private:
   static std::uint32_t count_points(const WorldState& state) {
     std::uint32_t sum = 0;
-    for (std::uint32_t row = 1; row < state.contact_rows(); row++) sum += std::uint32_t(state.tables.get(Buffer::contact, row, 3));
+    for (std::uint32_t row = 1; row < state.contact_rows(); row++)
+      sum += std::uint32_t(state.tables.get(Buffer::contact, row, 3));
     return sum;
   }
 
@@ -55,20 +57,21 @@ class Idle {
 
 class Sleepers {
  public:
-  /// Before the contacts of a step: wakes the islands of bodies that the host has changed, and those that touch or are joined to one that stands. Returns
-  /// how many bodies woke.
+  /// Before the contacts of a step: wakes the islands of bodies that the host has changed, and those that touch or are
+  /// joined to one that stands. Returns how many bodies woke.
   std::uint32_t wake_stirred(WorldState& state);
   /// The same of all that sleep.
   std::uint32_t wake_all(WorldState& state);
   /// With the contacts of a step: wakes the islands of these bodies.
   std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
-  /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep. `before`: the poses that
-  /// the step began with; null where velocities tell enough, of bodies in flight. `labels`: by body row the lowest row of its island,
-  /// where a device has found them; empty: they are found here. Reports who sleeps.
+  /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep.
+  /// `before`: the poses that the step began with; null where velocities tell enough, of bodies in flight. `labels`: by
+  /// body row the lowest row of its island, where a device has found them; empty: they are found here. Reports who
+  /// sleeps.
   void follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
               const StepSettings& settings, std::span<const std::uint32_t> labels, StepReport& report);
-  /// What the next `follow` is to know: by body row who is not at rest, however slow (empty: nobody), and whether all bodies act on each
-  /// other, so that they sleep together or not at all.
+  /// What the next `follow` is to know: by body row who is not at rest, however slow (empty: nobody), and whether all
+  /// bodies act on each other, so that they sleep together or not at all.
   void disturb(std::span<const char> restless, bool together) {
     restless_ = restless;
     together_ = together;

@@ -70,8 +70,8 @@ double size_of(const WorldState& state, const JointRecord& joint) {
   return size;
 }
 
-/// What holds two bodies together: the means of the pins in each, and the sum of a b^T over the pins about these and over
-/// the axes that joints keep parallel.
+/// What holds two bodies together: the means of the pins in each, and the sum of a b^T over the pins about these and
+/// over the axes that joints keep parallel.
 struct Held {
   Eigen::Vector3d mean_a = Eigen::Vector3d::Zero(), mean_b = Eigen::Vector3d::Zero();
   Eigen::Matrix3d together = Eigen::Matrix3d::Zero();

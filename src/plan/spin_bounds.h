@@ -6,8 +6,8 @@
 
 namespace pcphys {
 
-/// From above, of a body's spin and of how much the last sub-step changed it, as if it turned about the axis of its least moment: spares
-/// most bodies the turn into their frame. Squared [1/s^2].
+/// From above, of a body's spin and of how much the last sub-step changed it, as if it turned about the axis of its
+/// least moment: spares most bodies the turn into their frame. Squared [1/s^2].
 template <class Scalar> class SpinBounds {
  public:
   explicit SpinBounds(const Tables& t)

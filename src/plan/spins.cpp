@@ -14,7 +14,8 @@ namespace {
 /// Whether contacts held a body of the tree in the last step.
 template <class Scalar> bool was_touched(const Tables& t, std::span<const TreeNode> tree) {
   const Scalar* phases = t.data<Scalar>(Buffer::motion) + 7;
-  return std::ranges::any_of(tree, [&](const TreeNode& node) { return phases[node.body * reals_of(Buffer::motion)] > 0; });
+  return std::ranges::any_of(tree,
+                             [&](const TreeNode& node) { return phases[node.body * reals_of(Buffer::motion)] > 0; });
 }
 
 /// Whether contacts could hold one in this step.
@@ -40,24 +41,27 @@ bool at_limit(const WorldState& state, std::span<const TreeNode> tree) {
     const Vec3 impulse = state.tables.get3(Buffer::joint_impulse, node.joint, 4);
     if (freedom.kind == AngleFreedom::Kind::cone_twist) return impulse != Vec3{};
     const Vec3 low = freedom.lower, high = freedom.upper;
-    return (low.x < high.x && impulse.x != 0) || (low.y < high.y && impulse.y != 0) || (low.z < high.z && impulse.z != 0);
+    return (low.x < high.x && impulse.x != 0) || (low.y < high.y && impulse.y != 0) ||
+           (low.z < high.z && impulse.z != 0);
   });
 }
 
 /// How much the last sub-step changed the spin of one of its bodies, at most [rad/s]; 0 where that is below `least`.
 template <class Scalar>
-double largest_change(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree, double least) {
+double largest_change(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree,
+                      double least) {
   double change = 0;
   for (const TreeNode& node : tree)
     if (bounds.change(node.body) > least * least && state.responds(node.body))
-      change = std::max(change, 2 * length(state.spin_of(node.body, state.tables.get3(Buffer::velocity_parts, node.body, 4))));
+      change = std::max(change,
+                        2 * length(state.spin_of(node.body, state.tables.get3(Buffer::velocity_parts, node.body, 4))));
   return change;
 }
 
 /// What a tree that nothing touches needs for its whips.
 template <class Scalar>
-std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree, double h,
-                             std::uint8_t highest) {
+std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& bounds, std::span<const TreeNode> tree,
+                             double h, std::uint8_t highest) {
   if (was_touched<Scalar>(state.tables, tree)) return 0;
   const double most = constants::largest_give / h;
   const std::uint8_t octave = octave_for(largest_change(state, bounds, tree, most), most, highest);
@@ -65,14 +69,16 @@ std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& 
 }
 
 template <class Scalar>
-void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
+void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+          std::vector<Wanted>& wanted) {
   const SpinBounds<Scalar> bounds(state.tables);
   const double spin_most = constants::largest_joint_turn / h;
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.front().flipped) continue;  // turns on a pivot
     // what swings on something that does not give way bends limits as a pull does (plan/pulls.h)
-    const bool whirls = !state.responds(tree.front().body) && !was_touched<Scalar>(state.tables, tree) && has_limits(state, tree);
+    const bool whirls =
+        !state.responds(tree.front().body) && !was_touched<Scalar>(state.tables, tree) && has_limits(state, tree);
     const double most = whirls ? std::sqrt(constants::largest_give) / h : spin_most;
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;

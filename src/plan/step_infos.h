@@ -9,7 +9,8 @@ namespace pcphys {
 
 class StepInfos {
  public:
-  /// Those of all octaves, of `precision`: InfoOf<float> or InfoOf<double>, phase_count of each octave. `octaves`: those in use, as bits.
+  /// Those of all octaves, of `precision`: InfoOf<float> or InfoOf<double>, phase_count of each octave. `octaves`:
+  /// those in use, as bits.
   const void* fill(Precision precision, const InfoInputs& from, std::uint32_t octaves) {
     if (precision != precision_ || !(from == from_)) {
       filled_ = 0;

@@ -86,8 +86,8 @@ std::string to_text(const StepPlan& plan) {
     text += line + (e.barrier ? "  B\n" : "\n");
   }
   if (const TransferBytes all = transfer_bytes(plan); all.up + all.down > 0)
-    text +=
-        "transfers: up to " + std::to_string(all.up) + " bytes to the device, " + std::to_string(all.down) + " bytes from it\n";
+    text += "transfers: up to " + std::to_string(all.up) + " bytes to the device, " + std::to_string(all.down) +
+            " bytes from it\n";
   for (const LeftOut& l : plan.left_out) text += "left out: " + l.what + ", since " + l.why + "\n";
   return text;
 }

@@ -85,8 +85,8 @@ std::uint16_t path_kind(const TreeNodes& nodes, std::uint32_t a, std::uint32_t b
   return std::uint16_t(Colouring::first_leading + (idle * 4 + turns * 2 + within) * (most + 1) * (most + 1) + length);
 }
 
-std::uint32_t pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks, std::span<const std::uint32_t> ends,
-                         std::vector<std::uint32_t>& out) {
+std::uint32_t pack_paths(const TreeNodes& nodes, std::uint32_t width, std::uint32_t blocks,
+                         std::span<const std::uint32_t> ends, std::vector<std::uint32_t>& out) {
   assert(width <= widest && ends.size() >= std::size_t{2} * blocks * width);
   const auto end = [&](std::uint32_t block, std::uint32_t lane, std::uint32_t side) {
     return ends[(std::size_t{block} * 2 + side) * width + lane];

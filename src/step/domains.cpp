@@ -9,7 +9,9 @@ namespace {
 bool of_contacts(Domain domain) {
   return domain == Domain::contact || domain == Domain::free_contact || domain == Domain::tree_contact;
 }
-bool of_joints(Domain domain) { return domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint; }
+bool of_joints(Domain domain) {
+  return domain == Domain::joint || domain == Domain::free_joint || domain == Domain::tree_joint;
+}
 
 }  // namespace
 

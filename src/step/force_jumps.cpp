@@ -12,13 +12,17 @@ bool of_moment(const OwnKernel& k) {
 }
 bool changed(const OwnKernel& k) { return !k.parameters_before.empty() && k.parameters_before != k.parameters; }
 
-/// What the library gives to kernels, in this order: gravity, then h of those of each sub-step and of those of each step.
+/// What the library gives to kernels, in this order: gravity, then h of those of each sub-step and of those of each
+/// step.
 template <class Scalar> void fill(std::byte* given, Vec3 gravity, double h, double step) {
   const Scalar values[5] = {Scalar(gravity.x), Scalar(gravity.y), Scalar(gravity.z), Scalar(h), Scalar(step)};
   std::memcpy(given, values, sizeof values);
 }
-std::size_t place_in_given(const OwnKernel& k, const OwnArgument& a) { return a.name != "h" ? 0 : k.once_a_step ? 4 : 3; }
-template <class Scalar> Vec3 difference(std::span<const std::byte> now, std::span<const std::byte> before, std::size_t place) {
+std::size_t place_in_given(const OwnKernel& k, const OwnArgument& a) {
+  return a.name != "h" ? 0 : k.once_a_step ? 4 : 3;
+}
+template <class Scalar>
+Vec3 difference(std::span<const std::byte> now, std::span<const std::byte> before, std::size_t place) {
   Scalar a[3], b[3];
   std::memcpy(a, now.data() + place, sizeof a);
   std::memcpy(b, before.data() + place, sizeof b);
@@ -33,8 +37,8 @@ void ForceJumps::forget(OwnKernels::Ordered kernels) {
   for (const auto& k : kernels) k->parameters_before.clear();
 }
 
-void ForceJumps::act(WorldState& s, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, double h, double step,
-                     Runner& runner) {
+void ForceJumps::act(WorldState& s, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, double h,
+                     double step, Runner& runner) {
   const bool jump = std::ranges::any_of(kernels, [](const auto& k) { return of_moment(*k) && changed(*k); });
   const bool forces = std::ranges::any_of(kernels, [](const auto& k) { return k->writes(Buffer::force); });
   if (!jump || !forces || s.last_substep == 0) return;
@@ -49,7 +53,8 @@ void ForceJumps::act(WorldState& s, OwnKernels::Ordered kernels, std::span<const
   for (const std::uint32_t row : bodies) {
     const std::size_t place = row * s.tables.row_bytes(Buffer::force);
     if (row == 0) continue;  // pads
-    s.kick(row, s.tables.get(Buffer::motion, row, 3) * by(new_, old_, place), by(new_, old_, place + 4 * s.tables.real_bytes()));
+    s.kick(row, s.tables.get(Buffer::motion, row, 3) * by(new_, old_, place),
+           by(new_, old_, place + 4 * s.tables.real_bytes()));
   }
 }
 
@@ -72,8 +77,8 @@ void ForceJumps::put_back(WorldState& s) const {
   for (const Kept& kept : kept_) std::ranges::copy(kept.bytes, s.tables.bytes(kept.buffer).data());
 }
 
-void ForceJumps::evaluate(WorldState& s, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, bool before,
-                          std::vector<std::byte>& forces) {
+void ForceJumps::evaluate(WorldState& s, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies,
+                          bool before, std::vector<std::byte>& forces) {
   for (const bool once_a_step : {true, false})  // in the order of plans
     for (const auto& k : kernels)
       if (of_moment(*k) && k->once_a_step == once_a_step) run(s, *k, bodies, before);
@@ -91,7 +96,8 @@ void ForceJumps::run(WorldState& s, const OwnKernel& k, std::span<const std::uin
       columns[i] = s.tables.bytes(a.buffer).data() + a.offset + (a.single ? a.row_bytes : 0);
       strides[i] = a.single ? 0 : a.row_bytes;
     } else {  // loops read it alone
-      columns[i] = const_cast<std::byte*>(a.given ? given_ + place_in_given(k, a) * k.real_bytes : parameters + a.place);
+      columns[i] =
+          const_cast<std::byte*>(a.given ? given_ + place_in_given(k, a) * k.real_bytes : parameters + a.place);
     }
   }
   const bool of_bodies = k.table == Table::body;

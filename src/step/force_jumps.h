@@ -1,9 +1,9 @@
 // Forces of the host's own that jump between two steps, since the host changed a parameter of a kernel that makes them.
 //
-// The stored velocity lags half a sub-step, which the old force would have filled (docs/integrate.md): it moves by half a kick of what
-// the force changes by, as where the host changes gravity or a constant force (WorldState::kick). So the kernels of that moment run
-// twice at the pose of now, with the parameters of before and with those of now, and what they wrote goes back. On the CPU, wherever
-// their stage is: the bits are the same, and only steps after a change pay.
+// The stored velocity lags half a sub-step, which the old force would have filled (docs/integrate.md): it moves by half
+// a kick of what the force changes by, as where the host changes gravity or a constant force (WorldState::kick). So the
+// kernels of that moment run twice at the pose of now, with the parameters of before and with those of now, and what
+// they wrote goes back. On the CPU, wherever their stage is: the bits are the same, and only steps after a change pay.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -17,8 +17,9 @@ namespace pcphys {
 
 class ForceJumps {
  public:
-  /// Before the kernels of a step: the old force until now, the new one from now on, of the bodies of these rows. `h`: the sub-step, of `step`.
-  /// What pairs, joints with their bodies and kernels without a C++ side make is not looked at: it jumps half a sub-step early.
+  /// Before the kernels of a step: the old force until now, the new one from now on, of the bodies of these rows. `h`:
+  /// the sub-step, of `step`. What pairs, joints with their bodies and kernels without a C++ side make is not looked
+  /// at: it jumps half a sub-step early.
   void act(WorldState& state, OwnKernels::Ordered kernels, std::span<const std::uint32_t> bodies, double h, double step,
            Runner& runner);
   /// The step was made.

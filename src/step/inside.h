@@ -200,14 +200,17 @@ struct Stepper::Inside {
 
   void record_events(const WorldState& s) {
     if (!EventRecorder::wanted(settings)) return;
-    const AlignedBytes* poses = plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
+    const AlignedBytes* poses =
+        plan->flight && settings.body_events ? recorder.kept_poses() : runner.before(Buffer::pose);
     recorder.record(settings, s, {poses, detector}, schedule.moving_bodies());
   }
 
   /// The step was made: what is at rest may fall asleep.
   void let_sleep(WorldState& s, double dt) {
-    const AlignedBytes* before = plan->flight ? nullptr : runner.before(Buffer::pose);  // in flight some places keep none
-    const std::span<const std::uint32_t> labels = finds_islands() ? schedule.islands.labels() : std::span<const std::uint32_t>();
+    // in flight some places keep none
+    const AlignedBytes* before = plan->flight ? nullptr : runner.before(Buffer::pose);
+    const std::span<const std::uint32_t> labels =
+        finds_islands() ? schedule.islands.labels() : std::span<const std::uint32_t>();
     unrest.find(s, own.ordered(), runner);
     sleepers.disturb(unrest.rows(), unrest.together(own.ordered()));
     sleepers.follow(s, schedule.moving_bodies(), before, dt, settings, labels, report);
@@ -313,7 +316,8 @@ struct Stepper::Inside {
     if (const std::uint32_t rows = schedule.trees.nodes().rows();
         (wanted.tree_contacts || wanted.tree_joints) && s.tables.rows(Table::node) != rows)
       s.tables.resize(Table::node, rows);
-    if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows()) s.tables.resize(Table::touch, s.contact_rows());
+    if (wanted.touches && s.tables.rows(Table::touch) != s.contact_rows())
+      s.tables.resize(Table::touch, s.contact_rows());
     list_islands(s, wanted);
     plan = &plans.find(wanted, own.ordered());
     if (ok = runner.bind(settings, *plan, s, schedule, wanted.shapes); !ok) return ok;
@@ -326,7 +330,8 @@ struct Stepper::Inside {
     if (ok = runner.run(s, schedule, fill(s, dt), report, &looks); !ok) return ok;
     if (wanted.islands && !schedule.islands.take())
       return Error{ErrorCode::device_error,
-                   "The device found no end of the islands of this world; find them on the CPU (StepSettings::islands). The world "
+                   "The device found no end of the islands of this world; find them on the CPU "
+                   "(StepSettings::islands). The world "
                    "is as it was."};
     tighter = once_more(octaves.find_tighter(s, schedule.trees.forest()));
     if (tighter) return {};
@@ -356,7 +361,8 @@ struct Stepper::Inside {
     report.pairs = found.pairs;
     report.contacts = found.contacts;
     report.points = found.points;
-    report.joints_as_rows = schedule.joints.constraints() - schedule.joints.with_trees() - schedule.trees.free_springs();
+    report.joints_as_rows =
+        schedule.joints.constraints() - schedule.joints.with_trees() - schedule.trees.free_springs();
     report.tree_contacts_as_rows = schedule.contacts.beside_trees();
     report.colours = found.contacts ? schedule.contacts.colours() : 0;
   }

@@ -1,5 +1,5 @@
-// The order in which pair kernels and reductions visit rows, and in which a body sums what its joints give it: that of ids, so that
-// sums do not depend on where rows stand.
+// The order in which pair kernels and reductions visit rows, and in which a body sums what its joints give it: that of
+// ids, so that sums do not depend on where rows stand.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -34,8 +34,8 @@ class OwnLists {
   /// Joints with a body that goes, by octave: three by three their row and those of bodies a and b.
   std::vector<std::uint32_t> joined;
   Range joined_range(unsigned octave) const { return joined_ranges_[octave]; }
-  /// Of each body row where its ends of joints begin, and of the last where they end; then the ends, in the order of the joints' ids:
-  /// twice the joint's row, and 1 more where the body is its b.
+  /// Of each body row where its ends of joints begin, and of the last where they end; then the ends, in the order of
+  /// the joints' ids: twice the joint's row, and 1 more where the body is its b.
   std::vector<std::uint32_t> body_joints;
   std::uint64_t version = 0;
   Neighbours near;

@@ -16,14 +16,16 @@ PCPHYS_KERNEL(pc_gather_forces,
                 torque = pc_given_torque;
               })
 // where some make forces once a step and others in each sub-step: what those have made, for these to begin with
-PCPHYS_KERNEL(pc_hold_forces, (PC_IN(Vec3) force, PC_IN(Vec3) torque, PC_OUT(Vec3) pc_held_force, PC_OUT(Vec3) pc_held_torque), {
-  pc_held_force = force;
-  pc_held_torque = torque;
-})
-PCPHYS_KERNEL(pc_take_forces, (PC_IN(Vec3) pc_held_force, PC_IN(Vec3) pc_held_torque, PC_OUT(Vec3) force, PC_OUT(Vec3) torque), {
-  force = pc_held_force;
-  torque = pc_held_torque;
-})
+PCPHYS_KERNEL(pc_hold_forces,
+              (PC_IN(Vec3) force, PC_IN(Vec3) torque, PC_OUT(Vec3) pc_held_force, PC_OUT(Vec3) pc_held_torque), {
+                pc_held_force = force;
+                pc_held_torque = torque;
+              })
+PCPHYS_KERNEL(pc_take_forces,
+              (PC_IN(Vec3) pc_held_force, PC_IN(Vec3) pc_held_torque, PC_OUT(Vec3) force, PC_OUT(Vec3) torque), {
+                force = pc_held_force;
+                torque = pc_held_torque;
+              })
 
 Buffer add_column(WorldState& s, const char* name, const char* unit) {
   const std::array<std::byte, 4 * 8> zero{};
@@ -63,7 +65,8 @@ void stop_gathering(WorldState& s) {
   sum_all(s);
 }
 
-/// Kernels that went with a stepper's list of them, or with the stepper: what they held up falls, and nobody gathers forces for them.
+/// Kernels that went with a stepper's list of them, or with the stepper: what they held up falls, and nobody gathers
+/// forces for them.
 void forget_gone(WorldState& s) {
   if (std::erase_if(s.kernel_holds, [](const auto& hold) { return hold.expired(); }) == 0) return;
   if (s.kernel_holds.empty() && s.gathered) stop_gathering(s);
@@ -96,8 +99,8 @@ Status check_written(const WorldState& s, const OwnKernel& k) {
 }
 
 bool reads_finite(const WorldState& s, const OwnKernel& k) {
-  return std::ranges::none_of(k.arguments,
-                              [&](const OwnArgument& a) { return a.of_property() && !a.writes() && bad_row(s, a) != 0; });
+  return std::ranges::none_of(
+      k.arguments, [&](const OwnArgument& a) { return a.of_property() && !a.writes() && bad_row(s, a) != 0; });
 }
 
 Status OwnWork::check_written(const WorldState& s) const {
@@ -119,9 +122,10 @@ OwnWork::Makers OwnWork::makers() const {
 
 Status OwnWork::check(const WorldState& s) const {
   if (of_another(s))
-    return Error{ErrorCode::bad_argument,
-                 "This stepper has kernels of another world (Stepper::add_kernel); step that one, use another stepper, or "
-                 "take them away (Stepper::remove_kernels)."};
+    return Error{
+        ErrorCode::bad_argument,
+        "This stepper has kernels of another world (Stepper::add_kernel); step that one, use another stepper, or "
+        "take them away (Stepper::remove_kernels)."};
   if (removals_ == s.removals) return {};
   for (const auto& k : ordered())
     if (!k->of_library())

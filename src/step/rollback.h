@@ -22,8 +22,9 @@ class Rollback {
 
   /// What was kept in this step, or null.
   const AlignedBytes* before(Buffer buffer) const {
-    return copies_.size() > std::size_t(buffer) && copies_[std::size_t(buffer)].kept ? &copies_[std::size_t(buffer)].bytes
-                                                                                     : nullptr;
+    return copies_.size() > std::size_t(buffer) && copies_[std::size_t(buffer)].kept
+               ? &copies_[std::size_t(buffer)].bytes
+               : nullptr;
   }
 
   std::size_t memory_bytes() const {

@@ -18,11 +18,14 @@ using Clock = std::chrono::steady_clock;
 bool takes_part(Place place, const StepSettings& s, const OwnKernels& own) {
   if (s.integrate == place || s.joints == place || s.impulses == place) return true;
   if (place == Place::gl && s.sleep && s.islands == place) return true;
-  return std::ranges::any_of(own.ordered(), [&](const auto& k) { return place == Place::gl ? !k->in_cpp() : k->body.empty(); });
+  return std::ranges::any_of(own.ordered(),
+                             [&](const auto& k) { return place == Place::gl ? !k->in_cpp() : k->body.empty(); });
 }
 
 /// Where kernels raise a flag, the last real of a quad.
-std::uint32_t quad_of(std::string_view flag) { return std::ranges::find(properties(), flag, &PropertySchema::name)->offset / 4; }
+std::uint32_t quad_of(std::string_view flag) {
+  return std::ranges::find(properties(), flag, &PropertySchema::name)->offset / 4;
+}
 std::uint32_t struck_quad() {
   static const std::uint32_t quad = quad_of("some_struck");
   return quad;
@@ -56,8 +59,9 @@ Status Runner::prepare(const StepSettings& s, Precision precision, const OwnKern
     Device& d = at(place);
     d.takes_part = takes_part(place, s, own);
     if (!d.takes_part) continue;
-    const bool fits = d.backend && d.precision == precision &&
-                      (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
+    const bool fits =
+        d.backend && d.precision == precision &&
+        (place == Place::cpu ? d.lanes == s.lanes : d.index == s.device && d.host_context == s.host_context);
     if (fits) continue;
     bring_home();
     bound_ = {};
@@ -214,7 +218,8 @@ Status Runner::kernels(const Call& call, WorldState& state, const void* infos) {
   }
   if (watched_ && entry.again == 0) return run_watched(entry.place, runs, state);
   if (entry.again == 0) return backend.run(runs);
-  if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};  // later entries count on its barrier
+  // later entries count on its barrier
+  if (runs[0].ranges.empty()) return entry.barrier ? backend.run(runs) : Status{};
   const Buffer flag = stage(entry) == Stage::islands ? Buffer::island_labels : Buffer::velocity_parts;
   for (std::uint32_t i = 0; i < entry.again; i++) {
     const Result<bool> more = backend.take_flag(flag, struck_quad());
@@ -235,7 +240,8 @@ std::span<const Range> Runner::narrowed_to(const Narrowed& n) const {
 }
 
 /// What impacts have sent elsewhere may meet others there: contacts that act from now on have their rows made.
-Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos, const KernelRun& impacts) {
+Status Runner::collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos,
+                             const KernelRun& impacts) {
   Backend& backend = *at(entry.place).backend;
   if (entry.place == Place::gl)
     for (const Buffer buffer : {Buffer::pose, Buffer::motion, Buffer::delta})
@@ -278,7 +284,8 @@ double Runner::substep_of(const PlanEntry& entry, const void* infos, Precision p
   return double(static_cast<const InfoOf<float>*>(infos)[index].h);
 }
 
-Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report) {
+Status Runner::call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos,
+                    StepReport& report) {
   const PlanEntry& entry = *call.entry;
   if (entry.kind == PlanEntry::Kind::collide) {
     if (!collider_) return {};  // the table holds what was found
@@ -297,8 +304,8 @@ Status Runner::call(const Call& call, WorldState& state, const Schedule& schedul
   return upload(entry.buffer, state, schedule, report);
 }
 
-/// A step with kernels of the host's own may have to be made again. What it leaves on the device is not among what it overwrites on
-/// the host; where the device alone has it as it was, a copy of that stays there.
+/// A step with kernels of the host's own may have to be made again. What it leaves on the device is not among what it
+/// overwrites on the host; where the device alone has it as it was, a copy of that stays there.
 Status Runner::keep_left(WorldState& state) {
   kept_there_.clear();
   if (!may_be_undone_) return {};
@@ -313,7 +320,8 @@ Status Runner::keep_left(WorldState& state) {
   return {};
 }
 
-Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider) {
+Status Runner::run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report,
+                   Collider* collider) {
   left_ = false;
   collider_ = collider;
   if (!fetched_) return std::exchange(fetched_, Status{});
@@ -332,7 +340,8 @@ Status Runner::run(WorldState& state, const Schedule& schedule, const void* info
   if (bound_.timings) began = Clock::now();
   for (const Call& c : calls_) {
     if (Status ok = call(c, state, schedule, infos, report); !ok) return ok;
-    if (c.ends) tracer_.substep({state, schedule, *bound_.plan, *c.entry, *at(Place::cpu).backend}, infos, info_index(*c.entry));
+    if (c.ends)
+      tracer_.substep({state, schedule, *bound_.plan, *c.entry, *at(Place::cpu).backend}, infos, info_index(*c.entry));
     if (!c.last) continue;
     if (gl_)
       if (Status done = at(Place::gl).backend->finish(); !done) return done;

@@ -45,10 +45,13 @@ class Runner final : Keeper {
   Status prepare(const StepSettings& settings, Precision precision, const OwnKernels& own = {});
   /// Everything a plan binds: lists and colours packed for their backends, buffers attached. Where nothing of it has
   /// changed since the last step, that step's bindings stand. The plan stays where it is until another one is bound.
-  /// `strays`: what goes further than it was looked for has the step made anew; it is undone then, also where all bodies are in flight.
-  Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule, bool strays = false);
+  /// `strays`: what goes further than it was looked for has the step made anew; it is undone then, also where all
+  /// bodies are in flight.
+  Status bind(const StepSettings& settings, const StepPlan& plan, WorldState& state, Schedule& schedule,
+              bool strays = false);
   /// Runs the plan that was bound.
-  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report, Collider* collider = nullptr);
+  Status run(WorldState& state, const Schedule& schedule, const void* infos, StepReport& report,
+             Collider* collider = nullptr);
   /// From now on with a look at what each kernel of the host's own wrote: the first that makes of finite numbers others
   /// is an error (check_written).
   void watch(bool kernels) { watched_ = kernels; }
@@ -144,14 +147,16 @@ class Runner final : Keeper {
   std::uint32_t lanes(Place place, Domain domain, const Schedule& schedule);
   Status attach_table(Place place, Buffer buffer, WorldState& state);
   /// Finds calls_, and what undo must find.
-  void prepare_calls(const StepPlan& plan, bool timings, bool strays, const WorldState& state, const Schedule& schedule);
+  void prepare_calls(const StepPlan& plan, bool timings, bool strays, const WorldState& state,
+                     const Schedule& schedule);
   void add_run(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   void narrow(const PlanEntry& entry);
   void add_own(const PlanEntry& entry, const WorldState& state, const Schedule& schedule);
   Status call(const Call& call, WorldState& state, const Schedule& schedule, const void* infos, StepReport& report);
   double substep_of(const PlanEntry& entry, const void* infos, Precision precision) const;
   Status kernels(const Call& call, WorldState& state, const void* infos);
-  Status collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos, const KernelRun& impacts);
+  Status collide_again(const PlanEntry& entry, bool last, WorldState& state, const void* infos,
+                       const KernelRun& impacts);
   Status keep_left(WorldState& state);
   Status run_watched(Place place, std::span<const KernelRun> runs, WorldState& state);
   bool keeps(Buffer buffer) const;

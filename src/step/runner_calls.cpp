@@ -12,8 +12,8 @@ std::uint32_t Runner::lanes(Place place, Domain domain, const Schedule& schedule
   return at(place).backend->width_for(domain, side_by_side(domain, schedule));
 }
 
-/// Rows that stand need not be made, and what has no impact no look at one: on the host such runs go over the blocks of the others.
-/// Where joints have sent nothing together, runs that are for what they have are left out on any place.
+/// Rows that stand need not be made, and what has no impact no look at one: on the host such runs go over the blocks of
+/// the others. Where joints have sent nothing together, runs that are for what they have are left out on any place.
 void Runner::narrow(const PlanEntry& entry) {
   using To = Narrowed::To;
   if (entry.own) return;
@@ -67,7 +67,8 @@ void Runner::add_own(const PlanEntry& entry, const WorldState& state, const Sche
                    state.tables.rows(k.table) - 1});
 }
 
-void Runner::prepare_calls(const StepPlan& plan, bool timings, bool strays, const WorldState& state, const Schedule& schedule) {
+void Runner::prepare_calls(const StepPlan& plan, bool timings, bool strays, const WorldState& state,
+                           const Schedule& schedule) {
   calls_.clear();
   runs_.clear();
   ranges_.clear();
@@ -80,8 +81,9 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, bool strays, cons
     if (clocked) calls_.back().last = true;
     const bool traced = traces() && before && ends_substep(*before, entry);
     if (traced) calls_.back().ends = true;
-    const bool joins = kernel && !traced && before && before->kind == PlanEntry::Kind::kernel && before->place == entry.place &&
-                       before->again == 0 && entry.again == 0 && !clocked && !plan.flight && !(gl_ && entry.place == Place::cpu);
+    const bool joins = kernel && !traced && before && before->kind == PlanEntry::Kind::kernel &&
+                       before->place == entry.place && before->again == 0 && entry.again == 0 && !clocked &&
+                       !plan.flight && !(gl_ && entry.place == Place::cpu);
     if (!joins) calls_.push_back({&entry, std::uint32_t(runs_.size()), 0, false});
     if (entry.kind == PlanEntry::Kind::collide) {
       collides = calls_.size() - 1;
@@ -91,7 +93,8 @@ void Runner::prepare_calls(const StepPlan& plan, bool timings, bool strays, cons
       add_run(entry, state, schedule);
       calls_.back().count++;
       narrow(entry);
-      if (!narrowed_.empty()) calls_[collides].narrowed_count = std::uint32_t(narrowed_.size()) - calls_[collides].narrowed;
+      if (!narrowed_.empty())
+        calls_[collides].narrowed_count = std::uint32_t(narrowed_.size()) - calls_[collides].narrowed;
     }
     before = &entry;
   }

@@ -30,7 +30,8 @@ void foresee(const WorldState& state, std::span<const Standing> standings, std::
 void ColouredSlots::colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
                            std::span<const Standing> standings, std::uint32_t kind, const TreeNodes& trees) {
   if (ends.size() > 1)
-    state.tables.precision() == Precision::f32 ? foresee<float>(state, standings, works_) : foresee<double>(state, standings, works_);
+    state.tables.precision() == Precision::f32 ? foresee<float>(state, standings, works_)
+                                               : foresee<double>(state, standings, works_);
   rows_.clear();
   for (std::uint32_t row = 1; row < ends.size(); row++)
     if (state.sleepers == 0 || !(state.asleep(ends[row][0]) || state.asleep(ends[row][1]))) rows_.push_back(row);
@@ -45,8 +46,8 @@ void ColouredSlots::colour(const WorldState& state, std::span<const std::array<s
   colour_rows(state, ends, kind, trees, alone);
 }
 
-void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::uint32_t kind,
-                                const TreeNodes& trees, std::span<const char> alone) {
+void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
+                                std::uint32_t kind, const TreeNodes& trees, std::span<const char> alone) {
   trees_ = &trees;
   follow(state, trees);
   const bool some_trees = trees.rows() > 1;
@@ -66,7 +67,8 @@ void ColouredSlots::colour_rows(const WorldState& state, std::span<const std::ar
     priorities_.push_back(priority(std::min(ids[0], ids[1]), std::max(ids[0], ids[1]), kind));
     const ContactWork work = works_.empty() ? ContactWork{} : works_[row];
     const bool within_trees = some_trees && (alone.empty() || !alone[row]);
-    const std::uint16_t path = within_trees ? path_kind(trees, ends[row][0], ends[row][1], work.turns, work.idle) : std::uint16_t{0};
+    const std::uint16_t path =
+        within_trees ? path_kind(trees, ends[row][0], ends[row][1], work.turns, work.idle) : std::uint16_t{0};
     kinds_.push_back(path > 0 ? path : work.later);
     if (!some_trees) continue;
     beside_trees_ += trees.is_large(ends[row][0]) || trees.is_large(ends[row][1]);
@@ -131,7 +133,8 @@ void TreeSlots::build(const WorldState& state, const Nets& nets) {
   std::vector<JointLink> links, joints;  // joints: without springs between two points, and those that others stand for
   for (std::uint32_t row = 1; row < state.joints.size(); row++) {
     const JointRecord& joint = state.joints[row];
-    links.push_back({row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index, joint.def.yields()});
+    links.push_back(
+        {row, state.body_ids.row(joint.body_a), state.body_ids.row(joint.body_b), joint.index, joint.def.yields()});
     if (!joint.spring && !solved_.stands_back(row) && !state.asleep(joint)) joints.push_back(links.back());
   }
   std::vector<double> masses(state.bodies.size());
@@ -211,7 +214,8 @@ void TreeSlots::pack(std::uint32_t width) {
   version_++;
   octaves_.clear();
   if (!of_bodies_.octaves.empty())
-    for (std::size_t i = 0; i < forest_.trees(); i++) octaves_.push_back(of_bodies_.octaves[forest_.tree(i).back().body]);
+    for (std::size_t i = 0; i < forest_.trees(); i++)
+      octaves_.push_back(of_bodies_.octaves[forest_.tree(i).back().body]);
   pack_trees(forest_, shapes_, width, blocks_, {octaves_, of_bodies_.count});
 }
 

@@ -23,7 +23,8 @@ namespace pcphys {
 /// What a contact's work will be like. It orders contacts within a colour, and changes no result.
 struct ContactWork {
   bool turns = false, idle = false;  // see path_kind
-  std::uint16_t later = 0;           // of one in no tree: 1 where its shapes will come together, 2 where they are apart for good
+  // of one in no tree: 1 where its shapes will come together, 2 where they are apart for good
+  std::uint16_t later = 0;
 };
 
 /// Constraints of one domain, grouped into colours: two of one colour share no body that moves.
@@ -31,11 +32,13 @@ class ColouredSlots {
  public:
   /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ. Of all
   /// rows but 0, or of those in `rows`.
-  /// Constraints with bodies of `trees` come first, and whole trees are what answers them; but not those that are set in `alone`.
+  /// Constraints with bodies of `trees` come first, and whole trees are what answers them; but not those that are set
+  /// in `alone`.
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
               std::span<const Standing> standings, std::uint32_t kind, const TreeNodes& trees);
-  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends, std::span<const std::uint32_t> rows,
-              std::uint32_t kind, const TreeNodes& trees, std::span<const char> alone);
+  void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
+              std::span<const std::uint32_t> rows, std::uint32_t kind, const TreeNodes& trees,
+              std::span<const char> alone);
   /// Which octave each body is of, by row; the span lasts until the next call.
   void group(OctaveOf of_bodies);
   /// Lays the colours out for a backend of `width` lanes; nothing to do if they stand so already.
@@ -52,8 +55,12 @@ class ColouredSlots {
     return std::span(slots_.ranges).subspan(std::size_t{octave} * colours(), colours());
   }
   /// Those of constraints with a body of a tree, and the others.
-  std::span<const Range> tree_ranges(unsigned octave) const { return ranges(octave).first(colouring_.leading_colours()); }
-  std::span<const Range> free_ranges(unsigned octave) const { return ranges(octave).subspan(colouring_.leading_colours()); }
+  std::span<const Range> tree_ranges(unsigned octave) const {
+    return ranges(octave).first(colouring_.leading_colours());
+  }
+  std::span<const Range> free_ranges(unsigned octave) const {
+    return ranges(octave).subspan(colouring_.leading_colours());
+  }
   /// How many of them have a body of a tree.
   std::uint32_t with_trees() const { return colouring_.offsets()[colouring_.leading_colours()]; }
   bool any_with_trees() const { return colouring_.leading_colours() > 0; }

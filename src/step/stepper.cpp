@@ -12,12 +12,14 @@
 namespace pcphys {
 
 const char* name(Timer timer) {
-  constexpr const char* names[] = {"forces", "broad", "narrow", "plan", "upload", "integrate", "joints", "impulses", "download"};
+  constexpr const char* names[] = {"forces",    "broad",  "narrow",   "plan",    "upload",
+                                   "integrate", "joints", "impulses", "download"};
   return names[std::size_t(timer)];
 }
 
 Status Stepper::Inside::check_kernel(const WorldState& s, const OwnKernel& kernel) {
-  const Place stage_place = std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
+  const Place stage_place =
+      std::array{settings.integrate, settings.joints, settings.impulses}[std::size_t(kernel.stage)];
   const Place place = kernel.body.empty() ? Place::cpu : !kernel.in_cpp() ? Place::gl : stage_place;
   if (place == Place::cpu) return {};
   if (Status ok = prepare(s.tables.precision()); !ok) return ok;
@@ -50,7 +52,8 @@ Stepper::Stepper(const StepSettings& settings) try : inside_(std::make_unique<In
   detail::no_memory_for("Stepper");
 }
 Stepper::~Stepper() {
-  if (inside_ && inside_->running) detail::misuse("A Stepper was destroyed while it makes a step; no callback may do that.");
+  if (inside_ && inside_->running)
+    detail::misuse("A Stepper was destroyed while it makes a step; no callback may do that.");
 }
 Stepper::Stepper(Stepper&& other) noexcept {
   if (other.inside_ && other.inside_->running)
@@ -207,7 +210,8 @@ void Stepper::Inside::update_structure(WorldState& s) {
   fourth.forget();
 }
 
-/// Where there is no memory for a step the world is as it was, and what the stepper holds of it is made anew by the next.
+/// Where there is no memory for a step the world is as it was, and what the stepper holds of it is made anew by the
+/// next.
 void Stepper::Inside::step_within_memory(World& world, double dt) {
   WorldState& s = world.state();
   const double last_substep = s.last_substep, soft_substep = s.soft_substep, settling = s.settling;
@@ -329,7 +333,8 @@ Status Stepper::set_parameter(std::string_view kernel, const KernelParameter& pa
   if (Status ok = changeable(); !ok) return ok;
   OwnKernel* k = inside().own.find(kernel);
   if (!k)
-    return Error{ErrorCode::unknown_name, "There is no kernel \"" + std::string(kernel) + "\"; Stepper::add_kernel adds one."};
+    return Error{ErrorCode::unknown_name,
+                 "There is no kernel \"" + std::string(kernel) + "\"; Stepper::add_kernel adds one."};
   if (k->parameters_before.empty()) k->parameters_before = k->parameters;
   return set(*k, parameter);
 } catch (...) {

@@ -6,8 +6,8 @@
 
 namespace pcphys {
 
-/// Sets PlanEntry::bytes. `schedule`: of this world, its structure followed; here it is given the contacts of the world's last step, and
-/// laid out as a device wants it.
+/// Sets PlanEntry::bytes. `schedule`: of this world, its structure followed; here it is given the contacts of the
+/// world's last step, and laid out as a device wants it.
 void measure_transfers(StepPlan& plan, const WorldState& state, Schedule& schedule);
 
 }  // namespace pcphys

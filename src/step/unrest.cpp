@@ -8,7 +8,8 @@ namespace {
 
 /// Whether a row's value is another than before; zero has no sign, as in the hash.
 bool changed(const WorldState& s, const OwnArgument& a, const AlignedBytes& before, std::uint32_t row) {
-  const std::size_t real = s.tables.real_bytes(), at = row * s.tables.row_bytes(a.buffer), size = number_bytes(a.type, real);
+  const std::size_t real = s.tables.real_bytes(), at = row * s.tables.row_bytes(a.buffer),
+                    size = number_bytes(a.type, real);
   const std::byte *now = s.tables.bytes(a.buffer).data() + at, *then = before.data() + at;
   const std::uint32_t count = components(a.type);
   if (std::memcmp(now, then, count * size) == 0) return false;
@@ -51,10 +52,12 @@ void Unrest::find(const WorldState& s, OwnKernels::Ordered kernels, const Runner
   find_behind(kernels);
   for (const auto& k : kernels)
     for (const OwnArgument& a : k->arguments) {
-      if (!a.of_property() || !a.writes() || std::ranges::find(behind_, a.buffer) == behind_.end() || !runner.before(a.buffer))
+      if (!a.of_property() || !a.writes() || std::ranges::find(behind_, a.buffer) == behind_.end() ||
+          !runner.before(a.buffer))
         continue;
       const bool of_row = a.table == Table::body || a.table == Table::joint;
-      if (of_row ? !made_anew(kernels, a.buffer) : s.tables.rows(a.table) == 2 && !total_of_bodies(*k)) mark(s, a, runner);
+      if (of_row ? !made_anew(kernels, a.buffer) : s.tables.rows(a.table) == 2 && !total_of_bodies(*k))
+        mark(s, a, runner);
     }
 }
 
@@ -67,7 +70,8 @@ bool Unrest::together(OwnKernels::Ordered kernels) {
 /// Bodies, or what others move them by.
 bool Unrest::moves(const OwnKernel& k) const {
   return !k.of_library() && std::ranges::any_of(k.arguments, [&](const OwnArgument& a) {
-    return a.of_property() && a.writes() && (!is_own(a.buffer) || std::ranges::find(behind_, a.buffer) != behind_.end());
+    return a.of_property() && a.writes() &&
+           (!is_own(a.buffer) || std::ranges::find(behind_, a.buffer) != behind_.end());
   });
 }
 

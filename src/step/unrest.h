@@ -1,5 +1,5 @@
-// Bodies that are not at rest, however slow they are, since what kernels of the host's own make forces of changes from step to step
-// (docs/sleeping.md).
+// Bodies that are not at rest, however slow they are, since what kernels of the host's own make forces of changes from
+// step to step (docs/sleeping.md).
 #pragma once
 #include <cstdint>
 #include <span>
@@ -17,9 +17,9 @@ class Unrest {
   bool wakes_all(const WorldState& state, OwnKernels::Ordered kernels);
   /// Whether a kernel of pairs moves bodies: they sleep together or not at all.
   bool together(OwnKernels::Ordered kernels);
-  /// After a step: of whom it changed a property of the host's own that goes on from what it was and that forces or velocities follow
-  /// from: of bodies themselves, of joints their bodies, of a table of one row all bodies. (What some kernel writes anew is as old as
-  /// what that one reads.)
+  /// After a step: of whom it changed a property of the host's own that goes on from what it was and that forces or
+  /// velocities follow from: of bodies themselves, of joints their bodies, of a table of one row all bodies. (What some
+  /// kernel writes anew is as old as what that one reads.)
   void find(const WorldState& state, OwnKernels::Ordered kernels, const Runner& runner);
   /// By body row; empty: all are at rest.
   std::span<const char> rows() const { return rows_; }

@@ -40,11 +40,13 @@ World::World(const WorldDef& def) try : state_(std::make_unique<WorldState>(def)
   detail::no_memory_for("World");
 }
 World::~World() {
-  if (state_ && state_->stepping) detail::misuse("A World was destroyed while a step of it runs; no callback may do that.");
+  if (state_ && state_->stepping)
+    detail::misuse("A World was destroyed while a step of it runs; no callback may do that.");
   if (state_) walk_in_debug(*state_, "~World");
 }
 World::World(World&& other) noexcept {
-  if (other.state_ && other.state().stepping) detail::misuse("A World was moved while a step of it runs; no callback may do that.");
+  if (other.state_ && other.state().stepping)
+    detail::misuse("A World was moved while a step of it runs; no callback may do that.");
   state_ = std::move(other.state_);
 }
 World& World::operator=(World&& other) noexcept {

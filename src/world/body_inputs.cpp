@@ -31,7 +31,8 @@ Status World::set_mass_properties(BodyId body, const MassProperties& mass) try {
   const std::uint32_t row = s.body_ids.row(body.index);
   const bool rotates = s.rotates(row);
   if (Status ok = check(mass, rotates); !ok) return ok;
-  if (s.bodies[row].kind != BodyKind::dynamic) return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
+  if (s.bodies[row].kind != BodyKind::dynamic)
+    return Error{ErrorCode::bad_argument, "Only dynamic bodies have a mass."};
   const Vec3 w = s.angular_velocity(row), moments = rotates ? mass.moments : Vec3{};
   if (Status ok = check_spin(moments, w); !ok) return ok;
   s.change(row);
@@ -84,7 +85,8 @@ Status World::set_drag(BodyId body, double linear, double angular) try {
 Result<std::vector<ShapeDef>> World::shapes(BodyId body) const try {
   if (!valid(body)) return stale("body");
   std::vector<ShapeDef> defs;
-  for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes) defs.push_back(state().shapes[shape].def);
+  for (std::uint32_t shape : state().bodies[state().body_ids.row(body.index)].shapes)
+    defs.push_back(state().shapes[shape].def);
   return defs;
 } catch (...) {
   return caught();

@@ -1,5 +1,5 @@
-// Bodies that were destroyed since contacts were found. Their contacts go all at once, when somebody next looks: a body may go without a
-// look at any contact.
+// Bodies that were destroyed since contacts were found. Their contacts go all at once, when somebody next looks: a body
+// may go without a look at any contact.
 #pragma once
 #include <cstdint>
 #include <unordered_map>
@@ -58,7 +58,9 @@ class ContactDrops {
       if (row < rows_before) now[row] = gone;
     return now;
   }
-  std::size_t memory_bytes() const { return bytes_of(dropped_, spare_, before_) + spare_.size() * allocated(2 * sizeof(void*)); }
+  std::size_t memory_bytes() const {
+    return bytes_of(dropped_, spare_, before_) + spare_.size() * allocated(2 * sizeof(void*));
+  }
 
  private:
   std::uint32_t row_before(std::uint32_t row) const {
@@ -66,9 +68,10 @@ class ContactDrops {
     return moved == before_.end() ? row : moved->second;
   }
 
-  std::vector<std::uint32_t> dropped_;                       // rows of then
+  std::vector<std::uint32_t> dropped_;  // rows of then
   std::vector<std::unordered_map<std::uint32_t, std::uint32_t>::node_type> spare_;
-  std::unordered_map<std::uint32_t, std::uint32_t> before_;  // by row of now, of bodies that were moved, their row of then
+  // by row of now, of bodies that were moved, their row of then
+  std::unordered_map<std::uint32_t, std::uint32_t> before_;
 };
 
 }  // namespace pcphys

@@ -53,12 +53,14 @@ std::vector<Contact> World::contacts() const try {
   found.reserve(s.contact_rows() - 1);
   for (std::uint32_t row = 1; row < s.contact_rows(); row++) {
     const auto [a, b] = s.contacts.ends[row];
-    Contact contact{
-        s.body_ids.id<BodyId>(s.bodies[a].index), s.body_ids.id<BodyId>(s.bodies[b].index), t.get3(Buffer::contact, row, 0), {}};
+    Contact contact{s.body_ids.id<BodyId>(s.bodies[a].index),
+                    s.body_ids.id<BodyId>(s.bodies[b].index),
+                    t.get3(Buffer::contact, row, 0),
+                    {}};
     const Vec3 centre = s.pose(a).position;
     for (std::uint32_t i = 0; i < std::uint32_t(t.get(Buffer::contact, row, 3)); i++)
-      contact.points.push_back({centre + t.get3(Buffer::contact, row, 4 + 4 * i), t.get(Buffer::contact, row, 7 + 4 * i),
-                                t.get(Buffer::contact, row, 20 + i)});
+      contact.points.push_back({centre + t.get3(Buffer::contact, row, 4 + 4 * i),
+                                t.get(Buffer::contact, row, 7 + 4 * i), t.get(Buffer::contact, row, 20 + i)});
     found.push_back(std::move(contact));
   }
   return found;

@@ -35,11 +35,12 @@ Error nowhere(std::size_t points, const char* where) {
 
 /// The point that is farthest by some measure.
 template <class Measure> Point farthest(const std::vector<Point>& points, const Measure& measure) {
-  return *std::max_element(points.begin(), points.end(), [&](const Point& p, const Point& q) { return measure(p) < measure(q); });
+  return *std::max_element(points.begin(), points.end(),
+                           [&](const Point& p, const Point& q) { return measure(p) < measure(q); });
 }
 
-/// How far the points reach apart, and from a line and a plane through some that are far apart. Each is at least half of
-/// what the points are wide in some direction, and none depends on how they are turned.
+/// How far the points reach apart, and from a line and a plane through some that are far apart. Each is at least half
+/// of what the points are wide in some direction, and none depends on how they are turned.
 struct Reach {
   double apart, from_line, from_plane;
 
@@ -73,7 +74,8 @@ Status check_reach(const Reach& reach, std::size_t points) {
 Status check_points(std::span<const Vec3> points) {
   for (const Vec3& p : points)
     if (Status ok = check_finite(p, "position of a point of a hull"); !ok) return ok;
-  if (points.size() < 4) return flat("A hull has " + std::to_string(points.size()) + (points.size() == 1 ? " point" : " points"));
+  if (points.size() < 4)
+    return flat("A hull has " + std::to_string(points.size()) + (points.size() == 1 ? " point" : " points"));
   return {};
 }
 
@@ -121,8 +123,8 @@ Polygon around(std::vector<Flat> points, double tolerance) {
 Point normal_of(const std::vector<Point>& vertices, const Polygon& polygon) {
   Point sum = Point::Zero();
   for (std::size_t i = 0; i < polygon.size(); i++)
-    sum +=
-        (vertices[polygon[i]] - vertices[polygon[0]]).cross(vertices[polygon[(i + 1) % polygon.size()]] - vertices[polygon[0]]);
+    sum += (vertices[polygon[i]] - vertices[polygon[0]])
+               .cross(vertices[polygon[(i + 1) % polygon.size()]] - vertices[polygon[0]]);
   return sum.normalized();
 }
 
@@ -133,7 +135,8 @@ struct Plane {
   std::array<std::uint32_t, 3> triangle;
 };
 
-std::vector<Plane> planes_of(const std::vector<Point>& points, const std::vector<std::uint32_t>& triangles, double tolerance) {
+std::vector<Plane> planes_of(const std::vector<Point>& points, const std::vector<std::uint32_t>& triangles,
+                             double tolerance) {
   Point inside = Point::Zero();
   for (std::uint32_t i : triangles) inside += points[i] / double(triangles.size());
   std::vector<Plane> planes;
@@ -153,7 +156,8 @@ std::vector<Plane> planes_of(const std::vector<Point>& points, const std::vector
 Polygon apart(const std::vector<Point>& points, const Polygon& vertices, double tolerance) {
   Polygon kept;
   for (std::uint32_t v : vertices)
-    if (std::none_of(kept.begin(), kept.end(), [&](std::uint32_t k) { return (points[k] - points[v]).norm() < tolerance; }))
+    if (std::none_of(kept.begin(), kept.end(),
+                     [&](std::uint32_t k) { return (points[k] - points[v]).norm() < tolerance; }))
       kept.push_back(v);
   return kept;
 }
@@ -202,7 +206,8 @@ bool closed(const std::vector<Polygon>& faces) {
          });
 }
 
-/// How far some vertex lies outside of a face: those that go one after the other may each have been near what the last one left.
+/// How far some vertex lies outside of a face: those that go one after the other may each have been near what the last
+/// one left.
 double sticks_out(const std::vector<Point>& points, const Polygon& vertices, const std::vector<Polygon>& faces) {
   double most = 0;
   for (const Polygon& face : faces) {
@@ -251,8 +256,8 @@ Result<Solid> solid_of(const std::vector<Point>& points, double extent) {
                "The points of a hull are too close together for faces between them; weld them first."};
 }
 
-/// Refuses a solid that is too flat across one of its faces, or too large, whichever way it is turned. In no direction is
-/// it much less wide than across that face. `size`: of its unit of length [m].
+/// Refuses a solid that is too flat across one of its faces, or too large, whichever way it is turned. In no direction
+/// is it much less wide than across that face. `size`: of its unit of length [m].
 Status check_width(const Solid& solid, double size, std::size_t points) {
   double width = 1e300, apart = 0;
   for (const Polygon& face : solid.faces) {
@@ -265,9 +270,10 @@ Status check_width(const Solid& solid, double size, std::size_t points) {
     for (const Point& q : solid.vertices) apart = std::max(apart, (p - q).norm());
   if (!(size * width >= least_width(size * apart))) return nowhere(points, "lie in one plane");
   if (size * apart > 2 * constants::largest_extent)
-    return Error{ErrorCode::degenerate_shape, "The " + std::to_string(points) +
-                                                  " points of a hull lie more than 2e6 m apart; a shape's half extents may "
-                                                  "be up to 1e6 m."};
+    return Error{ErrorCode::degenerate_shape,
+                 "The " + std::to_string(points) +
+                     " points of a hull lie more than 2e6 m apart; a shape's half extents may "
+                     "be up to 1e6 m."};
   return {};
 }
 
@@ -363,7 +369,9 @@ Result<Hull> make_hull(std::span<const Vec3> points) try {
   return caught();
 }
 
-std::span<const Vec3> Hull::vertices() const { return data_ ? std::span<const Vec3>(data_->vertices) : std::span<const Vec3>(); }
+std::span<const Vec3> Hull::vertices() const {
+  return data_ ? std::span<const Vec3>(data_->vertices) : std::span<const Vec3>();
+}
 std::size_t Hull::face_count() const { return data_ ? data_->normals.size() : 0; }
 std::span<const std::uint32_t> Hull::face(std::size_t i) const { return data_->face(i); }
 double Hull::volume() const { return data_ ? data_->volume : 0; }

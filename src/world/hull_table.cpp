@@ -31,7 +31,8 @@ void add_face(const HullData& hull, std::size_t face, std::vector<double>& faces
   double area = 0;
   for (std::size_t k = 0; k < count; k++) {
     const Vec3 a = corners[k] - centre, b = corners[(k + 1) % count] - centre;
-    const double ax = dot(a, e1), ay = dot(a, e2), dx = dot(b, e1) - ax, dy = dot(b, e2) - ay, side = std::hypot(dx, dy);
+    const double ax = dot(a, e1), ay = dot(a, e2), dx = dot(b, e1) - ax, dy = dot(b, e2) - ay,
+                 side = std::hypot(dx, dy);
     const double nx = dy / side, ny = -dx / side;
     sides.insert(sides.end(), {ax, ay, nx, ny, nx * ax + ny * ay});
     area += 0.5 * (ax * dy - ay * dx);

@@ -1,5 +1,6 @@
 // Hands out indices, smallest free first, and generations: which id an object gets depends only on the
-// sequence of calls. An index whose generations are used up is not used again. Also keeps each index's row in its table.
+// sequence of calls. An index whose generations are used up is not used again. Also keeps each index's row in its
+// table.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -56,14 +57,16 @@ class IdPool {
     std::push_heap(free_.begin(), free_.end(), std::greater<>());
   }
   template <class Id> bool valid(Id id) const {
-    return id.index < slots_.size() && slots_[id.index].alive && slots_[id.index].generation == id.generation && id.world == world_;
+    return id.index < slots_.size() && slots_[id.index].alive && slots_[id.index].generation == id.generation &&
+           id.world == world_;
   }
   template <class Id> Id id(std::uint32_t index) const { return {index, slots_[index].generation, world_}; }
   std::uint32_t row(std::uint32_t index) const { return slots_[index].row; }
   void set_row(std::uint32_t index, std::uint32_t row) { slots_[index].row = row; }
   bool alive(std::uint32_t index) const { return slots_[index].alive; }
   std::uint32_t generation(std::uint32_t index) const { return slots_[index].generation; }
-  void set_generation(std::uint32_t index, std::uint32_t generation) { slots_[index].generation = generation; }  // for tests
+  // for tests
+  void set_generation(std::uint32_t index, std::uint32_t generation) { slots_[index].generation = generation; }
   std::uint32_t size() const { return std::uint32_t(slots_.size()); }  // indices ever used
   std::uint32_t count() const { return alive_; }
   const std::vector<std::uint32_t>& free_indices() const { return free_; }  // as the heap has them

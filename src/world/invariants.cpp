@@ -222,7 +222,8 @@ class Walk {
                  "is kept apart from another, and one of them is gone"))
         return;
       if (!holds(why.any(), "body id", high, "is kept apart from another for no reason")) return;
-      const auto first = std::ranges::lower_bound(marks.pairs, pair), last = std::ranges::upper_bound(marks.pairs, pair);
+      const auto first = std::ranges::lower_bound(marks.pairs, pair),
+                 last = std::ranges::upper_bound(marks.pairs, pair);
       if (!holds(std::size_t(last - first) == why.joints, "body id", high,
                  "is kept apart from another by more or fewer joints than there are"))
         return;
@@ -281,7 +282,8 @@ class Walk {
     }
   }
 
-  /// Impulses of joints may pass what numbers hold, where masses near the largest hang on them: the next step freezes what they act on.
+  /// Impulses of joints may pass what numbers hold, where masses near the largest hang on them: the next step freezes
+  /// what they act on.
   void walk_numbers() {
     for (std::size_t k = 0; k < table_buffer_count; k++) {
       const Buffer buffer = Buffer(k);
@@ -293,7 +295,8 @@ class Walk {
     const std::size_t reals = t_.row_bytes(buffer) / sizeof(Scalar), all = t_.rows(t_.table_of(buffer)) * reals;
     const Scalar* const first = t_.data<Scalar>(buffer);
     const Scalar* const bad = std::find_if_not(first, first + all, [](Scalar x) { return std::isfinite(x); });
-    holds(bad == first + all, schema(buffer).name, std::size_t(bad - first) / reals, "holds a number that is not finite");
+    holds(bad == first + all, schema(buffer).name, std::size_t(bad - first) / reals,
+          "holds a number that is not finite");
   }
 
   double rest(std::uint32_t row, RestField field) const { return t_.get(Buffer::rest, row, field); }
@@ -321,7 +324,9 @@ class Walk {
   /// What acts on what sleeps sleeps too, unless one of both was stirred: the next step wakes it.
   void walk_islands() {
     if (s_.sleepers == 0 || !is_here(Buffer::rest)) return;
-    const auto of = [&](std::uint32_t row) { return rest_of(s_.stands(row), rest(row, rest_stirred) > 0, s_.asleep(row)); };
+    const auto of = [&](std::uint32_t row) {
+      return rest_of(s_.stands(row), rest(row, rest_stirred) > 0, s_.asleep(row));
+    };
     const auto is_closed = [&](std::uint32_t a, std::uint32_t b) { return rest_together(of(a), of(b)); };
     for (std::uint32_t row = 1; row < s_.joints.size(); row++) {
       const JointRecord& joint = s_.joints[row];

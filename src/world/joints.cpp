@@ -76,7 +76,8 @@ Status check(JointDef& def) {
   if (ok) ok = check(def.motor);
   if (ok) ok = check(def.spring);
   if (ok && !(def.largest_force > 0))
-    ok = Error{ErrorCode::bad_joint, "The largest force of a joint must be above 0 [N], or infinite: then its pin never gives way."};
+    ok = Error{ErrorCode::bad_joint,
+               "The largest force of a joint must be above 0 [N], or infinite: then its pin never gives way."};
   if (ok && def.yields()) ok = check_finite(def.largest_force, "largest force of a joint");
   return ok;
 }
@@ -97,14 +98,10 @@ template <class AnyId> std::vector<AnyId> all_alive(const WorldState& s, bool sp
 
 bool World::valid(JointId joint) const { return is_alive(state(), joint, false); }
 bool World::valid(SpringId spring) const { return is_alive(state(), spring, true); }
-std::vector<JointId> World::joints() const try {
-  return all_alive<JointId>(state(), false);
-} catch (...) {
+std::vector<JointId> World::joints() const try { return all_alive<JointId>(state(), false); } catch (...) {
   detail::no_memory_for("World::joints");
 }
-std::vector<SpringId> World::springs() const try {
-  return all_alive<SpringId>(state(), true);
-} catch (...) {
+std::vector<SpringId> World::springs() const try { return all_alive<SpringId>(state(), true); } catch (...) {
   detail::no_memory_for("World::springs");
 }
 
@@ -117,17 +114,21 @@ Status check_ends(const World& world, BodyId a, BodyId b, const char* what) {
   const WorldState& s = world.state();
   if (!world.valid(a) || !world.valid(b)) return stale("body");
   if (a == b)
-    return Error{ErrorCode::bad_joint,
-                 std::string("A ") + what + " needs two different bodies; use the world's ground() to hold a body in place."};
-  if (s.bodies[s.body_ids.row(a.index)].kind != BodyKind::dynamic && s.bodies[s.body_ids.row(b.index)].kind != BodyKind::dynamic)
-    return Error{ErrorCode::bad_joint,
-                 std::string("Neither body of the ") + what + " is dynamic, so it can do nothing; at least one must be."};
+    return Error{
+        ErrorCode::bad_joint,
+        std::string("A ") + what + " needs two different bodies; use the world's ground() to hold a body in place."};
+  if (s.bodies[s.body_ids.row(a.index)].kind != BodyKind::dynamic &&
+      s.bodies[s.body_ids.row(b.index)].kind != BodyKind::dynamic)
+    return Error{ErrorCode::bad_joint, std::string("Neither body of the ") + what +
+                                           " is dynamic, so it can do nothing; at least one must be."};
   return {};
 }
 
 std::uint32_t new_row(WorldState& s, const JointDef& def, const std::optional<SpringDef>& spring) {
   s.make_room(0, 1, 0);
-  const auto joints_of = [&](BodyId body) -> std::vector<std::uint32_t>& { return s.bodies[s.body_ids.row(body.index)].joints; };
+  const auto joints_of = [&](BodyId body) -> std::vector<std::uint32_t>& {
+    return s.bodies[s.body_ids.row(body.index)].joints;
+  };
   for (const BodyId body : {def.a, def.b}) make_room(joints_of(body));
   if (!def.collide) s.no_collide[WorldState::pair_key(def.a.index, def.b.index)].joints++;
   // nothing needs memory from here on
@@ -151,7 +152,8 @@ Result<JointId> World::create_joint(const JointDef& given) try {
   if (ok) ok = check(def);
   for (const BodyId body : {def.a, def.b})
     if (ok && !state().rotates(state().body_ids.row(body.index)))
-      ok = Error{ErrorCode::bad_joint, "A body that does not rotate (BodyDef::rotates) takes no joint; create one that does, or a spring."};
+      ok = Error{ErrorCode::bad_joint,
+                 "A body that does not rotate (BodyDef::rotates) takes no joint; create one that does, or a spring."};
   if (!ok) return ok.error();
   return state().joint_ids.id<JointId>(new_row(state(), def, {}));
 } catch (...) {
@@ -294,7 +296,8 @@ double World::spring_energy() const {
     if (!r.driven()) continue;
     const Pose a = s.pose(s.body_ids.row(r.body_a)), b = s.pose(s.body_ids.row(r.body_b));
     if (r.spring) {
-      const double x = length(transform(a, r.spring->anchor_a) - transform(b, r.spring->anchor_b)) - r.spring->rest_length;
+      const double x =
+          length(transform(a, r.spring->anchor_a) - transform(b, r.spring->anchor_b)) - r.spring->rest_length;
       sum += 0.5 * r.spring->stiffness * x * x;
       continue;
     }

@@ -41,8 +41,9 @@ Eigen::Matrix3d world_inertia(const MassProperties& m, const Eigen::Quaterniond&
 Result<MassProperties> mass_properties(const ShapeDef& shape, double density) try {
   if (Status ok = check(shape); !ok) return ok.error();
   if (!(density >= constants::smallest_mass && density <= constants::largest_mass))
-    return Error{ErrorCode::bad_mass, "A density must be above zero, between " + number(constants::smallest_mass) + " and " +
-                                          number(constants::largest_mass) + " kg/m^3; it is " + number(density) + " kg/m^3."};
+    return Error{ErrorCode::bad_mass, "A density must be above zero, between " + number(constants::smallest_mass) +
+                                          " and " + number(constants::largest_mass) + " kg/m^3; it is " +
+                                          number(density) + " kg/m^3."};
   switch (shape.kind) {
     case ShapeKind::sphere: return of_sphere(shape.size.x, density);
     case ShapeKind::capsule: return of_capsule(shape.size.x, shape.size.y, density);

@@ -10,7 +10,8 @@ double World::kinetic_energy() const {
   for (std::uint32_t row = 1; row < s.bodies.size(); row++) {
     if (s.bodies[row].kind != BodyKind::dynamic) continue;
     const Vec3 v = s.velocity(row);
-    sum += 0.5 * s.tables.get(Buffer::mass, row, 3) * dot(v, v) + 0.5 * dot(s.angular_velocity(row), s.momentum_of_rotation(row));
+    sum += 0.5 * s.tables.get(Buffer::mass, row, 3) * dot(v, v) +
+           0.5 * dot(s.angular_velocity(row), s.momentum_of_rotation(row));
   }
   return sum;
 }

@@ -18,15 +18,18 @@ template <class T> void make_room(std::vector<T>& values, std::size_t more = 1) 
 }
 
 /// Of an allocation, with what allocators commonly add: many small ones take more by that than by what they hold.
-inline std::size_t allocated(std::size_t bytes) { return bytes == 0 ? 0 : std::max<std::size_t>(32, (bytes + 8 + 15) / 16 * 16); }
+inline std::size_t allocated(std::size_t bytes) {
+  return bytes == 0 ? 0 : std::max<std::size_t>(32, (bytes + 8 + 15) / 16 * 16);
+}
 
-/// What values take beside themselves: columns with what stands in them, and what has a memory_bytes() of its own. Of columns it is the
-/// room that they have.
+/// What values take beside themselves: columns with what stands in them, and what has a memory_bytes() of its own. Of
+/// columns it is the room that they have.
 template <class... Values> std::size_t bytes_of(const Values&... values);
 
 template <class Value> std::size_t bytes_of_one(const Value& value) {
-  constexpr bool is_class = requires { value.memory_bytes(); }, is_column = requires { value.capacity(), value.data(); },
-                 is_map = requires { value.bucket_count(); };
+  constexpr bool is_class = requires { value.memory_bytes(); }
+  , is_column = requires { value.capacity(), value.data(); }
+  , is_map = requires { value.bucket_count(); };
   std::size_t sum = 0;
   if constexpr (is_class) sum = value.memory_bytes();
   if constexpr (is_column) sum = allocated(value.capacity() * sizeof(*value.data()));
@@ -38,7 +41,9 @@ template <class Value> std::size_t bytes_of_one(const Value& value) {
   if constexpr (requires { value.first, value.second; }) sum = bytes_of(value.first, value.second);
   return sum;
 }
-template <class... Values> std::size_t bytes_of(const Values&... values) { return (std::size_t{0} + ... + bytes_of_one(values)); }
+template <class... Values> std::size_t bytes_of(const Values&... values) {
+  return (std::size_t{0} + ... + bytes_of_one(values));
+}
 
 class AlignedBytes {
  public:

@@ -25,8 +25,8 @@ Status resize_own(WorldState& s, const OwnTable& table, std::uint32_t rows) {
   try {
     s.tables.resize(table.table, rows + 1);
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::buffer_full, "There is no memory for " + std::to_string(rows) + " rows of the table \"" + table.name +
-                                             "\"; it has " + std::to_string(before - 1) + " as before."};
+    return Error{ErrorCode::buffer_full, "There is no memory for " + std::to_string(rows) + " rows of the table \"" +
+                                             table.name + "\"; it has " + std::to_string(before - 1) + " as before."};
   }
   if (before == 2 && rows != 1) s.removals++;  // kernels may read or total its one row
   return {};

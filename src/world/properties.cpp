@@ -63,11 +63,12 @@ template <class Id> bool by_id(const WorldState& s, Id id, Found& found) {
   return true;
 }
 Error unknown(std::string_view name) {
-  return {ErrorCode::unknown_name,
-          "There is no property " + quoted(name) + "; docs/properties.md lists those of the library, World::properties all."};
+  return {ErrorCode::unknown_name, "There is no property " + quoted(name) +
+                                       "; docs/properties.md lists those of the library, World::properties all."};
 }
 
-/// Words of C++ and GLSL, and types of kernels, that a property could be called; of GLSL's samplers and images see check_name.
+/// Words of C++ and GLSL, and types of kernels, that a property could be called; of GLSL's samplers and images see
+/// check_name.
 constexpr std::string_view reserved_words[] = {"Mask",        "Mat3",         "Quad",
                                                "Quaternion",  "Real",         "Sym3",
                                                "Vec3",        "active",       "alignas",
@@ -138,7 +139,8 @@ Status check_name(std::string_view name, const char* what) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   bool fits = !name.empty() && letter(name[0]) && name.find("__") == name.npos && name.size() <= 64;
   for (const char c : name) fits &= letter(c) || (c >= '0' && c <= '9') || c == '_';
-  for (const std::string_view reserved : {std::string_view("gl_"), own_prefix, std::string_view("PC_"), std::string_view("io_")})
+  for (const std::string_view reserved :
+       {std::string_view("gl_"), own_prefix, std::string_view("PC_"), std::string_view("io_")})
     fits &= !name.starts_with(reserved);
   if (!fits)
     return Error{ErrorCode::bad_argument,
@@ -156,8 +158,8 @@ Status check_name(std::string_view name, const char* what) {
 }
 
 Error taken(std::string_view name, const char* what, std::string_view by) {
-  return {ErrorCode::name_taken,
-          "There is a " + std::string(what) + " " + quoted(name) + " already" + std::string(by) + "; choose another name."};
+  return {ErrorCode::name_taken, "There is a " + std::string(what) + " " + quoted(name) + " already" + std::string(by) +
+                                     "; choose another name."};
 }
 
 namespace {
@@ -181,8 +183,9 @@ Result<std::uint32_t> find_row(const WorldState& s, const Found& f, RowOf object
                              : f.table == Table::joint ? RowOf::Kind::joint
                                                        : RowOf::Kind::row;
   if (object.kind != wanted)
-    return Error{ErrorCode::bad_argument, "The property " + quoted(f.info.name) + " is of the table " + quoted(f.info.table) +
-                                              "; ask with a " + kinds[std::size_t(wanted)] + "."};
+    return Error{ErrorCode::bad_argument, "The property " + quoted(f.info.name) + " is of the table " +
+                                              quoted(f.info.table) + "; ask with a " + kinds[std::size_t(wanted)] +
+                                              "."};
   if (object.kind == RowOf::Kind::row) {
     if (object.id.index == 0 || object.id.index >= s.tables.rows(f.table))
       return Error{ErrorCode::bad_argument, "The table " + quoted(f.info.table) + " has rows 1 to " +
@@ -202,7 +205,8 @@ std::string_view name(Role role) {
   return names[std::size_t(role)];
 }
 std::string_view name(PropertyType type) {
-  constexpr std::string_view names[] = {"real", "vec3", "quat", "sym3", "vec4", "mat3", "float32", "float64", "int32", "uint32"};
+  constexpr std::string_view names[] = {"real", "vec3",    "quat",    "sym3",  "vec4",
+                                        "mat3", "float32", "float64", "int32", "uint32"};
   return names[std::size_t(type)];
 }
 std::uint32_t components(PropertyType type) {
@@ -214,8 +218,8 @@ Result<Table> WorldState::table_of(TableId id) const {
   if (id == body_table) return Table::body;
   if (id == joint_table) return Table::joint;
   const std::uint32_t k = id.index - own_tables_from;
-  if (id.index < own_tables_from || k >= own.tables.size() || !own.tables[k].used || own.tables[k].generation != id.generation ||
-      id.world != id_world())
+  if (id.index < own_tables_from || k >= own.tables.size() || !own.tables[k].used ||
+      own.tables[k].generation != id.generation || id.world != id_world())
     return stale("table");
   return own.tables[k].table;
 }
@@ -242,7 +246,8 @@ Result<World::AnyProperty> World::add_property(std::string_view name, PropertyTy
   if (ok) ok = check_name(name, "property");
   if (ok) ok = check_numbers(type, initial, name, s.tables.real_bytes());
   if (ok && role > Role::host)
-    ok = Error{ErrorCode::bad_argument, "The role of a property is none that there is; use one of Role, such as Role::host."};
+    ok = Error{ErrorCode::bad_argument,
+               "The role of a property is none that there is; use one of Role, such as Role::host."};
   if (!ok) return ok.error();
   Found there;
   if (by_name(s, name, there)) return taken(name, "property", there.info.own ? "" : " among those of the library");
@@ -282,8 +287,8 @@ Result<World::AnyProperty> World::find_property(std::string_view name, PropertyT
   if (!by_name(state(), name, f)) return unknown(name);
   if (f.info.type != type)
     return Error{ErrorCode::wrong_type, "The property " + quoted(name) + " holds values of type " +
-                                            std::string(pcphys::name(f.info.type)) + ", not " + std::string(pcphys::name(type)) +
-                                            "."};
+                                            std::string(pcphys::name(f.info.type)) + ", not " +
+                                            std::string(pcphys::name(type)) + "."};
   return AnyProperty{f.id.index, f.id.generation, f.id.world};
 } catch (...) {
   return caught();

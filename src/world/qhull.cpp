@@ -29,7 +29,8 @@ std::vector<std::uint32_t> qhull_triangles(std::vector<double>& coordinates) {
   const std::unique_ptr<qhT, Free> context(new qhT());
   qhT* const qh = context.get();
   qh_zero(qh, quiet.get());
-  const int code = qh_new_qhull(qh, 3, int(coordinates.size() / 3), coordinates.data(), 0, command, nullptr, quiet.get());
+  const int code =
+      qh_new_qhull(qh, 3, int(coordinates.size() / 3), coordinates.data(), 0, command, nullptr, quiet.get());
   if (code == 0) {
     facetT* facet;
     vertexT *vertex, **vertexp;

@@ -35,7 +35,8 @@ Status check(const RagdollDef& def, const Pose& frame, Vec3 velocity) {
   for (std::size_t i = 0; i < def.bones.size(); i++) {
     const BoneDef& bone = def.bones[i];
     if (i > 0 && (bone.parent < 0 || std::size_t(bone.parent) >= i))
-      return Error{ErrorCode::bad_joint, "Bone " + std::to_string(i) + " of a ragdoll must have a parent that stands before it."};
+      return Error{ErrorCode::bad_joint,
+                   "Bone " + std::to_string(i) + " of a ragdoll must have a parent that stands before it."};
     Quat orientation;
     if (const auto mass = check(bone_body(def, bone, frame, velocity), orientation); !mass) return mass.error();
     if (i == 0) continue;

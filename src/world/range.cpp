@@ -36,7 +36,8 @@ template <class Scalar> struct Body {
   }
 };
 
-template <class Out> void collect(std::span<const std::uint32_t> bodies, std::vector<std::uint32_t>& rows, const Out& out) {
+template <class Out>
+void collect(std::span<const std::uint32_t> bodies, std::vector<std::uint32_t>& rows, const Out& out) {
   rows.clear();
   for (const std::uint32_t row : bodies)
     if (out(row)) rows.push_back(row);
@@ -51,15 +52,16 @@ template <class Scalar> bool finite(const std::byte* p, std::uint32_t count) {
 
 }  // namespace
 
-std::uint32_t find_not_finite(const Tables& tables, Buffer buffer, std::uint32_t offset, PropertyType type, std::uint32_t begin,
-                              std::uint32_t end) {
+std::uint32_t find_not_finite(const Tables& tables, Buffer buffer, std::uint32_t offset, PropertyType type,
+                              std::uint32_t begin, std::uint32_t end) {
   if (type == PropertyType::int32 || type == PropertyType::uint32) return end;
   const std::byte* const rows = tables.bytes(buffer).data() + offset;
   const std::size_t stride = tables.row_bytes(buffer);
   const bool wide = number_bytes(type, tables.real_bytes()) == 8;
   const std::uint32_t count = components(type);
   std::uint32_t row = begin;
-  while (row < end && (wide ? finite<double>(rows + row * stride, count) : finite<float>(rows + row * stride, count))) row++;
+  while (row < end && (wide ? finite<double>(rows + row * stride, count) : finite<float>(rows + row * stride, count)))
+    row++;
   return row;
 }
 

@@ -25,7 +25,8 @@ enum class Table : std::uint8_t {
 namespace place {
 #define PC_TABLE(table, doc)
 #define PC_BUFFER(table, buffer, quads, doc)
-#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc) inline constexpr std::uint32_t name = offset;
+#define PC_PROPERTY(table, buffer, offset, type, name, role, initial, unit, doc) \
+  inline constexpr std::uint32_t name = offset;
 #include "kernels/properties.inl"
 #undef PC_TABLE
 #undef PC_BUFFER
@@ -76,8 +77,9 @@ enum class Kernel : std::uint8_t {
   count
 };
 
-/// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others. joint: all that stand in
-/// no tree; free_joint and tree_joint: the same of these. net: a net of springs; row: every row of bodies; edge: two bodies that act on each other.
+/// contact: all; free_contact and tree_contact: those whose bodies stand in no tree, and the others. joint: all that
+/// stand in no tree; free_joint and tree_joint: the same of these. net: a net of springs; row: every row of bodies;
+/// edge: two bodies that act on each other.
 enum class Domain : std::uint8_t {
   body,
   contact,
@@ -97,14 +99,18 @@ inline constexpr std::size_t table_count = std::size_t(Table::count);
 inline constexpr std::size_t table_buffer_count = std::size_t(Buffer::table_buffers);
 inline constexpr std::size_t buffer_count = std::size_t(Buffer::count);
 inline constexpr std::size_t kernel_count = std::size_t(Kernel::count);
-inline constexpr std::size_t stage_count = 3;  // that are put on a place each; islands are on a device or not in the plan
+// that are put on a place each; islands are on a device or not in the plan
+inline constexpr std::size_t stage_count = 3;
 /// Whether its kernels are called element by element, not in slots of several lanes.
-constexpr bool one_by_one(Domain domain) { return domain == Domain::body || domain == Domain::row || domain == Domain::edge; }
+constexpr bool one_by_one(Domain domain) {
+  return domain == Domain::body || domain == Domain::row || domain == Domain::edge;
+}
 
 /// Whether they are of joint trees.
 constexpr bool of_trees(Domain domain) { return domain == Domain::tree || domain == Domain::tree_nodes; }
 
-/// Where a host's own property number k stands (World::add_property): behind all that kernels.inl and properties.inl name.
+/// Where a host's own property number k stands (World::add_property): behind all that kernels.inl and properties.inl
+/// name.
 constexpr Buffer own_buffer(std::size_t k) { return Buffer(buffer_count + k); }
 constexpr bool is_own(Buffer buffer) { return std::size_t(buffer) >= buffer_count; }
 /// Whether rows of some table stand in it, the host's own included.

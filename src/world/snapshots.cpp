@@ -60,7 +60,8 @@ struct Layout {
       own.emplace_back(StateRows(s, t.table, StateRows::of_snapshots), s.tables.rows(t.table));
       own_bytes += (s.tables.rows(t.table) - 1) * own.back().first.bytes();
     }
-    fixed_bytes = head_bytes + (s.bodies.size() - 1) * (4 + bodies.bytes()) + (s.joints.size() - 1) * (4 + joints.bytes()) + 4;
+    fixed_bytes =
+        head_bytes + (s.bodies.size() - 1) * (4 + bodies.bytes()) + (s.joints.size() - 1) * (4 + joints.bytes()) + 4;
     contact_bytes = sizeof(ContactKey) + sizeof(std::array<std::uint32_t, 4>) + contacts.bytes();
   }
   static constexpr std::size_t head_bytes = sizeof magic + 8 + 2 * 8 + sizeof(Vec3);
@@ -79,7 +80,8 @@ void hash_shape(Hash& hash, const ShapeRecord& shape) {
   hash.bytes(corners.data(), corners.size() * sizeof(Vec3));
 }
 
-/// Which objects and properties of the host's own a world holds, and what stays as it is of them: a snapshot fits only where this agrees.
+/// Which objects and properties of the host's own a world holds, and what stays as it is of them: a snapshot fits only
+/// where this agrees.
 std::uint64_t object_hash(const WorldState& s) {
   Hash hash;
   hash.index(std::uint32_t(s.tables.precision()));
@@ -122,7 +124,9 @@ void write_row(Writer& w, const StateRows& rows, std::uint32_t row) {
   rows.each(row, [&](const Field& f, std::size_t at) { w.put(rows.tables().bytes(f.buffer).data() + at, f.bytes); });
 }
 void read_row(Reader& r, WorldState& s, const StateRows& rows, std::uint32_t row) {
-  rows.each(row, [&](const Field& f, std::size_t at) { std::memcpy(s.tables.bytes(f.buffer).data() + at, r.take(f.bytes), f.bytes); });
+  rows.each(row, [&](const Field& f, std::size_t at) {
+    std::memcpy(s.tables.bytes(f.buffer).data() + at, r.take(f.bytes), f.bytes);
+  });
 }
 
 /// A row of a snapshot, to be looked at before it is taken.
@@ -168,13 +172,15 @@ bool is_flag(double x) { return x == 0 || x == 1; }
 /// As who sleeps is, until the host stirs it.
 bool is_still(const Look& body) {
   for (std::uint32_t c = 0; c < 3; c++)
-    if (body.at(Buffer::motion, c) != 0 || body.at(Buffer::motion, 4 + c) != 0 || body.at(Buffer::velocity_parts, c) != 0) return false;
+    if (body.at(Buffer::motion, c) != 0 || body.at(Buffer::motion, 4 + c) != 0 ||
+        body.at(Buffer::velocity_parts, c) != 0)
+      return false;
   return true;
 }
 
-/// Whether its place is in the range of numbers and its velocities are numbers, however their parts are added up. (Sums of
-/// sizes round, so places may reach twice the limit; a force that the host has given may make velocities larger than the
-/// next step takes.)
+/// Whether its place is in the range of numbers and its velocities are numbers, however their parts are added up. (Sums
+/// of sizes round, so places may reach twice the limit; a force that the host has given may make velocities larger than
+/// the next step takes.)
 bool in_range(const WorldState& s, std::uint32_t row, const Look& body) {
   double light = 0, place = 0, speed = 0, momentum = 0;
   for (std::uint32_t c = 0; c < 3; c++) {
@@ -186,9 +192,9 @@ bool in_range(const WorldState& s, std::uint32_t row, const Look& body) {
   return place < 2 * constants::largest_state && std::isfinite(speed) && std::isfinite(momentum * std::max(light, 1.0));
 }
 
-/// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, turned by quaternions of unit length, both
-/// as they are rounded and with what rounding dropped, and flags. (Impulses may be any numbers: a body that they throw beyond the range is
-/// frozen.)
+/// Whether a step could go on from it: as it leaves bodies, which are in the range of numbers, turned by quaternions of
+/// unit length, both as they are rounded and with what rounding dropped, and flags. (Impulses may be any numbers: a
+/// body that they throw beyond the range is frozen.)
 bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
   if (!body.is_finite()) return false;
   double rounded = 0, whole = 0;
@@ -205,9 +211,9 @@ bool is_state(const WorldState& s, std::uint32_t row, const Look& body) {
   const bool single = s.tables.precision() == Precision::f32;
   const auto is_normal = [&](double x) { return x == (single ? double(normal<float>(x)) : normal<double>(x)); };
   const bool freezes = body.at(Buffer::motion, place::phase) == frozen_phase;
-  return in_range(s, row, body) && is_unit(rounded) && is_unit(whole) && settling >= 0 && settling <= constants::rounds &&
-         quiet >= 0 && is_normal(quiet) && is_flag(asleep) && is_flag(stirred) && !(stands && freezes) &&
-         (asleep == 0 || (!stands && !freezes && (stirred > 0 || is_still(body))));
+  return in_range(s, row, body) && is_unit(rounded) && is_unit(whole) && settling >= 0 &&
+         settling <= constants::rounds && quiet >= 0 && is_normal(quiet) && is_flag(asleep) && is_flag(stirred) &&
+         !(stands && freezes) && (asleep == 0 || (!stands && !freezes && (stirred > 0 || is_still(body))));
 }
 
 /// Of rows that name an object each: every one once.
@@ -224,7 +230,8 @@ bool read_indices(Reader& r, const IdPool& ids, std::size_t row_bytes, std::size
 }
 
 bool is_contact(const WorldState& s, const ContactKey& key, const Look& contact) {
-  if (key.shape_a >= key.shape_b || key.shape_b >= s.shapes.size() || !s.shapes[key.shape_a].alive || !s.shapes[key.shape_b].alive)
+  if (key.shape_a >= key.shape_b || key.shape_b >= s.shapes.size() || !s.shapes[key.shape_a].alive ||
+      !s.shapes[key.shape_b].alive)
     return false;
   const std::uint32_t a = s.shapes[key.shape_a].body, b = s.shapes[key.shape_b].body;
   const auto moves = [&](std::uint32_t body) { return s.bodies[s.body_ids.row(body)].kind == BodyKind::dynamic; };
@@ -245,7 +252,9 @@ bool is_content(const WorldState& s, const Layout& layout, Reader r) {
   const auto is_closed = [&](std::uint32_t body_a, std::uint32_t body_b) {
     return rest_together(rests[s.body_ids.row(body_a)], rests[s.body_ids.row(body_b)]);
   };
-  const auto joint = [&](std::uint32_t row, const std::byte*) { return is_closed(s.joints[row].body_a, s.joints[row].body_b); };
+  const auto joint = [&](std::uint32_t row, const std::byte*) {
+    return is_closed(s.joints[row].body_a, s.joints[row].body_b);
+  };
   if (!read_indices(r, s.body_ids, layout.bodies.bytes(), s.bodies.size() - 1, body) ||
       !read_indices(r, s.joint_ids, layout.joints.bytes(), s.joints.size() - 1, joint))
     return false;
@@ -277,8 +286,10 @@ void make_room_for(WorldState& s, std::uint32_t contacts) {
 }
 
 void take_content(WorldState& s, const Layout& layout, Reader& r) {
-  for (std::size_t i = 1; i < s.bodies.size(); i++) read_row(r, s, layout.bodies, s.body_ids.row(r.get<std::uint32_t>()));
-  for (std::size_t i = 1; i < s.joints.size(); i++) read_row(r, s, layout.joints, s.joint_ids.row(r.get<std::uint32_t>()));
+  for (std::size_t i = 1; i < s.bodies.size(); i++)
+    read_row(r, s, layout.bodies, s.body_ids.row(r.get<std::uint32_t>()));
+  for (std::size_t i = 1; i < s.joints.size(); i++)
+    read_row(r, s, layout.joints, s.joint_ids.row(r.get<std::uint32_t>()));
   const auto contacts = r.get<std::uint32_t>();
   s.tables.resize(Table::contact, contacts);
   s.contacts.keys.resize(contacts);
@@ -333,7 +344,8 @@ std::vector<std::byte> World::snapshot() const try {
 Status World::restore(std::span<const std::byte> snapshot) try {
   if (Status ok = changeable(); !ok) return ok;
   WorldState& s = state();
-  const Error cut{ErrorCode::bad_snapshot, "These bytes are no whole snapshot; take them from World::snapshot, unchanged."};
+  const Error cut{ErrorCode::bad_snapshot,
+                  "These bytes are no whole snapshot; take them from World::snapshot, unchanged."};
   constexpr std::size_t sum_bytes = sizeof(std::uint64_t);
   if (snapshot.size() < Layout::head_bytes + sum_bytes) return cut;
   const std::span<const std::byte> content = snapshot.first(snapshot.size() - sum_bytes);
@@ -342,7 +354,8 @@ Status World::restore(std::span<const std::byte> snapshot) try {
   if (std::memcmp(r.take(sizeof magic), magic, sizeof magic) != 0) return cut;
   if (r.get<std::uint64_t>() != object_hash(s))
     return Error{ErrorCode::bad_snapshot,
-                 "The snapshot is of a world with other objects, shapes, properties or another precision; restore it into one with "
+                 "The snapshot is of a world with other objects, shapes, properties or another precision; restore it "
+                 "into one with "
                  "the same bodies, joints, properties and tables."};
   const auto substep = r.get<double>(), soft_substep = r.get<double>();
   const auto gravity = r.get<Vec3>();
@@ -351,10 +364,12 @@ Status World::restore(std::span<const std::byte> snapshot) try {
   const Layout layout(s);
   if (content.size() < layout.fixed_bytes) return cut;
   const auto contacts = Reader(content.subspan(layout.fixed_bytes - 4)).get<std::uint32_t>();
-  if (contacts < 1 || content.size() != layout.fixed_bytes + (contacts - 1) * layout.contact_bytes + layout.own_bytes) return cut;
+  if (contacts < 1 || content.size() != layout.fixed_bytes + (contacts - 1) * layout.contact_bytes + layout.own_bytes)
+    return cut;
   const auto is_length = [](double h) { return std::isfinite(h) && h >= 0; };
   if (!is_length(substep) || !is_length(soft_substep) || !check_finite(gravity, "gravity") || !is_content(s, layout, r))
-    return Error{ErrorCode::bad_snapshot, "These bytes hold numbers that no step leaves; take them from World::snapshot, unchanged."};
+    return Error{ErrorCode::bad_snapshot,
+                 "These bytes hold numbers that no step leaves; take them from World::snapshot, unchanged."};
 
   make_room_for(s, contacts);
   s.drops.clear();

@@ -121,7 +121,8 @@ void WorldState::stir_reader(Table table, std::uint32_t row) {
 }
 
 void WorldState::forget_rest(std::uint32_t row) {
-  const bool sleeps = tables.get(Buffer::rest, row, rest_asleep) > 0, stirs = tables.get(Buffer::rest, row, rest_stirred) > 0;
+  const bool sleeps = tables.get(Buffer::rest, row, rest_asleep) > 0,
+             stirs = tables.get(Buffer::rest, row, rest_stirred) > 0;
   sleepers -= sleeps;
   stirred -= stirs;
   if (sleeps || stirs) rest_version++;
@@ -197,7 +198,8 @@ void WorldState::make_room(std::uint32_t more_bodies, std::uint32_t more_joints,
 void WorldState::shrink() {
   settle_contacts();
   drops.shrink();
-  while (!shapes.empty() && !shapes.back().alive) shapes.pop_back();  // the next ones take these places, in the same order
+  // the next ones take these places, in the same order
+  while (!shapes.empty() && !shapes.back().alive) shapes.pop_back();
   std::erase_if(free_shapes, [&](std::uint32_t shape) { return shape >= shapes.size(); });
   std::ranges::make_heap(free_shapes, std::greater<>());
   tables.resize(Table::shape, std::uint32_t(shapes.size()) + 1);

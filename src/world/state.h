@@ -85,7 +85,8 @@ int middle_axis(Vec3 moments);
 inline constexpr double frozen_phase = -2;  // of a frozen body: what snapshots and hashes know it by
 /// Where its properties stand in a row of Buffer::rest.
 enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, rest_can_sleep, rest_fields };
-/// Whether a body sleeps, as far as what acts on it must do the same: not if it stands, nor if the next step wakes both.
+/// Whether a body sleeps, as far as what acts on it must do the same: not if it stands, nor if the next step wakes
+/// both.
 enum class Rest : std::uint8_t { awake, asleep, any };
 inline Rest rest_of(bool stands, bool stirred, bool asleep) {
   return stands || stirred ? Rest::any : asleep ? Rest::asleep : Rest::awake;
@@ -99,12 +100,13 @@ struct WorldState {
   /// Gives back what none of its objects needs; no result follows from it.
   void shrink();
   std::size_t memory_bytes() const {
-    return bytes_of(tables, body_ids, joint_ids, force_ids, bodies, joints, shapes, free_shapes, forces, contacts, drops, frozen,
-                    no_collide, asked_apart);
+    return bytes_of(tables, body_ids, joint_ids, force_ids, bodies, joints, shapes, free_shapes, forces, contacts,
+                    drops, frozen, no_collide, asked_apart);
   }
 
-  std::uint64_t serial;                 // another for each world of the process: what a stepper remembers is of one of them
-  std::atomic<bool> stepping{false};    // some stepper steps it: nothing else may change it
+  // another for each world of the process: what a stepper remembers is of one of them
+  std::uint64_t serial;
+  std::atomic<bool> stepping{false};  // some stepper steps it: nothing else may change it
   /// As ids carry it.
   std::uint32_t id_world() const { return std::uint32_t(serial % 0xffffffffu) + 1; }
   Tables tables;
@@ -113,19 +115,20 @@ struct WorldState {
   double soft_substep = 0;  // that soft rows were made for in it, at least as long [s] (plan/infos.h)
 
   IdPool body_ids{id_world()}, joint_ids{id_world()}, force_ids{id_world()};
-  std::vector<BodyRecord> bodies;   // by row
-  std::vector<JointRecord> joints;  // by row; row 0 pads
-  std::uint32_t springs = 0;        // how many of them are springs between two points
-  std::vector<ShapeRecord> shapes;  // by shape index
+  std::vector<BodyRecord> bodies;          // by row
+  std::vector<JointRecord> joints;         // by row; row 0 pads
+  std::uint32_t springs = 0;               // how many of them are springs between two points
+  std::vector<ShapeRecord> shapes;         // by shape index
   std::vector<std::uint32_t> free_shapes;  // min-heap
-  std::vector<ForceRecord> forces;  // by force index
-  std::uint32_t callbacks = 0;      // how many of them are callbacks
+  std::vector<ForceRecord> forces;         // by force index
+  std::uint32_t callbacks = 0;             // how many of them are callbacks
   ContactColumns contacts;
   ContactDrops drops;  // bodies that were destroyed since
   OwnProperties own;
   std::unordered_map<std::uint32_t, MassProperties> frozen;  // by body index
   std::unordered_map<std::uint64_t, NoCollide> no_collide;   // by pair_key; only pairs with a reason
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> asked_apart;  // by body index with which others set_collide forbade it
+  // by body index with which others set_collide forbade it
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> asked_apart;
 
   /// One of each stepper that has kernels of the host's own for this world.
   std::vector<std::weak_ptr<const char>> kernel_holds;
@@ -201,7 +204,9 @@ struct WorldState {
   void settle_contacts();
 
   std::uint32_t contact_rows() const { return tables.rows(Table::contact); }
-  static std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) { return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a); }
+  static std::uint64_t pair_key(std::uint32_t a, std::uint32_t b) {
+    return std::uint64_t(a < b ? a : b) << 32 | (a < b ? b : a);
+  }
 
   /// stale_id where there is none.
   Result<Table> table_of(TableId id) const;
@@ -247,7 +252,8 @@ struct WorldState {
   /// Of constants and callbacks. Where kernels of the host's own make forces (`gathered`), they begin with these.
   struct Gathered {
     Buffer force, torque;
-    bool holds = false;  // there are columns for what some of them make once a step, too (pc_held_force, pc_held_torque)
+    // there are columns for what some of them make once a step, too (pc_held_force, pc_held_torque)
+    bool holds = false;
   };
   std::optional<Gathered> gathered;
   Vec3 given_force(std::uint32_t row) const {

@@ -6,7 +6,8 @@ namespace {
 
 std::uint64_t hash_world(const WorldState& s) {
   Hash hash;
-  const StateRows all(s, Table::body, StateRows::of_hash), bodies = all.within(Buffer::rest, false), rest = all.within(Buffer::rest);
+  const StateRows all(s, Table::body, StateRows::of_hash), bodies = all.within(Buffer::rest, false),
+                                                           rest = all.within(Buffer::rest);
   const StateRows joints(s, Table::joint, StateRows::of_hash), contacts(s, Table::contact, StateRows::of_hash);
   for (std::uint32_t i = 1; i < s.body_ids.size(); i++) {
     if (!s.body_ids.alive(i)) continue;

@@ -16,7 +16,8 @@ namespace pcphys {
 class Hash {
  public:
   void bytes(const void* data, std::size_t n) {
-    for (std::size_t i = 0; i < n; i++) value_ = (value_ ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
+    for (std::size_t i = 0; i < n; i++)
+      value_ = (value_ ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
   }
   template <class Scalar> void reals(const std::byte* p, std::size_t n) {
     for (std::size_t i = 0; i < n; i += sizeof(Scalar)) {
@@ -37,10 +38,11 @@ class Hash {
 /// What of a table is state, and where it stands.
 class StateRows {
  public:
-  /// of_hash: with those of the host's that a kernel has named; of_snapshots: with all of the host's; shown: also what hosts are shown
-  /// though it is none.
+  /// of_hash: with those of the host's that a kernel has named; of_snapshots: with all of the host's; shown: also what
+  /// hosts are shown though it is none.
   enum Of : std::uint8_t { of_hash, of_snapshots, shown };
-  StateRows(const WorldState& s, Table table, Of of) : tables_(s.tables), fields_(fields(s.tables, s.own, table, Role::state)) {
+  StateRows(const WorldState& s, Table table, Of of)
+      : tables_(s.tables), fields_(fields(s.tables, s.own, table, Role::state)) {
     for (const Field& f : fields(s.tables, s.own, table, Role::host))
       if (of != of_hash || s.own.named(f.buffer)) fields_.push_back(f);
     for (const Role role : {Role::input, Role::derived})

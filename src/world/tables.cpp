@@ -8,7 +8,8 @@
 
 namespace pcphys {
 
-Tables::Tables(Precision precision) : precision_(precision), columns_(table_buffer_count), rows_(table_count, 0), columns_of_(table_count) {
+Tables::Tables(Precision precision)
+    : precision_(precision), columns_(table_buffer_count), rows_(table_count, 0), columns_of_(table_count) {
   for (std::size_t b = 0; b < table_buffer_count; b++) add_listed(Buffer(b));
   // row 0 of every table is the padding row
   for (std::size_t t = 0; t < table_count; t++) resize(Table(t), 1);
@@ -38,7 +39,8 @@ void Tables::add_listed(Buffer buffer) {
 void Tables::fill(Column& column, std::uint32_t before, std::uint32_t rows) {
   const std::size_t n = column.row_bytes;
   column.bytes.resize(rows * n);
-  for (std::uint32_t row = before; row < rows; row++) std::memcpy(column.bytes.data() + row * n, column.initial.data(), n);
+  for (std::uint32_t row = before; row < rows; row++)
+    std::memcpy(column.bytes.data() + row * n, column.initial.data(), n);
   column.version++;
 }
 
@@ -197,7 +199,9 @@ void Tables::write(Buffer buffer, std::uint32_t row, std::uint32_t offset, const
     std::ranges::transform(values, reinterpret_cast<double*>(to), normal<double>);
   column.version++;
 }
-void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) { write<1>(buffer, row, offset, {value}); }
+void Tables::set(Buffer buffer, std::uint32_t row, std::uint32_t offset, double value) {
+  write<1>(buffer, row, offset, {value});
+}
 Vec3 Tables::get3(Buffer buffer, std::uint32_t row, std::uint32_t offset) const {
   assert(row < rows(columns_[index(buffer)].table));
   const auto [x, y, z] = read<3>(*this, buffer, row, offset);

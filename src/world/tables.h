@@ -14,7 +14,8 @@
 
 namespace pcphys {
 
-/// Steps on the CPU take numbers below the normal ones for zero, and devices may hand them on: to everybody they are zero from the start.
+/// Steps on the CPU take numbers below the normal ones for zero, and devices may hand them on: to everybody they are
+/// zero from the start.
 template <class Scalar> Scalar normal(double value) {
   const Scalar x = Scalar(value);
   return std::fabs(x) < std::numeric_limits<Scalar>::min() ? Scalar(0) : x;
@@ -32,8 +33,8 @@ class Keeper {
   ~Keeper() = default;
 };
 
-/// A buffer's rows are there once something asks for them: those that only steps use (Role::scratch) until then take no memory,
-/// nor do those of tables without rows, and rows that a keeper holds come from it.
+/// A buffer's rows are there once something asks for them: those that only steps use (Role::scratch) until then take no
+/// memory, nor do those of tables without rows, and rows that a keeper holds come from it.
 class Tables {
  public:
   explicit Tables(Precision precision);
@@ -120,7 +121,8 @@ class Tables {
     AlignedBytes bytes;
     std::uint64_t version = 0;
   };
-  template <std::size_t n> void write(Buffer buffer, std::uint32_t row, std::uint32_t offset, const std::array<double, n>& values);
+  template <std::size_t n>
+  void write(Buffer buffer, std::uint32_t row, std::uint32_t offset, const std::array<double, n>& values);
   /// Columns stand in the order of the list of buffers, the host's own behind them.
   static std::size_t index(Buffer buffer) {
     return is_own(buffer) ? std::size_t(buffer) - buffer_count + table_buffer_count : std::size_t(buffer);
@@ -133,7 +135,9 @@ class Tables {
   }
   const Column& at(Buffer buffer) const { return const_cast<Tables*>(this)->at(buffer); }  // what it shows is the same
   void make_current(Buffer buffer);
-  static Buffer buffer_at(std::size_t k) { return k < table_buffer_count ? Buffer(k) : own_buffer(k - table_buffer_count); }
+  static Buffer buffer_at(std::size_t k) {
+    return k < table_buffer_count ? Buffer(k) : own_buffer(k - table_buffer_count);
+  }
   void fill(Column& column, std::uint32_t before, std::uint32_t rows);
   void add_listed(Buffer buffer);
 

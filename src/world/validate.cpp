@@ -25,18 +25,18 @@ Status check_extent(double x, const char* what) {
                  std::string("The ") + what + " of a shape is not a number; give it a finite length in metres."};
   if (x < constants::smallest_extent || x > constants::largest_extent)
     return Error{ErrorCode::degenerate_shape, std::string("The ") + what + " of a shape is " + number(x) +
-                                                  " m; it must lie between " + number(constants::smallest_extent) + " and " +
-                                                  number(constants::largest_extent) + " m."};
+                                                  " m; it must lie between " + number(constants::smallest_extent) +
+                                                  " and " + number(constants::largest_extent) + " m."};
   return {};
 }
 
 }  // namespace
 
 const char* name(ErrorCode code) {
-  constexpr const char* names[] = {"none",          "not_finite",  "bad_mass",    "degenerate_shape", "not_unit_quaternion",
-                                   "bad_time_step", "stale_id",    "bad_joint",   "bad_argument",     "unknown_name",
-                                   "name_taken",    "wrong_type",  "unavailable", "buffer_full",      "device_error",
-                                   "bad_file",      "bad_snapshot", "busy"};
+  constexpr const char* names[] = {
+      "none",        "not_finite",  "bad_mass",     "degenerate_shape", "not_unit_quaternion", "bad_time_step",
+      "stale_id",    "bad_joint",   "bad_argument", "unknown_name",     "name_taken",          "wrong_type",
+      "unavailable", "buffer_full", "device_error", "bad_file",         "bad_snapshot",        "busy"};
   return names[int(code)];
 }
 
@@ -46,8 +46,8 @@ void misuse(const char* sentence) {
   std::abort();
 }
 void no_value(const Error& error) {
-  misuse(("The value of a Result was taken, which holds an error in its place: " + std::string(name(error.code)) + ". " +
-          error.message)
+  misuse(("The value of a Result was taken, which holds an error in its place: " + std::string(name(error.code)) +
+          ". " + error.message)
              .c_str());
 }
 void no_error() { misuse("The error of a Result was asked for, which holds none: it succeeded."); }
@@ -69,7 +69,8 @@ Error stale(const char* what) {
           std::string("This id names no ") + what + " of the world: it was destroyed, or never created here."};
 }
 
-Error no_memory() { return {ErrorCode::buffer_full, "Out of memory."}; }  // so short that it stands in the string itself
+// so short that it stands in the string itself
+Error no_memory() { return {ErrorCode::buffer_full, "Out of memory."}; }
 
 Error caught() {
   try {
@@ -100,8 +101,9 @@ void no_memory_for(const char* call) {
 }  // namespace detail
 
 Error busy(const char* what) {
-  return {ErrorCode::busy, std::string("A step of this ") + what +
-                               " runs; callbacks may look at the world, not change it. Do this when Stepper::step has returned."};
+  return {ErrorCode::busy,
+          std::string("A step of this ") + what +
+              " runs; callbacks may look at the world, not change it. Do this when Stepper::step has returned."};
 }
 
 Error no_rotation() {
@@ -117,14 +119,16 @@ Status check_moves(BodyKind kind, Vec3 value, const char* what) {
 Status check_finite(double value, const char* what) {
   if (!sane(value))
     return Error{ErrorCode::not_finite, std::string("The ") + what + " is " + number(value) +
-                                            "; it must be finite and no larger than " + number(constants::largest_input) + "."};
+                                            "; it must be finite and no larger than " +
+                                            number(constants::largest_input) + "."};
   return {};
 }
 
 Status check_finite(Vec3 value, const char* what) {
   if (!sane(value.x) || !sane(value.y) || !sane(value.z))
-    return Error{ErrorCode::not_finite, std::string("The ") + what + " is (" + number(value.x) + ", " + number(value.y) + ", " +
-                                            number(value.z) + "); every component must be finite and no larger than " +
+    return Error{ErrorCode::not_finite, std::string("The ") + what + " is (" + number(value.x) + ", " +
+                                            number(value.y) + ", " + number(value.z) +
+                                            "); every component must be finite and no larger than " +
                                             number(constants::largest_input) + "."};
   return {};
 }
@@ -133,7 +137,8 @@ Status check_spin(Vec3 moments, Vec3 angular_velocity) {
   const double most = std::max({moments.x, moments.y, moments.z}) * length(angular_velocity);
   if (most <= constants::largest_momentum) return {};
   return Error{ErrorCode::not_finite, "The angular momentum of a body would be up to " + number(most) +
-                                          " kg m^2/s; it must be no larger than " + number(constants::largest_momentum) +
+                                          " kg m^2/s; it must be no larger than " +
+                                          number(constants::largest_momentum) +
                                           ". Give the body a smaller spin first, or smaller moments of inertia."};
 }
 
@@ -178,15 +183,16 @@ Status check(const Material& m) {
   if (m.static_friction < 0 || m.kinetic_friction < 0)
     return Error{ErrorCode::bad_argument, "A coefficient of friction is below zero; use 0 for none."};
   if (m.rolling_friction < 0 || m.torsional_friction < 0)
-    return Error{ErrorCode::bad_argument, "The rolling or torsional friction is below zero; it is a length [m], 0 for none."};
-  if (m.friction_rule > Combine::maximum || m.restitution_rule > Combine::maximum)
-    return Error{
-        ErrorCode::bad_argument,
-        "A rule of friction or restitution is none that there is; use Combine::mean, geometric_mean, minimum, product or "
-        "maximum."};
-  if (m.restitution < 0 || m.restitution > 1)
     return Error{ErrorCode::bad_argument,
-                 "The restitution is " + number(m.restitution) + "; it must lie between 0 (no bounce) and 1 (no loss)."};
+                 "The rolling or torsional friction is below zero; it is a length [m], 0 for none."};
+  if (m.friction_rule > Combine::maximum || m.restitution_rule > Combine::maximum)
+    return Error{ErrorCode::bad_argument,
+                 "A rule of friction or restitution is none that there is; use Combine::mean, geometric_mean, minimum, "
+                 "product or "
+                 "maximum."};
+  if (m.restitution < 0 || m.restitution > 1)
+    return Error{ErrorCode::bad_argument, "The restitution is " + number(m.restitution) +
+                                              "; it must lie between 0 (no bounce) and 1 (no loss)."};
   return {};
 }
 
@@ -205,11 +211,12 @@ Status check(const MassProperties& given, bool rotates) {
   const double low = constants::smallest_mass, high = constants::largest_mass;
   for (double x : {m.mass, i.x, i.y, i.z})
     if (x < low || x > high)
-      return Error{ErrorCode::bad_mass, "A mass or moment of inertia is " + number(x) + "; it must lie between " + number(low) +
-                                            " and " + number(high) + " (kg, kg m^2)."};
+      return Error{ErrorCode::bad_mass, "A mass or moment of inertia is " + number(x) + "; it must lie between " +
+                                            number(low) + " and " + number(high) + " (kg, kg m^2)."};
   const double slack = 1 + constants::moment_tolerance;
   if (i.x > (i.y + i.z) * slack || i.y > (i.x + i.z) * slack || i.z > (i.x + i.y) * slack)
-    return Error{ErrorCode::bad_mass, "The moments of inertia (" + number(i.x) + ", " + number(i.y) + ", " + number(i.z) +
+    return Error{ErrorCode::bad_mass, "The moments of inertia (" + number(i.x) + ", " + number(i.y) + ", " +
+                                          number(i.z) +
                                           ") belong to no body: none may exceed the sum of the other two."};
   return {};
 }
@@ -218,13 +225,16 @@ namespace {
 /// Mass and moments of a dynamic body: as given, or from its one shape.
 Result<MassProperties> mass_of(const BodyDef& def) {
   if (def.moments) {
-    if (!def.mass) return Error{ErrorCode::bad_mass, "Moments of inertia are given without a mass; give both, or neither."};
+    if (!def.mass)
+      return Error{ErrorCode::bad_mass, "Moments of inertia are given without a mass; give both, or neither."};
     return MassProperties{*def.mass, *def.moments};
   }
-  if (def.shapes.empty()) return Error{ErrorCode::bad_mass, "A dynamic body without shapes needs a mass and moments of inertia."};
+  if (def.shapes.empty())
+    return Error{ErrorCode::bad_mass, "A dynamic body without shapes needs a mass and moments of inertia."};
   if (def.shapes.size() > 1 || def.shapes[0].local != Pose{})
     return Error{ErrorCode::bad_mass,
-                 "A body's frame is its principal frame; pass a body of several or displaced shapes through make_compound first, "
+                 "A body's frame is its principal frame; pass a body of several or displaced shapes through "
+                 "make_compound first, "
                  "or give mass and moments."};
   Result<MassProperties> m = mass_properties(def.shapes[0], def.density);
   if (!m || !def.mass) return m;
@@ -273,7 +283,8 @@ Status check(AngleFreedom& f) {
   for (double x : {f.cone, f.twist, f.lower.x, f.lower.y, f.lower.z, f.upper.x, f.upper.y, f.upper.z})
     if (std::isnan(x))
       return Error{ErrorCode::bad_joint,
-                   "The cone and twist of a joint, or an angle limit, is not a number; give angles [rad], or infinity for none."};
+                   "The cone and twist of a joint, or an angle limit, is not a number; give angles [rad], or infinity "
+                   "for none."};
   if (f.kind == AngleFreedom::Kind::cone_twist) {
     if (!(f.cone >= 0) || !(f.twist >= 0))
       return Error{ErrorCode::bad_joint, "The cone and twist of a joint must be zero or above [rad]."};
@@ -284,8 +295,9 @@ Status check(AngleFreedom& f) {
         return Error{ErrorCode::bad_joint, "An angle limit of a joint has its lower bound above its upper one."};
   }
   if (!(f.restitution >= 0 && f.restitution <= 1))
-    return Error{ErrorCode::bad_joint, "The restitution of a joint's limits is " + number(f.restitution) +
-                                           "; it must lie between 0 (it stops there) and 1 (it leaves as fast as it came)."};
+    return Error{ErrorCode::bad_joint,
+                 "The restitution of a joint's limits is " + number(f.restitution) +
+                     "; it must lie between 0 (it stops there) and 1 (it leaves as fast as it came)."};
   return {};
 }
 
@@ -293,8 +305,8 @@ namespace {
 Status check_not_negative(double value, const char* what, const char* unit) {
   if (Status ok = check_finite(value, what); !ok) return ok;
   if (value < 0)
-    return Error{ErrorCode::bad_joint,
-                 std::string("The ") + what + " is " + number(value) + " " + unit + "; it must be zero (none) or above."};
+    return Error{ErrorCode::bad_joint, std::string("The ") + what + " is " + number(value) + " " + unit +
+                                           "; it must be zero (none) or above."};
   return {};
 }
 }  // namespace

@@ -13,8 +13,8 @@ std::string number(double x);
 Error stale(const char* what);
 /// There is no memory for what was asked, and all is as it was. (Made without any.)
 Error no_memory();
-/// The same of the exception that is being handled. Any other than for want of memory is a fault of ours, and ends the process with its
-/// sentence.
+/// The same of the exception that is being handled. Any other than for want of memory is a fault of ours, and ends the
+/// process with its sentence.
 Error caught();
 /// `what` is "world" or "stepper".
 Error busy(const char* what);

@@ -25,8 +25,8 @@ std::uint32_t draw_body(Choices& c, const Host& host) {
 }
 
 ShapeDef draw_shape(Choices& c) {
-  static const Hull rock = *make_hull(std::array<Vec3, 6>{
-      Vec3{0.3, 0, 0}, Vec3{-0.2, 0.1, 0}, Vec3{0, 0.4, 0.1}, Vec3{0, -0.2, 0.2}, Vec3{0.1, 0, -0.3}, Vec3{0, 0.1, 0.3}});
+  static const Hull rock = *make_hull(std::array<Vec3, 6>{Vec3{0.3, 0, 0}, Vec3{-0.2, 0.1, 0}, Vec3{0, 0.4, 0.1},
+                                                          Vec3{0, -0.2, 0.2}, Vec3{0.1, 0, -0.3}, Vec3{0, 0.1, 0.3}});
   ShapeDef shape;
   switch (c.below(6)) {
     case 0: shape = ShapeDef::sphere(c.ratio(0.05, 0.5)); break;
@@ -171,7 +171,8 @@ Call set_state(Choices& c, const Theme& theme, const Host& host) {
   const std::uint32_t body = draw_body(c, host);
   switch (c.below(8)) {
     case 0:
-    case 1: return {"set_pose", [=, p = draw_pose(c, theme)](Host& h) { return of(h.world.set_pose(h.body(body), p)); }};
+    case 1:
+      return {"set_pose", [=, p = draw_pose(c, theme)](Host& h) { return of(h.world.set_pose(h.body(body), p)); }};
     case 2:
       return {"set_pose a little", [=, by = c.vector(0.01)](Host& h) {
                 const Result<Pose> pose = h.world.pose(h.body(body));
@@ -179,14 +180,14 @@ Call set_state(Choices& c, const Theme& theme, const Host& host) {
                 return of(h.world.set_pose(h.body(body), {pose->position + by, pose->orientation}));
               }};
     case 3:
-    case 4: return {"set_velocity", [=, v = c.vector(5)](Host& h) { return of(h.world.set_velocity(h.body(body), v)); }};
+    case 4:
+      return {"set_velocity", [=, v = c.vector(5)](Host& h) { return of(h.world.set_velocity(h.body(body), v)); }};
     case 5:
       return {"set_angular_velocity",
               [=, w = c.vector(10)](Host& h) { return of(h.world.set_angular_velocity(h.body(body), w)); }};
     case 6:
-      return {"set_position_last", [=, p = c.vector(theme.size)](Host& h) {
-                return of(h.world.set_position_last(h.body(body), p));
-              }};
+      return {"set_position_last",
+              [=, p = c.vector(theme.size)](Host& h) { return of(h.world.set_position_last(h.body(body), p)); }};
     default:
       return {"set_orientation_last",
               [=, q = c.turn()](Host& h) { return of(h.world.set_orientation_last(h.body(body), q)); }};
@@ -196,12 +197,14 @@ Call set_state(Choices& c, const Theme& theme, const Host& host) {
 Call set_input(Choices& c, const Host& host) {
   const std::uint32_t body = draw_body(c, host), other = draw_body(c, host);
   switch (c.below(8)) {
-    case 0: return {"set_gravity", [g = c.below(4) ? c.vector(10) : Vec3{}](Host& h) { return of(h.world.set_gravity(g)); }};
+    case 0:
+      return {"set_gravity", [g = c.below(4) ? c.vector(10) : Vec3{}](Host& h) { return of(h.world.set_gravity(g)); }};
     case 1: {
       const MassProperties m{c.ratio(0.01, 100), {c.ratio(0.1, 0.2), c.ratio(0.1, 0.2), c.ratio(0.1, 0.2)}};
       return {"set_mass_properties", [=](Host& h) { return of(h.world.set_mass_properties(h.body(body), m)); }};
     }
-    case 2: return {"set_material", [=, m = draw_material(c)](Host& h) { return of(h.world.set_material(h.body(body), m)); }};
+    case 2:
+      return {"set_material", [=, m = draw_material(c)](Host& h) { return of(h.world.set_material(h.body(body), m)); }};
     case 3: {
       const double linear = c.number(0, 2), angular = c.number(0, 2);
       return {"set_drag", [=](Host& h) { return of(h.world.set_drag(h.body(body), linear, angular)); }};
@@ -216,7 +219,8 @@ Call set_input(Choices& c, const Host& host) {
               }};
     case 6: return {"wake", [=](Host& h) { return of(h.world.wake(h.body(body))); }};
     default:
-      return {"set_can_sleep", [=, can = c.below(2) == 1](Host& h) { return of(h.world.set_can_sleep(h.body(body), can)); }};
+      return {"set_can_sleep",
+              [=, can = c.below(2) == 1](Host& h) { return of(h.world.set_can_sleep(h.body(body), can)); }};
   }
 }
 
@@ -226,7 +230,8 @@ Call set_drive(Choices& c, const Host& host) {
   const double x = c.number(-5, 5), y = c.ratio(0.1, 100), z = c.below(2) ? 0 : c.ratio(0.1, 100);
   switch (c.below(3)) {
     case 0: return {"set_motor", [=](Host& h) { return of(h.world.set_motor(Host::at(h.joints, joint), {x, z})); }};
-    case 1: return {"set_spring", [=](Host& h) { return of(h.world.set_spring(Host::at(h.joints, joint), {y, z, {}})); }};
+    case 1:
+      return {"set_spring", [=](Host& h) { return of(h.world.set_spring(Host::at(h.joints, joint), {y, z, {}})); }};
     default:
       return {"set_spring of points",
               [=](Host& h) { return of(h.world.set_spring(Host::at(h.springs, spring), std::abs(x), y, z)); }};
@@ -282,7 +287,8 @@ Call own(Choices& c, const Host& host) {
               }};
     case 1: return {"remove_property", [=](Host& h) { return of(h.world.remove_property(name)); }};
     default:
-      return {"set property", [=](Host& h) { return of(h.world.set(Host::at(h.properties, k), h.body(body), Real(value))); }};
+      return {"set property",
+              [=](Host& h) { return of(h.world.set(Host::at(h.properties, k), h.body(body), Real(value))); }};
   }
 }
 

@@ -31,7 +31,9 @@ class Choices {
     return z ^ (z >> 31);
   }
   /// One of 0 to count - 1.
-  std::uint32_t below(std::uint32_t count) { return std::uint32_t((of_bytes_ ? take(count > 256 ? 4 : 1) : next()) % count); }
+  std::uint32_t below(std::uint32_t count) {
+    return std::uint32_t((of_bytes_ ? take(count > 256 ? 4 : 1) : next()) % count);
+  }
   bool chance(double share) { return between(0, 1) < share; }
   double between(double low, double high) {
     const double x = of_bytes_ ? double(take(2)) * 0x1p-16 : double(next() >> 11) * 0x1p-53;
@@ -42,8 +44,21 @@ class Choices {
   /// What hosts hand in by mistake: NaN, infinities, zeros of either sign, the ends of what numbers can be.
   double odd() {
     using Limits = std::numeric_limits<double>;
-    constexpr std::array odd{Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(), 0.0, -0.0, 1e-320, 1e-45, 1e-30, -1.0,
-                             1e15,                -1e15,              1e30,                 3e38, 1e39, Limits::max()};
+    constexpr std::array odd{Limits::quiet_NaN(),
+                             Limits::infinity(),
+                             -Limits::infinity(),
+                             0.0,
+                             -0.0,
+                             1e-320,
+                             1e-45,
+                             1e-30,
+                             -1.0,
+                             1e15,
+                             -1e15,
+                             1e30,
+                             3e38,
+                             1e39,
+                             Limits::max()};
     return chance(0.3) ? by_ratio(1e-300, 1e300) * (chance(0.5) ? 1 : -1) : odd[below(odd.size())];
   }
   /// Within the bounds but for one in `rarity_`.
@@ -65,7 +80,8 @@ class Choices {
   bool rare() { return rarity_ > 0 && below(rarity_) == 1; }
   std::uint64_t take(std::size_t count) {
     std::uint64_t value = 0;
-    for (std::size_t i = 0; i < count && !bytes_.empty(); i++, bytes_ = bytes_.subspan(1)) value = value << 8 | bytes_[0];
+    for (std::size_t i = 0; i < count && !bytes_.empty(); i++, bytes_ = bytes_.subspan(1))
+      value = value << 8 | bytes_[0];
     return value;
   }
 

@@ -1,5 +1,5 @@
-// Command lines of `pcphys`, words with a zero byte between: each is refused with a sentence, or read into options that are checked; what
-// passes the checks is in the library's own bounds. Nothing is run, and no file is opened.
+// Command lines of `pcphys`, words with a zero byte between: each is refused with a sentence, or read into options that
+// are checked; what passes the checks is in the library's own bounds. Nothing is run, and no file is opened.
 #include <cmath>
 #include <iostream>
 #include <string>
@@ -25,7 +25,8 @@ void check_run(const RunOptions& options) {
   fuzz::expect(setup->steps >= 1 && setup->warmup < setup->steps, "a warm-up of all steps");
   Stepper stepper;
   const Status taken = stepper.configure(setup->settings);
-  fuzz::expect(taken || setup->settings.narrow == NarrowPhase::fcl, "settings that are refused");  // FCL may not be there
+  // FCL may not be there
+  fuzz::expect(taken || setup->settings.narrow == NarrowPhase::fcl, "settings that are refused");
 }
 
 void check_compare(const CommandLine& line) {
@@ -68,18 +69,20 @@ std::vector<std::vector<std::uint8_t>> fuzz::seeds() {
     for (const char c : text) seed.push_back(c == ' ' ? 0 : std::uint8_t(c));
     return seed;
   };
-  return {line("run balls --count 60 --steps 600 --backend cpu --integrate gl --dt 1/60 --precision double --lanes 4"),
-          line("run chain --ratio 1e3 --friction 0.5 --restitution 0 --drag .1 --joint-damping 1e-3 --seed 7 --hash --poses"),
-          line("plan door --steps 2 --substeps 8 --order 4 --integrator seed --narrow fcl --threads 0 --resident --json -"),
-          line("tables --warmup 10 --sleep on --islands gl --device -1 --timings off --csv a.csv"),
-          line("scenes --json -"),
-          line("doctor --csv -"),
-          line("accuracy A1 A2 --variant x --repeats 3 --peers all --budget 4 --list --all --first --backend gl"),
-          line("stability --precision both --dt 0.01"),
-          line("compare balls:1000 stack --peers bullet,ode --peer-substeps 2 --peer-iterations 9 --budget 1e9"),
-          line("wild joints --seed 9223372036854775807 --count 10 --bits 3 --bits-gl 0 --shrink --shrink-to a.cpp"),
-          line("--help-all"),
-          line("--version")};
+  return {
+      line("run balls --count 60 --steps 600 --backend cpu --integrate gl --dt 1/60 --precision double --lanes 4"),
+      line("run chain --ratio 1e3 --friction 0.5 --restitution 0 --drag .1 --joint-damping 1e-3 --seed 7 --hash "
+           "--poses"),
+      line("plan door --steps 2 --substeps 8 --order 4 --integrator seed --narrow fcl --threads 0 --resident --json -"),
+      line("tables --warmup 10 --sleep on --islands gl --device -1 --timings off --csv a.csv"),
+      line("scenes --json -"),
+      line("doctor --csv -"),
+      line("accuracy A1 A2 --variant x --repeats 3 --peers all --budget 4 --list --all --first --backend gl"),
+      line("stability --precision both --dt 0.01"),
+      line("compare balls:1000 stack --peers bullet,ode --peer-substeps 2 --peer-iterations 9 --budget 1e9"),
+      line("wild joints --seed 9223372036854775807 --count 10 --bits 3 --bits-gl 0 --shrink --shrink-to a.cpp"),
+      line("--help-all"),
+      line("--version")};
 }
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {

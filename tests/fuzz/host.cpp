@@ -15,7 +15,8 @@ Outcome of(const Status& status) {
 
 bool same(const Outcome& a, const Outcome& b) {
   const auto alike = [](double x, double y) {
-    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || x == y || (std::isnan(x) && std::isnan(y));
+    return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y) || x == y ||
+           (std::isnan(x) && std::isnan(y));
   };
   return a.code == b.code && std::ranges::equal(a.numbers, b.numbers, alike);
 }

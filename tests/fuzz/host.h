@@ -1,5 +1,5 @@
-// A host: a world, what it holds of its objects, and how it steps it. Several hosts are given the same calls; what they step with
-// differs, and nothing else may.
+// A host: a world, what it holds of its objects, and how it steps it. Several hosts are given the same calls; what they
+// step with differs, and nothing else may.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -45,7 +45,9 @@ class Host {
   std::vector<std::byte> saved;
 
   /// Of a handle that was counted; beyond: of an id that names nothing.
-  template <class Id> static Id at(const std::vector<Id>& ids, std::uint32_t i) { return i < ids.size() ? ids[i] : Id{}; }
+  template <class Id> static Id at(const std::vector<Id>& ids, std::uint32_t i) {
+    return i < ids.size() ? ids[i] : Id{};
+  }
   pcphys::BodyId body(std::uint32_t i) const { return i == ground ? world.ground() : at(bodies, i); }
   static constexpr std::uint32_t ground = 0xffffffffu;
 

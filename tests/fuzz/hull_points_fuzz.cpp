@@ -1,6 +1,6 @@
-// Any points: `make_hull` refuses them by name, or makes a convex polyhedron that is closed, has an inside, plane faces and all the
-// points within it, and that falls on a floor as a body. The first byte says how the others are read: numbers as they stand, or places
-// on a grid, where points are apart often enough.
+// Any points: `make_hull` refuses them by name, or makes a convex polyhedron that is closed, has an inside, plane faces
+// and all the points within it, and that falls on a floor as a body. The first byte says how the others are read:
+// numbers as they stand, or places on a grid, where points are apart often enough.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -56,7 +56,8 @@ void check_closed(const Hull& hull) {
     const auto face = hull.face(f);
     fuzz::expect(face.size() >= 3, "a face of fewer than three corners");
     for (std::size_t k = 0; k < face.size(); k++)
-      fuzz::expect(sides.insert({face[k], face[(k + 1) % face.size()]}).second, "a side of two faces the same way round");
+      fuzz::expect(sides.insert({face[k], face[(k + 1) % face.size()]}).second,
+                   "a side of two faces the same way round");
   }
   for (const auto& [from, to] : sides) fuzz::expect(sides.contains({to, from}), "a side of one face alone");
   fuzz::expect(hull.vertices().size() + hull.face_count() == sides.size() / 2 + 2, "not the faces of one polyhedron");
@@ -66,9 +67,11 @@ void check_numbers(const Hull& hull) {
   const Vec3 i = hull.moments();
   constexpr double slack = 1 + 1e-9;
   fuzz::expect(std::isfinite(hull.volume()) && hull.volume() > 0, "no volume");
-  fuzz::expect(hull.inner_radius() > 0 && hull.inner_radius() <= hull.radius() && std::isfinite(hull.radius()), "radii");
+  fuzz::expect(hull.inner_radius() > 0 && hull.inner_radius() <= hull.radius() && std::isfinite(hull.radius()),
+               "radii");
   fuzz::expect(i.x > 0 && i.y > 0 && i.z > 0, "moments");
-  fuzz::expect(i.x <= (i.y + i.z) * slack && i.y <= (i.x + i.z) * slack && i.z <= (i.x + i.y) * slack, "moments of no body");
+  fuzz::expect(i.x <= (i.y + i.z) * slack && i.y <= (i.x + i.z) * slack && i.z <= (i.x + i.y) * slack,
+               "moments of no body");
   for (const float x : hull.data()->table.f32) fuzz::expect(std::isfinite(x), "table");
 }
 

@@ -1,6 +1,7 @@
-// The text of kernels of a host's own: whatever it says, it is refused with a sentence and nothing is added, or it is read, put into a
-// program, and found again in its file; beside a C++ side that does nothing it can be stepped. Fields of the input are strings with a
-// zero byte behind each: how the kernel is made, its name, signature, body and a text of a file; then the next kernel.
+// The text of kernels of a host's own: whatever it says, it is refused with a sentence and nothing is added, or it is
+// read, put into a program, and found again in its file; beside a C++ side that does nothing it can be stepped. Fields
+// of the input are strings with a zero byte behind each: how the kernel is made, its name, signature, body and a text
+// of a file; then the next kernel.
 #include <string>
 #include <vector>
 
@@ -45,7 +46,8 @@ struct Given {
 
   KernelDef def(TableId cells) const {
     KernelDef def;
-    def.text = {name.c_str(), signature.c_str(), of(0, 0) ? nullptr : body.c_str(), of(0, 1) ? "none.glsl" : "", how[2] % 8};
+    def.text = {name.c_str(), signature.c_str(), of(0, 0) ? nullptr : body.c_str(), of(0, 1) ? "none.glsl" : "",
+                how[2] % 8};
     def.text.pairs32 = def.text.pairs64 = of(0, 2) ? no_pairs : nullptr;
     def.text.f32 = def.text.f64 = of(0, 2) ? nullptr : no_loop;
     def.over = of(0, 3) ? joint_table : of(0, 4) ? cells : body_table;
@@ -116,7 +118,8 @@ std::vector<std::vector<std::uint8_t>> fuzz::seeds() {
   const std::string drain = "(PC_INOUT(Real) fuel, PC_PARAM(Real) flow, PC_PARAM(Vec3) wind, PC_PARAM(Real) h)";
   const std::string burn = "{ Real left = fuel; /* half */ fuel = left - flow * PC_REAL(0.5); // and so on\n }";
   const std::string pull = "(PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force)";
-  const std::string cord = "(PC_A(Vec3) position_a, PC_B(Vec3) flow_of_b, PC_IN(Real) rest_length, PC_ADD_A(Vec3) force_a)";
+  const std::string cord =
+      "(PC_A(Vec3) position_a, PC_B(Vec3) flow_of_b, PC_IN(Real) rest_length, PC_ADD_A(Vec3) force_a)";
   const std::string log = "4:43(14): error: `half' undeclared\n0(7) : error C1008: undefined variable\n";
   return {text({"\x62\x40\x01", "drain", drain, burn, "PCPHYS_KERNEL(drain, " + drain + ", " + burn + ")\n"}),
           text({"\x44\x50\x02", "pull", pull, "{ force = pc_sub(position, position_other); }", log}),

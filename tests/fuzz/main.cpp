@@ -35,7 +35,8 @@ int main(int argc, char** argv) {
     break;
   }
   const auto number = [](std::uint64_t n) { return static_cast<unsigned long long>(n); };
-  std::printf("%llu sequences, %llu calls (%llu refused), %llu steps in %.1f s, digest %016llx: %llu found something\n", number(counts.sequences),
-              number(counts.calls), number(counts.refused), number(counts.steps), passed(), number(counts.digest), number(findings));
+  std::printf("%llu sequences, %llu calls (%llu refused), %llu steps in %.1f s, digest %016llx: %llu found something\n",
+              number(counts.sequences), number(counts.calls), number(counts.refused), number(counts.steps), passed(),
+              number(counts.digest), number(findings));
   return findings > 0;
 }

@@ -34,8 +34,8 @@ template <class Real> void write_number(std::uint8_t* data, std::size_t size, st
 
 }  // namespace
 
-/// Without a corpus libFuzzer starts from an empty line; in place of what is nearly empty, and now and then of another input, stands one
-/// of the target's own.
+/// Without a corpus libFuzzer starts from an empty line; in place of what is nearly empty, and now and then of another
+/// input, stands one of the target's own.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
   static const std::vector<std::vector<std::uint8_t>> seeds = fuzz::seeds();
   std::minstd_rand random(seed);

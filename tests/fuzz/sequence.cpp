@@ -25,7 +25,8 @@ std::vector<Twin> draw_twins(Choices& c, bool gl) {
     if (c.below(3) == 1) twins.push_back(twin);
   if (twins.size() == 1) twins.push_back(others[0]);
   if (gl) twins.push_back({.name = "gl", .place = Place::gl});
-  if (gl && c.below(2)) twins.push_back({.name = "gl and cpu by turns, two steppers", .place = Place::gl, .steppers = 2, .mixed = true});
+  if (gl && c.below(2))
+    twins.push_back({.name = "gl and cpu by turns, two steppers", .place = Place::gl, .steppers = 2, .mixed = true});
   return twins;
 }
 
@@ -34,7 +35,8 @@ std::string difference(const Outcome& a, const Outcome& b) {
   text.precision(17);
   text << name(a.code) << " and " << name(b.code);
   if (!a.message.empty() || !b.message.empty()) text << " (" << a.message << " | " << b.message << ")";
-  if (a.numbers.size() != b.numbers.size()) text << ", " << a.numbers.size() << " and " << b.numbers.size() << " numbers";
+  if (a.numbers.size() != b.numbers.size())
+    text << ", " << a.numbers.size() << " and " << b.numbers.size() << " numbers";
   for (std::size_t i = 0; i < std::min(a.numbers.size(), b.numbers.size()); i++)
     if (!same({ErrorCode::none, {a.numbers[i]}, {}}, {ErrorCode::none, {b.numbers[i]}, {}})) {
       text << ", number " << i << ": " << a.numbers[i] << " and " << b.numbers[i];
@@ -85,7 +87,8 @@ class Sequence {
         hash = after;
         counts_.digest = counts_.digest * 1099511628211ull ^ hash;
         found_.calls.back() += outcome.code == ErrorCode::none ? "" : std::string(": ") + name(outcome.code);
-        if (outcome.code != ErrorCode::none && !call.composite && before != after) return fail(*host, "a refused call changed the world");
+        if (outcome.code != ErrorCode::none && !call.composite && before != after)
+          return fail(*host, "a refused call changed the world");
         continue;
       }
       if (!same(first, outcome)) return fail(*host, "another answer: " + difference(first, outcome));

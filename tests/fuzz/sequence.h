@@ -10,11 +10,11 @@ namespace fuzz {
 
 struct Counts {
   std::uint64_t sequences = 0, calls = 0, refused = 0, steps = 0;  // calls and steps on all hosts
-  std::uint64_t digest = 0;                                         // of the worlds that came of them
+  std::uint64_t digest = 0;                                        // of the worlds that came of them
 };
 
 struct Finding {
-  std::string what;               // empty: nothing was found
+  std::string what;                // empty: nothing was found
   std::vector<std::string> calls;  // up to it
 };
 

@@ -1,6 +1,7 @@
-// Bytes in place of a snapshot: `World::restore` refuses them and leaves the world as it was, or takes them; then the world goes on, and
-// what it saves reads back to the bit. The first byte says of which world, and whether the others are the whole of a snapshot or the first
-// bytes of one whose rest is true; the checksum is set right, or no input would pass it.
+// Bytes in place of a snapshot: `World::restore` refuses them and leaves the world as it was, or takes them; then the
+// world goes on, and what it saves reads back to the bit. The first byte says of which world, and whether the others
+// are the whole of a snapshot or the first bytes of one whose rest is true; the checksum is set right, or no input
+// would pass it.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -38,7 +39,8 @@ void add_resting(World& world) {
 void add_joined(World& world) {
   const BodyId a = fuzz::expect(world.create_body(body_of(ShapeDef::capsule(0.1, 0.3), {0, 2, 0})));
   const BodyId b = fuzz::expect(world.create_body(body_of(ShapeDef::capsule(0.1, 0.3), {0, 2, 1})));
-  const BodyId led = fuzz::expect(world.create_body(body_of(ShapeDef::box({1, 0.1, 1}), {0, 1.5, 0}, BodyKind::kinematic)));
+  const BodyId led =
+      fuzz::expect(world.create_body(body_of(ShapeDef::box({1, 0.1, 1}), {0, 1.5, 0}, BodyKind::kinematic)));
   fuzz::expect(world.set_velocity(led, {0.1, 0, 0}));
   JointDef joint;
   joint.a = a;
@@ -70,7 +72,9 @@ World make_world(std::uint8_t which) {
   return world;
 }
 
-Stepper make_stepper(std::uint8_t which) { return Stepper({.substeps = 2, .sleep = (which & 4) != 0, .sleep_time = 0.05}); }
+Stepper make_stepper(std::uint8_t which) {
+  return Stepper({.substeps = 2, .sleep = (which & 4) != 0, .sleep_time = 0.05});
+}
 
 void step(World& world, std::uint8_t which, int steps) {
   Stepper stepper = make_stepper(which);

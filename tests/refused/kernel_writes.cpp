@@ -1,5 +1,5 @@
-// Not part of the tests' program: what a kernel may not write does not compile. tests/CMakeLists.txt names one of them after the other
-// to the compiler and looks for its refusal; with none named it all compiles.
+// Not part of the tests' program: what a kernel may not write does not compile. tests/CMakeLists.txt names one of them
+// after the other to the compiler and looks for its refusal; with none named it all compiles.
 #include "pcphys/pcphys.h"
 #include "pcphys/write_kernel.h"
 

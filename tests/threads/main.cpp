@@ -1,5 +1,5 @@
-// pcphys_threads: steps in several threads, and worlds in threads of their own, give the bits of one thread. Under the thread sanitizer
-// (preset threads) it also says whether any two of them touch the same memory at once.
+// pcphys_threads: steps in several threads, and worlds in threads of their own, give the bits of one thread. Under the
+// thread sanitizer (preset threads) it also says whether any two of them touch the same memory at once.
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -10,9 +10,11 @@
 #include "pcphys/write_kernel.h"
 
 #ifdef PCPHYS_WATCHED_THREADS
-/// Atomics that the library of oneTBB hands from thread to thread (src/cpu/workers.cpp); where an access of ours stands on top it is told.
-/// The names of inlined functions stand in full debug info alone, so this preset has it.
-extern "C" const char* __tsan_default_suppressions() { return "race_top:std::__atomic_base\nrace_top:std::atomic<tbb::\n"; }
+/// Atomics that the library of oneTBB hands from thread to thread (src/cpu/workers.cpp); where an access of ours stands
+/// on top it is told. The names of inlined functions stand in full debug info alone, so this preset has it.
+extern "C" const char* __tsan_default_suppressions() {
+  return "race_top:std::__atomic_base\nrace_top:std::atomic<tbb::\n";
+}
 #endif
 
 using namespace pcphys;
@@ -23,11 +25,13 @@ PCPHYS_KERNEL(cool, (PC_IN(Vec3) displacement_rate, PC_INOUT(Real) heat, PC_PARA
   Real lost = pc_length(displacement_rate) * rate;
   heat = heat - lost;
 })
-PCPHYS_PAIR_KERNEL(pull, (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force, PC_PARAM(Real) strength), {
-  Vec3 way = pc_sub(position_other, position);
-  precise Real square = pc_dot(way, way) + PC_REAL(1.0);
-  force = pc_scale(way, pc_div(strength, square));
-})
+PCPHYS_PAIR_KERNEL(pull,
+                   (PC_SELF(Vec3) position, PC_OTHER(Vec3) position_other, PC_ADD(Vec3) force, PC_PARAM(Real) strength),
+                   {
+                     Vec3 way = pc_sub(position_other, position);
+                     precise Real square = pc_dot(way, way) + PC_REAL(1.0);
+                     force = pc_scale(way, pc_div(strength, square));
+                   })
 PCPHYS_KERNEL(stretch, (PC_A(Vec3) position_a, PC_B(Vec3) position_b, PC_ADD_A(Vec3) force_a, PC_ADD_B(Vec3) force_b), {
   Vec3 way = pc_sub(position_b, position_a);
   force_a = pc_scale(way, PC_REAL(0.1));
@@ -43,13 +47,15 @@ void must(const Status& status) {
   if (!status) std::puts(status.error().message.c_str()), std::exit(1);
 }
 
-/// Piles on a floor, more than a piece of any loop, and ragdolls that fall on them; with properties and kernels of the host's own.
+/// Piles on a floor, more than a piece of any loop, and ragdolls that fall on them; with properties and kernels of the
+/// host's own.
 struct Scene {
   World world;
   Stepper stepper;
 
   Scene(Precision precision, std::uint32_t threads, bool own)
-      : world(WorldDef{precision, {}}), stepper({.substeps = 2, .threads = threads, .sleep = true, .contact_events = true}) {
+      : world(WorldDef{precision, {}}),
+        stepper({.substeps = 2, .threads = threads, .sleep = true, .contact_events = true}) {
     add_piles();
     for (int i = 0; i < 6; i++) (void)must(world.create_ragdoll(RagdollDef::human(), {{3.0 * i, 6, 1}, {}}));
     if (own) add_kernels();
@@ -68,8 +74,8 @@ struct Scene {
     (void)must(world.create_body(floor));
     const Hull wedge = must(make_hull(std::array<Vec3, 6>{Vec3{-0.3, 0, -0.3}, Vec3{0.3, 0, -0.3}, Vec3{0.3, 0, 0.3},
                                                           Vec3{-0.3, 0, 0.3}, Vec3{0, 0.4, -0.3}, Vec3{0, 0.4, 0.3}}));
-    const std::array<ShapeDef, 4> shapes{ShapeDef::sphere(0.3), ShapeDef::box({0.3, 0.3, 0.3}), ShapeDef::capsule(0.2, 0.2),
-                                         ShapeDef::hull(wedge)};
+    const std::array<ShapeDef, 4> shapes{ShapeDef::sphere(0.3), ShapeDef::box({0.3, 0.3, 0.3}),
+                                         ShapeDef::capsule(0.2, 0.2), ShapeDef::hull(wedge)};
     for (int i = 0; i < 1200; i++) {
       body.shapes = {shapes[std::size_t(i % 4)]};
       body.pose.position = {i / 3 % 20 * 0.8, 0.4 + 0.65 * (i % 3), i / 60 * 0.8};
@@ -90,7 +96,8 @@ struct Scene {
 constexpr int steps = 12;
 
 bool same(const char* what, std::uint64_t one, std::uint64_t other) {
-  std::printf("%s: %016llx, %016llx\n", what, static_cast<unsigned long long>(one), static_cast<unsigned long long>(other));
+  std::printf("%s: %016llx, %016llx\n", what, static_cast<unsigned long long>(one),
+              static_cast<unsigned long long>(other));
   return one == other;
 }
 
@@ -102,7 +109,8 @@ bool threads_agree(Precision precision, bool own) {
   return good;
 }
 
-/// Two hosts, each with a world and a stepper of several threads, made, stepped, saved, restored and given up at the same time.
+/// Two hosts, each with a world and a stepper of several threads, made, stepped, saved, restored and given up at the
+/// same time.
 bool worlds_agree() {
   const std::uint64_t one = Scene(Precision::f32, 1, true).run(steps);
   std::array<std::uint64_t, 2> hashes{};

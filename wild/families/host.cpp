@@ -360,7 +360,8 @@ constexpr Host::Act all_acts[] = {
     &Host::filter,     &Host::part,  &Host::retune,      &Host::configure,     &Host::fall_otherwise,
     &Host::keep_awake, &Host::wake,  &Host::save,        &Host::restore,
 };
-constexpr std::span<const Host::Act> kinds_of_calls[] = {all_acts, all_acts, of_state, of_structure, of_settings, of_forces, of_pairs};
+constexpr std::span<const Host::Act> kinds_of_calls[] = {all_acts,    all_acts,  of_state, of_structure,
+                                                         of_settings, of_forces, of_pairs};
 
 }  // namespace
 

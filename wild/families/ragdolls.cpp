@@ -251,7 +251,7 @@ void draw_crushed(Builder& b) {
 }
 
 constexpr void (*kinds_of_ragdolls[])(Builder&) = {draw_dropped, draw_thrown, draw_drum,   draw_on_bridge,
-                                       draw_by_hand, draw_pulled, draw_crushed};
+                                                   draw_by_hand, draw_pulled, draw_crushed};
 
 }  // namespace
 

@@ -293,7 +293,7 @@ void draw_parallel(Builder& b) {
 }
 
 constexpr void (*kinds_of_springs[])(Builder&) = {draw_web,     draw_web,  draw_lattice, draw_dragged_chain, draw_hung,
-                                       draw_in_room, draw_star, draw_ring,    draw_parallel};
+                                                  draw_in_room, draw_star, draw_ring,    draw_parallel};
 
 }  // namespace
 

@@ -23,13 +23,28 @@ const uint PC_PLANE = 5u;
 #define PC_CLIP_SLOP PC_REAL(2e-3)
 // gains below these are noise when four points are chosen (length and area, relative)
 #define PC_DEEPER_SLOP PC_REAL(1e-4)
-// the same of overlapping faces with many corners, since a loaded stack rocks by more: another choice loses the impulses
+// the same of overlapping faces with many corners, since a loaded stack rocks by more: another choice loses the
+// impulses
 #define PC_FLAT_SLOP PC_REAL(1e-3)
 #define PC_WIDER_SLOP PC_REAL(1.01)
 
-struct NarrowShape { uint kind; Vec3 size; Vec3 p; Quaternion q; HullRef hull; };
-struct NarrowPoint { Vec3 p; Real separation; uint feature; };
-struct NarrowManifold { Vec3 normal; uint count; NarrowPoint points[4]; };
+struct NarrowShape {
+  uint kind;
+  Vec3 size;
+  Vec3 p;
+  Quaternion q;
+  HullRef hull;
+};
+struct NarrowPoint {
+  Vec3 p;
+  Real separation;
+  uint feature;
+};
+struct NarrowManifold {
+  Vec3 normal;
+  uint count;
+  NarrowPoint points[4];
+};
 
 PC_FN Real pc_component(Vec3 v, uint i) { return i == 0u ? v.x : (i == 1u ? v.y : v.z); }
 PC_FN Vec3 pc_axis(Axes m, uint i) {
@@ -46,7 +61,8 @@ PC_FN uint pc_greatest_component(Vec3 v) {
   return v.z > pc_component(v, i) ? 2u : i;
 }
 PC_FN uint pc_least_component(Vec3 v) {
-  Vec3 s = pc_abs3(v); uint i = s.y < s.x ? 1u : 0u;
+  Vec3 s = pc_abs3(v);
+  uint i = s.y < s.x ? 1u : 0u;
   return s.z < pc_component(s, i) ? 2u : i;
 }
 // Middle of that edge of the box |x_i| <= h_i along axis i which lies farthest along n.
@@ -57,11 +73,14 @@ PC_FN Vec3 pc_edge_middle(Vec3 h, uint i, Vec3 n) {
 
 PC_FN void pc_push(PC_INOUT(NarrowManifold) m, Vec3 p, Real separation, uint feature) {
   uint i = m.count;
-  m.points[i].p = p; m.points[i].separation = separation; m.points[i].feature = feature;
+  m.points[i].p = p;
+  m.points[i].separation = separation;
+  m.points[i].feature = feature;
   m.count = i + 1u;
 }
 // The point x of shape a's core, whose surface lies `radius` along n and b's surface `separation` beyond.
-PC_FN void pc_push_from(PC_INOUT(NarrowManifold) m, Vec3 x, Vec3 n, Real radius, Real separation, Real margin, uint feature) {
+PC_FN void pc_push_from(PC_INOUT(NarrowManifold) m, Vec3 x, Vec3 n, Real radius, Real separation, Real margin,
+                        uint feature) {
   if (separation > margin) return;
   precise Real reach = radius + separation * PC_REAL(0.5);
   pc_push(m, pc_madd(x, n, reach), separation, feature);
