@@ -62,6 +62,8 @@ class Ode : public Peer {
   }
 
   ~Ode() override {
+    // What gave up midway is left as it is: its spaces are locked, and to destroy one would give up in a destructor.
+    if (gave_up_) return;
     dJointGroupDestroy(contacts_);
     dSpaceDestroy(moving_);
     dSpaceDestroy(standing_);
@@ -75,6 +77,7 @@ class Ode : public Peer {
       for (int k = 0; k < substeps_; ++k)
         if (!substep(h)) return Error{ErrorCode::unavailable, "ODE had no memory for a step."};
     } catch (const std::runtime_error& error) {
+      gave_up_ = true;
       return Error{ErrorCode::unavailable, std::string("ODE gave up: ") + error.what() + "."};
     }
     return {};
@@ -326,6 +329,7 @@ class Ode : public Peer {
   int substeps_;
   double bounce_speed_ = 0.5;  // ODE has no default; pcphys's own [m/s]
   double damped_for_ = 0, deepest_ = 0;
+  bool gave_up_ = false;  // in the middle of a step
   std::size_t points_ = 0;
   dWorldID world_;
   dSpaceID moving_, standing_;

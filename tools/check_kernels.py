@@ -10,7 +10,7 @@ In src/kernels/**/*.inl (the common subset of C++20 and GLSL):
     division  no operator / on reals: devices round it differently
     precise   a sum, difference or product of reals is the initialiser of a `precise` local
     literal   constants of reals stand in PC_REAL(...)
-    bare      other numbers than 0.0, 0.5, 1.0 and 2.0 have a name: #define NAME PC_REAL(...), or are of math.inl
+    bare      other numbers than 0.0, 0.5, 1.0 and 2.0 have a name: #define NAME PC_REAL(...), or are of math*.inl
     reserved  no name that GLSL keeps for itself
     nodes     a loop over the nodes of a tree is one of nodes.inl, which say how a work group may share it
 In src/cpu, src/glcompute and src/step (loops and bindings only; lanes*.h and prelude*.h define the types):

@@ -3,6 +3,7 @@ import re
 
 INTEGER_TYPES = {"uint", "int", "Index", "Row", "Slot", "bool", "uint32_t", "size_t"}
 BARE = {"0.0", "0.5", "1.0", "2.0"}  # numbers that need no name
+MATH = {"math.inl", "math_angles.inl", "math_decay.inl"}  # files of polynomials, where no number needs one
 LOOPS = {"PC_NODES", "PC_DOWN", "PC_UP", "PC_CHILDREN", "PC_ALL"}  # over nodes, see nodes.inl
 KEYWORDS = {"if", "for", "while", "switch", "return", "else", "do", "case"}
 BANNED = set("""abs sign floor ceil trunc round roundEven fract mod modf min max clamp mix step smoothstep isnan isinf fma ldexp
@@ -48,7 +49,7 @@ class Kernel:
 
     def __init__(self, source, names):
         self.source, self.names, self.scope = source, names, {}
-        self.names_numbers = source.path.name == "math.inl"  # or the body of a macro without parameters
+        self.names_numbers = source.path.name in MATH  # or the body of a macro without parameters
         for before, token in zip(source.tokens, source.tokens[1:]):
             if before.kind == token.kind == "name" and token.text in RESERVED:
                 source.report(token.line, "reserved", token.text)
@@ -56,7 +57,7 @@ class Kernel:
         for _, parameters, body in source.macros:
             if body:
                 self.scope = {}
-                self.names_numbers = parameters is None or source.path.name == "math.inl"
+                self.names_numbers = parameters is None or source.path.name in MATH
                 self.block(body)
 
     def block(self, tokens):
