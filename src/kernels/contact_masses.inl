@@ -29,10 +29,9 @@ PC_FN Real pc_least_response(Sym3 l) {
   precise Real tangents = PC_REAL(2.0) * det * pc_inverse_or_zero(trace);
   return pc_min(l.zz, pc_max(tangents, PC_REAL(0.0)));
 }
-// Effective masses and the responses between rows; `w0` to `w3`: 1 where the point exists.
-PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2, Real w3) {
 #ifndef PC_FRICTIONLESS
-  // friction block and twist
+// The friction block, the twist, and the response of everything else to them.
+PC_FN void pc_store_friction_masses(PC_IO Slot m, Responses r) {
   precise Real det = r.l.xx * r.l.yy - r.l.xy * r.l.xy;
   Real inverse_det = pc_inverse_or_zero(det);
   precise Real t11 = r.l.yy * inverse_det;
@@ -53,10 +52,30 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
   pc_st_mass(ROW_C + 6u, r.w2.x);
   pc_st_mass(ROW_C + 7u, r.w2.y);
   pc_st_mass(ROW_C + 8u, r.a.yz);
+}
+#endif
+// What a point at (a, b) of the contact plane sees of a motion of the centre: of (v_n, w_1, w_2) along the normal.
+PC_FN Real pc_seen_at(Vec3 motion, Real a, Real b) {
+  precise Real seen = motion.x + b * motion.y - a * motion.z;
+  return seen;
+}
+// The motion of the centre that a unit impulse of the normal row at (a, b) makes: K [1, b, -a].
+PC_FN Vec3 pc_row_motion(Responses r, Real a, Real b) {
+  precise Real vn = r.l.zz + r.w1.z * b - r.w2.z * a;
+  precise Real w1 = r.w1.z + r.a.xx * b - r.a.xy * a;
+  precise Real w2 = r.w2.z + r.a.xy * b - r.a.yy * a;
+  return Vec3(vn, w1, w2);
+}
+PC_FN Real pc_row_mass(Vec3 motion, Real a, Real b, Real weight) {
+  precise Real mass = pc_inverse_or_zero(pc_seen_at(motion, a, b)) * weight;
+  return mass;
+}
+// Effective masses and the responses between rows; `w0` to `w3`: 1 where the point exists.
+PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2, Real w3) {
+#ifndef PC_FRICTIONLESS
+  pc_store_friction_masses(PC_PASS m, r);
 #endif
   pc_st_mass(ROW_K, pc_least_response(r.l));
-
-  // normal rows: u_i = K [1, b_i, -a_i] and their products
   Real a0 = PC_LD(contact_rows, m, ROW_A);
   Real a1 = PC_LD(contact_rows, m, ROW_A + 1u);
   Real a2 = PC_LD(contact_rows, m, ROW_A + 2u);
@@ -65,48 +84,20 @@ PC_FN void pc_store_masses(PC_IO Slot m, Responses r, Real w0, Real w1, Real w2,
   Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
   Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
   Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
-  Real nn = r.l.zz;
-  Real n1 = r.w1.z;
-  Real n2 = r.w2.z;
-  Real m11 = r.a.xx;
-  Real m12 = r.a.xy;
-  Real m22 = r.a.yy;
-  precise Real u0 = nn + n1 * b0 - n2 * a0;
-  precise Real v0 = n1 + m11 * b0 - m12 * a0;
-  precise Real x0 = n2 + m12 * b0 - m22 * a0;
-  precise Real u1 = nn + n1 * b1 - n2 * a1;
-  precise Real v1 = n1 + m11 * b1 - m12 * a1;
-  precise Real x1 = n2 + m12 * b1 - m22 * a1;
-  precise Real u2 = nn + n1 * b2 - n2 * a2;
-  precise Real v2 = n1 + m11 * b2 - m12 * a2;
-  precise Real x2 = n2 + m12 * b2 - m22 * a2;
-  precise Real u3 = nn + n1 * b3 - n2 * a3;
-  precise Real v3 = n1 + m11 * b3 - m12 * a3;
-  precise Real x3 = n2 + m12 * b3 - m22 * a3;
-  precise Real e0 = u0 + b0 * v0 - a0 * x0;
-  precise Real q0 = pc_inverse_or_zero(e0) * w0;
-  precise Real e1 = u1 + b1 * v1 - a1 * x1;
-  precise Real q1 = pc_inverse_or_zero(e1) * w1;
-  precise Real e2 = u2 + b2 * v2 - a2 * x2;
-  precise Real q2 = pc_inverse_or_zero(e2) * w2;
-  precise Real e3 = u3 + b3 * v3 - a3 * x3;
-  precise Real q3 = pc_inverse_or_zero(e3) * w3;
-  pc_st_mass(ROW_MASS, q0);
-  pc_st_mass(ROW_MASS + 1u, q1);
-  pc_st_mass(ROW_MASS + 2u, q2);
-  pc_st_mass(ROW_MASS + 3u, q3);
-  precise Real d01 = u0 + b1 * v0 - a1 * x0;
-  precise Real d02 = u0 + b2 * v0 - a2 * x0;
-  precise Real d03 = u0 + b3 * v0 - a3 * x0;
-  precise Real d12 = u1 + b2 * v1 - a2 * x1;
-  precise Real d13 = u1 + b3 * v1 - a3 * x1;
-  precise Real d23 = u2 + b3 * v2 - a3 * x2;
-  pc_st_mass(ROW_D, d01);
-  pc_st_mass(ROW_D + 1u, d02);
-  pc_st_mass(ROW_D + 2u, d03);
-  pc_st_mass(ROW_D + 3u, d12);
-  pc_st_mass(ROW_D + 4u, d13);
-  pc_st_mass(ROW_D + 5u, d23);
+  Vec3 u0 = pc_row_motion(r, a0, b0);
+  Vec3 u1 = pc_row_motion(r, a1, b1);
+  Vec3 u2 = pc_row_motion(r, a2, b2);
+  Vec3 u3 = pc_row_motion(r, a3, b3);
+  pc_st_mass(ROW_MASS, pc_row_mass(u0, a0, b0, w0));
+  pc_st_mass(ROW_MASS + 1u, pc_row_mass(u1, a1, b1, w1));
+  pc_st_mass(ROW_MASS + 2u, pc_row_mass(u2, a2, b2, w2));
+  pc_st_mass(ROW_MASS + 3u, pc_row_mass(u3, a3, b3, w3));
+  pc_st_mass(ROW_D, pc_seen_at(u0, a1, b1));
+  pc_st_mass(ROW_D + 1u, pc_seen_at(u0, a2, b2));
+  pc_st_mass(ROW_D + 2u, pc_seen_at(u0, a3, b3));
+  pc_st_mass(ROW_D + 3u, pc_seen_at(u1, a2, b2));
+  pc_st_mass(ROW_D + 4u, pc_seen_at(u1, a3, b3));
+  pc_st_mass(ROW_D + 5u, pc_seen_at(u2, a3, b3));
 }
 #undef pc_st_mass
 #ifdef PC_SOME_ROWS

@@ -7,38 +7,55 @@
 #include "contact_response.inl"
 #include "contact_friction.inl"
 #include "contact_together.inl"
-
-// What a row asks for, as a change of its impulse.
-PC_FN Real pc_restitution_row(PC_IO Real vn, Real approach, Real largest, Real e, Real mass) {
-  precise Real threshold = -PC_INFO(restitution_threshold);
-  Mask bounces = pc_and(pc_and(largest > PC_REAL(0.0), approach < threshold), e > PC_REAL(0.0));
-  precise Real change = -(mass * (vn + e * approach));
-  return pc_select(bounces, change, PC_REAL(0.0));
-}
-PC_FN Real pc_bounced_row(Real impulse, Real change, Real share) {
-  precise Real next = impulse + change * share;
-  return pc_snap(pc_max(next, PC_REAL(0.0)));
-}
+#include "row_approach.inl"
 
 PC_FN Mask pc_bounces(PC_IO Slot m, uint i) {
   precise Real threshold = -PC_INFO(restitution_threshold);
   return pc_and(PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) > PC_REAL(0.0),
                 PC_LD(contact_rows, m, ROW_APPROACH + i) < threshold);
 }
+// Whether any row does, of bodies on joints: contact_impact has seen to the others.
+PC_FN Mask pc_some_bounce(PC_IO Slot m) {
+  Mask some = pc_or(pc_or(pc_bounces(PC_PASS m, 0u), pc_bounces(PC_PASS m, 1u)),
+                    pc_or(pc_bounces(PC_PASS m, 2u), pc_bounces(PC_PASS m, 3u)));
+  Real impact = PC_LD(contact_rows, m, ROW_IMPACT);
+  some = pc_and(some, pc_and(impact<PC_REAL(-0.5), impact> PC_REAL(-2.0)));
+  return pc_and(some,
+                pc_and(PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_ACTS) > PC_REAL(0.0)));
+}
 
-PC_FN void pc_note_bounce(PC_IO Slot m, uint i, Real bounce) {
+// What a row asks for, as a change of its impulse.
+PC_FN Real pc_restitution_row(PC_IO Slot m, uint i, Twist v) {
+  Real e = PC_LD(contact_rows, m, ROW_E);
+  Mask bounces = pc_and(pc_bounces(PC_PASS m, i), e > PC_REAL(0.0));
+  precise Real aim = pc_row_approach(PC_PASS m, i, v) + e * PC_LD(contact_rows, m, ROW_APPROACH + i);
+  precise Real change = -(PC_LD(contact_rows, m, ROW_MASS + i) * aim);
+  return pc_select(bounces, change, PC_REAL(0.0));
+}
+PC_FN Real pc_bounced_row(Real impulse, Real change, Real share) {
+  precise Real next = impulse + change * share;
+  return pc_snap(pc_max(next, PC_REAL(0.0)));
+}
+PC_FN FourRows pc_bounced_rows(PC_IO Slot m, FourRows now, Twist v) {
+  FourRows change = pc_four(pc_restitution_row(PC_PASS m, 0u, v), pc_restitution_row(PC_PASS m, 1u, v),
+                            pc_restitution_row(PC_PASS m, 2u, v), pc_restitution_row(PC_PASS m, 3u, v));
+  FourRows mass = pc_four(PC_LD(contact_rows, m, ROW_MASS), PC_LD(contact_rows, m, ROW_MASS + 1u),
+                          PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u));
+  Real share = pc_common_share(now, change, mass, pc_couplings(PC_PASS m));
+  return pc_four(pc_bounced_row(now.r0, change.r0, share), pc_bounced_row(now.r1, change.r1, share),
+                 pc_bounced_row(now.r2, change.r2, share), pc_bounced_row(now.r3, change.r3, share));
+}
+
+// What a row bounced by, which it notes.
+PC_FN Real pc_note_bounce(PC_IO Slot m, uint i, Mask some, Real before, Real after) {
+  precise Real bounce = (after - before) * pc_select(some, PC_REAL(1.0), PC_REAL(0.0));
   precise Real all = PC_LD(contact_impulses, m, IMPULSE_LARGEST + i) + bounce;
   PC_ST(contact_impulses, m, IMPULSE_LARGEST + i, all);
+  return bounce;
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
-  Mask some = pc_or(pc_or(pc_bounces(PC_PASS m, 0u), pc_bounces(PC_PASS m, 1u)),
-                    pc_or(pc_bounces(PC_PASS m, 2u), pc_bounces(PC_PASS m, 3u)));
-  // of bodies on joints: contact_impact has seen to the others
-  Real impact = PC_LD(contact_rows, m, ROW_IMPACT);
-  some = pc_and(some, pc_and(impact<PC_REAL(-0.5), impact> PC_REAL(-2.0)));
-  some = pc_and(some,
-                pc_and(PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_ACTS) > PC_REAL(0.0)));
+  Mask some = pc_some_bounce(PC_PASS m);
   if (!PC_ANY(some)) return;  // lint: allow (others change nothing)
   Index ia = PC_ENDS(contact_ends, m, 0u);
   Index ib = PC_ENDS(contact_ends, m, 1u);
@@ -51,57 +68,16 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   Twist v = pc_twist(a, b, arms, n, t1, t2);
-  Real e = PC_LD(contact_rows, m, ROW_E);
-  Real vn = v.vn;
-  Real w1 = v.w1;
-  Real w2 = v.w2;
-  Real a0 = PC_LD(contact_rows, m, ROW_A);
-  Real b0 = PC_LD(contact_rows, m, ROW_B);
-  precise Real v0 = vn + b0 * w1 - a0 * w2;
-  precise Real m0 = PC_LD(contact_rows, m, ROW_MASS);
-  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u);
-  Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
-  precise Real v1 = vn + b1 * w1 - a1 * w2;
-  precise Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u);
-  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u);
-  Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
-  precise Real v2 = vn + b2 * w1 - a2 * w2;
-  precise Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u);
-  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
-  Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
-  precise Real v3 = vn + b3 * w1 - a3 * w2;
-  precise Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
-  Real l0 = PC_LD(contact_impulses, m, 0u);
-  Real r0 = pc_restitution_row(PC_PASS v0, PC_LD(contact_rows, m, ROW_APPROACH),
-                               PC_LD(contact_impulses, m, IMPULSE_LARGEST), e, m0);
-  Real l1 = PC_LD(contact_impulses, m, 1u);
-  Real r1 = pc_restitution_row(PC_PASS v1, PC_LD(contact_rows, m, ROW_APPROACH + 1u),
-                               PC_LD(contact_impulses, m, IMPULSE_LARGEST + 1u), e, m1);
-  Real l2 = PC_LD(contact_impulses, m, 2u);
-  Real r2 = pc_restitution_row(PC_PASS v2, PC_LD(contact_rows, m, ROW_APPROACH + 2u),
-                               PC_LD(contact_impulses, m, IMPULSE_LARGEST + 2u), e, m2);
-  Real l3 = PC_LD(contact_impulses, m, 3u);
-  Real r3 = pc_restitution_row(PC_PASS v3, PC_LD(contact_rows, m, ROW_APPROACH + 3u),
-                               PC_LD(contact_impulses, m, IMPULSE_LARGEST + 3u), e, m3);
-  Real share = pc_common_share(pc_four(l0, l1, l2, l3), pc_four(r0, r1, r2, r3), pc_four(m0, m1, m2, m3),
-                               pc_couplings(PC_PASS m));
-  Real k0 = pc_bounced_row(l0, r0, share);
-  Real k1 = pc_bounced_row(l1, r1, share);
-  Real k2 = pc_bounced_row(l2, r2, share);
-  Real k3 = pc_bounced_row(l3, r3, share);
-  Real one = pc_select(some, PC_REAL(1.0), PC_REAL(0.0));
-  precise Real e0 = (k0 - l0) * one;
-  precise Real e1 = (k1 - l1) * one;
-  precise Real e2 = (k2 - l2) * one;
-  precise Real e3 = (k3 - l3) * one;
-
-  pc_note_bounce(PC_PASS m, 0u, e0);
-  pc_note_bounce(PC_PASS m, 1u, e1);
-  pc_note_bounce(PC_PASS m, 2u, e2);
-  pc_note_bounce(PC_PASS m, 3u, e3);
+  FourRows before = pc_four(PC_LD(contact_impulses, m, 0u), PC_LD(contact_impulses, m, 1u),
+                            PC_LD(contact_impulses, m, 2u), PC_LD(contact_impulses, m, 3u));
+  FourRows after = pc_bounced_rows(PC_PASS m, before, v);
+  Real e0 = pc_note_bounce(PC_PASS m, 0u, some, before.r0, after.r0);
+  Real e1 = pc_note_bounce(PC_PASS m, 1u, some, before.r1, after.r1);
+  Real e2 = pc_note_bounce(PC_PASS m, 2u, some, before.r2, after.r2);
+  Real e3 = pc_note_bounce(PC_PASS m, 3u, some, before.r3, after.r3);
   Push push = pc_push(PC_PASS m, e0, e1, e2, e3);
   Mask bounced = push.n > PC_REAL(0.0);
-  precise Real load = k0 + k1 + k2 + k3;
+  precise Real load = after.r0 + after.r1 + after.r2 + after.r3;
   Friction f = pc_friction(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), load);
   Real zero = PC_REAL(0.0);
   Real c1 = pc_select(bounced, f.change1, zero);

@@ -30,7 +30,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real both = a.inverse_mass * b.inverse_mass;
   Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
   Twist now = pc_carried(PC_PASS pc_twist(a, b, arms, n, t1, t2), a, b, arms, t1, t2);
-  Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload, pushes);
+  // (none bounces here: what free bodies bounce is contact_impact's)
+  Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload, pushes, pc_no_rows());
   pc_spare(a, pushes);
   pc_spare(b, pushes);
   Mask blow = PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0);
@@ -48,6 +49,3 @@ PC_FN void pc_kernel(PC_IO Slot m) {
                   pc_sub(b.l, before_b.l));
   }
 }
-#undef pc_thrown
-#undef pc_lasts
-#undef PC_BACK

@@ -16,6 +16,28 @@ PC_FN FourRows pc_four(Real r0, Real r1, Real r2, Real r3) {
   f.r3 = r3;
   return f;
 }
+PC_FN FourRows pc_no_rows() { return pc_four(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); }
+PC_FN FourRows pc_ld4_rows(PC_IO Slot m, uint f) {
+  return pc_four(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u),
+                 PC_LD(contact_rows, m, f + 3u));
+}
+PC_FN FourRows pc_select4(Mask m, FourRows a, FourRows b) {
+  return pc_four(pc_select(m, a.r0, b.r0), pc_select(m, a.r1, b.r1), pc_select(m, a.r2, b.r2),
+                 pc_select(m, a.r3, b.r3));
+}
+PC_FN FourRows pc_sub4(FourRows a, FourRows b) {
+  precise Real r0 = a.r0 - b.r0;
+  precise Real r1 = a.r1 - b.r1;
+  precise Real r2 = a.r2 - b.r2;
+  precise Real r3 = a.r3 - b.r3;
+  return pc_four(r0, r1, r2, r3);
+}
+PC_FN Real pc_sum4(FourRows a) {
+  precise Real sum = a.r0 + a.r1 + a.r2 + a.r3;
+  return sum;
+}
+PC_FN Real pc_largest4(FourRows a) { return pc_max(pc_max(a.r0, a.r1), pc_max(a.r2, a.r3)); }
+PC_FN Real pc_smallest4(FourRows a) { return pc_min(pc_min(a.r0, a.r1), pc_min(a.r2, a.r3)); }
 // Responses of one row to another.
 struct Couplings {
   Real d01;

@@ -9,6 +9,12 @@
 #include "angle_rows.inl"
 #include "joint_rows.inl"
 
+PC_FN void pc_st3_joint(PC_IO Slot m, uint f, Vec3 v) {
+  PC_ST(joint_rows, m, f, v.x);
+  PC_ST(joint_rows, m, f + 1u, v.y);
+  PC_ST(joint_rows, m, f + 2u, v.z);
+}
+
 PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
   // columns of -[r] I^-1 [r]: r x (I^-1 (e_k x r)) with the sign of e_k x r
   Vec3 x = Vec3(PC_REAL(1.0), PC_REAL(0.0), PC_REAL(0.0));
@@ -55,9 +61,7 @@ PC_FN Real pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lowe
   precise Real signed_impulse = remembered * sign * PC_INFO(impulse_ratio);
   Real impulse = pc_select(mass > PC_REAL(0.0), pc_select(locked, signed_impulse, pc_max(signed_impulse, PC_REAL(0.0))),
                            PC_REAL(0.0));
-  PC_ST(joint_rows, m, JOINT_AXIS + row * 3u, j.x);
-  PC_ST(joint_rows, m, JOINT_AXIS + row * 3u + 1u, j.y);
-  PC_ST(joint_rows, m, JOINT_AXIS + row * 3u + 2u, j.z);
+  pc_st3_joint(PC_PASS m, JOINT_AXIS + row * 3u, j);
   PC_ST(joint_rows, m, JOINT_SLACK + row, slack);
   PC_ST(joint_rows, m, JOINT_MASS + row, mass);
   PC_ST(joint_rows, m, JOINT_SIGN + row, sign);
@@ -66,10 +70,67 @@ PC_FN Real pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lowe
   return result;
 }
 
+// How relative angular velocity answers a couple.
+PC_FN Sym3 pc_turning_of_both(BodyState a, BodyState b) {
+  precise Real xx = a.inertia.xx * a.response + b.inertia.xx * b.response;
+  precise Real xy = a.inertia.xy * a.response + b.inertia.xy * b.response;
+  precise Real xz = a.inertia.xz * a.response + b.inertia.xz * b.response;
+  precise Real yy = a.inertia.yy * a.response + b.inertia.yy * b.response;
+  precise Real yz = a.inertia.yz * a.response + b.inertia.yz * b.response;
+  precise Real zz = a.inertia.zz * a.response + b.inertia.zz * b.response;
+  Sym3 both;
+  both.xx = xx;
+  both.xy = xy;
+  both.xz = xz;
+  both.yy = yy;
+  both.yz = yz;
+  both.zz = zz;
+  return both;
+}
+// All three, from the joint frames fa and fb; answers their impulses.
+PC_FN Vec3 pc_angle_rows(PC_IO Slot m, Index joint, BodyState a, BodyState b, Quaternion fa, Quaternion fb, Real kind,
+                         Vec3 remembered) {
+  Vec3 lower = PC_GATHER(joint_solved, joint, 4u).v;
+  Vec3 upper = PC_GATHER(joint_solved, joint, 5u).v;
+  Mask any = kind > PC_REAL(0.5);
+  Mask is_cone = pc_and(any, kind < PC_REAL(2.0));
+  Mask is_angles = kind > PC_REAL(1.0);
+  Angles angles = pc_joint_angles(fa, fb, is_cone);
+  Vec3 now = angles.value;
+  Sym3 both = pc_turning_of_both(a, b);
+  Real c0 = pc_angle_row(PC_PASS m, 0u, angles.roll_axis, now.x, lower.x, upper.x, any, remembered.x, both);
+  Real c1 = pc_angle_row(PC_PASS m, 1u, angles.second_axis, now.y, lower.y, upper.y, any, remembered.y, both);
+  Real c2 = pc_angle_row(PC_PASS m, 2u, angles.third_axis, now.z, lower.z, upper.z, is_angles, remembered.z, both);
+  return Vec3(c0, c1, c2);
+}
+
 // A force F that pulls a body at its arm swings it with omega^2 = F times this (plan/loops.cpp has the same).
 PC_FN Real pc_swing_ratio(BodyState b, Vec3 arm) {
   precise Real ratio = pc_turning_answer(b, arm) * pc_inverse_or_zero(pc_length(arm));
   return ratio;
+}
+
+// A pull that swings a body with h omega above 1 makes energy: the pin gives way to it.
+PC_FN Real pc_most_of_pin(PC_IO BodyState a, BodyState b, Vec3 arm_a, Vec3 arm_b, Real largest_force) {
+  Real ratio = pc_max(pc_swing_ratio(a, arm_a), pc_swing_ratio(b, arm_b));
+  precise Real most = largest_force * PC_INFO(h);
+  precise Real swings = PC_INFO(inverse_h) * pc_inverse_or_zero(ratio);
+  Mask given = most > PC_REAL(0.0);
+  Mask bounded = swings > PC_REAL(0.0);
+  return pc_select(pc_and(given, bounded), pc_min(most, swings), pc_max(most, swings));
+}
+// `ra`, `rb`: from each centre of mass to its own pin; `apart`: from a's to b's.
+PC_FN void pc_pin_rows(PC_IO Slot m, BodyState a, BodyState b, Vec3 ra, Vec3 rb, Vec3 apart, Real largest_force) {
+  Vec3 gap = pc_add(apart, pc_sub(rb, ra));
+  Vec3 arm_a = pc_madd(ra, gap, PC_REAL(0.5));
+  Vec3 arm_b = pc_sub(arm_a, apart);
+  Sym3 k = pc_sym_inverse(pc_pin_block(a, b, arm_a, arm_b));
+  pc_st3_joint(PC_PASS m, JOINT_ARM_A, arm_a);
+  pc_st3_joint(PC_PASS m, JOINT_ARM_B, arm_b);
+  pc_st3_joint(PC_PASS m, JOINT_GAP, gap);
+  PC_ST(joint_rows, m, JOINT_MOST, pc_most_of_pin(PC_PASS a, b, arm_a, arm_b, largest_force));
+  pc_st3_joint(PC_PASS m, JOINT_K, Vec3(k.xx, k.xy, k.xz));
+  pc_st3_joint(PC_PASS m, JOINT_K + 3u, Vec3(k.yy, k.yz, k.zz));
 }
 
 PC_FN void pc_kernel(PC_IO Slot m) {
@@ -88,74 +149,18 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad axes_a = PC_GATHER(joint_solved, joint, 1u);
   Quad anchor_b = PC_GATHER(joint_solved, joint, 2u);
   Quad axes_b = PC_GATHER(joint_solved, joint, 3u);
-  Quad lower = PC_GATHER(joint_solved, joint, 4u);
-  Quad upper = PC_GATHER(joint_solved, joint, 5u);
   Quad pin = PC_GATHER(joint_impulse, joint, 0u);
   Quad angle = PC_GATHER(joint_impulse, joint, 1u);
   Quaternion qa = pc_quaternion(turn_a.v, turn_a.s);
   Quaternion qb = pc_quaternion(turn_b.v, turn_b.s);
-
-  // pin
-  Vec3 ra = pc_rotate(qa, anchor_a.v);
-  Vec3 rb = pc_rotate(qb, anchor_b.v);
   Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
-  Vec3 gap = pc_add(apart, pc_sub(rb, ra));
-  Vec3 arm_a = pc_madd(ra, gap, PC_REAL(0.5));
-  Vec3 arm_b = pc_sub(arm_a, apart);
-  Sym3 k = pc_sym_inverse(pc_pin_block(a, b, arm_a, arm_b));
-  PC_ST(joint_rows, m, JOINT_ARM_A, arm_a.x);
-  PC_ST(joint_rows, m, JOINT_ARM_A + 1u, arm_a.y);
-  PC_ST(joint_rows, m, JOINT_ARM_A + 2u, arm_a.z);
-  PC_ST(joint_rows, m, JOINT_ARM_B, arm_b.x);
-  PC_ST(joint_rows, m, JOINT_ARM_B + 1u, arm_b.y);
-  PC_ST(joint_rows, m, JOINT_ARM_B + 2u, arm_b.z);
-  PC_ST(joint_rows, m, JOINT_GAP, gap.x);
-  PC_ST(joint_rows, m, JOINT_GAP + 1u, gap.y);
-  PC_ST(joint_rows, m, JOINT_GAP + 2u, gap.z);
-  // a pull that swings a body with h omega above 1 makes energy: the pin gives way to it
-  Real ratio = pc_max(pc_swing_ratio(a, arm_a), pc_swing_ratio(b, arm_b));
-  precise Real most = anchor_b.s * PC_INFO(h);
-  precise Real swings = PC_INFO(inverse_h) * pc_inverse_or_zero(ratio);
-  Mask given = most > PC_REAL(0.0);
-  Mask bounded = swings > PC_REAL(0.0);
-  PC_ST(joint_rows, m, JOINT_MOST, pc_select(pc_and(given, bounded), pc_min(most, swings), pc_max(most, swings)));
-  PC_ST(joint_rows, m, JOINT_K, k.xx);
-  PC_ST(joint_rows, m, JOINT_K + 1u, k.xy);
-  PC_ST(joint_rows, m, JOINT_K + 2u, k.xz);
-  PC_ST(joint_rows, m, JOINT_K + 3u, k.yy);
-  PC_ST(joint_rows, m, JOINT_K + 4u, k.yz);
-  PC_ST(joint_rows, m, JOINT_K + 5u, k.zz);
-
-  // angles
-  Real kind = anchor_a.s;
-  Mask any = kind > PC_REAL(0.5);
-  Mask is_cone = pc_and(any, kind < PC_REAL(2.0));
-  Mask is_angles = kind > PC_REAL(1.0);
-  Angles angles = pc_joint_angles(pc_quaternion_mul(qa, pc_quaternion(axes_a.v, axes_a.s)),
-                                  pc_quaternion_mul(qb, pc_quaternion(axes_b.v, axes_b.s)), is_cone);
-  Sym3 both;
-  Sym3 wa = a.inertia;
-  Sym3 wb = b.inertia;
-  precise Real xx = wa.xx * a.response + wb.xx * b.response;
-  precise Real xy = wa.xy * a.response + wb.xy * b.response;
-  precise Real xz = wa.xz * a.response + wb.xz * b.response;
-  precise Real yy = wa.yy * a.response + wb.yy * b.response;
-  precise Real yz = wa.yz * a.response + wb.yz * b.response;
-  precise Real zz = wa.zz * a.response + wb.zz * b.response;
-  both.xx = xx;
-  both.xy = xy;
-  both.xz = xz;
-  both.yy = yy;
-  both.yz = yz;
-  both.zz = zz;
-  Real c0 = pc_angle_row(PC_PASS m, 0u, angles.roll_axis, angles.value.x, lower.v.x, upper.v.x, any, angle.v.x, both);
-  Real c1 = pc_angle_row(PC_PASS m, 1u, angles.second_axis, angles.value.y, lower.v.y, upper.v.y, any, angle.v.y, both);
-  Real c2 =
-      pc_angle_row(PC_PASS m, 2u, angles.third_axis, angles.value.z, lower.v.z, upper.v.z, is_angles, angle.v.z, both);
+  pc_pin_rows(PC_PASS m, a, b, pc_rotate(qa, anchor_a.v), pc_rotate(qb, anchor_b.v), apart, anchor_b.s);
+  Quaternion fa = pc_quaternion_mul(qa, pc_quaternion(axes_a.v, axes_a.s));
+  Quaternion fb = pc_quaternion_mul(qb, pc_quaternion(axes_b.v, axes_b.s));
+  angle.v = pc_angle_rows(PC_PASS m, joint, a, b, fa, fb, anchor_a.s, angle.v);
 
   precise Vec3 impulse = pin.v * PC_INFO(impulse_ratio);
   pin.v = impulse;
-  angle.v = Vec3(c0, c1, c2);
   PC_SCATTER(joint_impulse, joint, 0u, pin);
   PC_SCATTER(joint_impulse, joint, 1u, angle);
 }

@@ -10,6 +10,32 @@
 #include "joint_drive_rows.inl"
 #endif
 
+// How relative angular velocity answers a couple.
+PC_FN Sym3 pc_turning_of_both(BodyState a, BodyState b) {
+  precise Real xx = a.inertia.xx * a.response + b.inertia.xx * b.response;
+  precise Real xy = a.inertia.xy * a.response + b.inertia.xy * b.response;
+  precise Real xz = a.inertia.xz * a.response + b.inertia.xz * b.response;
+  precise Real yy = a.inertia.yy * a.response + b.inertia.yy * b.response;
+  precise Real yz = a.inertia.yz * a.response + b.inertia.yz * b.response;
+  precise Real zz = a.inertia.zz * a.response + b.inertia.zz * b.response;
+  Sym3 both;
+  both.xx = xx;
+  both.xy = xy;
+  both.xz = xz;
+  both.yy = yy;
+  both.yz = yz;
+  both.zz = zz;
+  return both;
+}
+// Change of the pin's impulse at the relative velocity of its ends.
+PC_FN Vec3 pc_pin_change(PC_IO Slot m, Vec3 rate, Vec3 impulse) {
+  precise Vec3 wanted = rate + pc_ld3_joint(PC_PASS m, JOINT_GAP) * PC_INFO(soft_rate);
+  Vec3 answer = pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted);
+  precise Real minus_scale = -PC_INFO(soft_mass_scale);
+  precise Vec3 change = answer * minus_scale - impulse * PC_INFO(soft_impulse_scale);
+  return pc_within_most(PC_PASS m, impulse, change);
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Index ia = PC_ENDS(joint_ends, m, 0u);
   Index ib = PC_ENDS(joint_ends, m, 1u);
@@ -23,26 +49,10 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad pin = PC_GATHER(joint_impulse, joint, 0u);
   Quad angle = PC_GATHER(joint_impulse, joint, 1u);
 
-  // angles
-  Sym3 both;
-  Sym3 ja = a.inertia;
-  Sym3 jb = b.inertia;
-  precise Real xx = ja.xx * a.response + jb.xx * b.response;
-  precise Real xy = ja.xy * a.response + jb.xy * b.response;
-  precise Real xz = ja.xz * a.response + jb.xz * b.response;
-  precise Real yy = ja.yy * a.response + jb.yy * b.response;
-  precise Real yz = ja.yz * a.response + jb.yz * b.response;
-  precise Real zz = ja.zz * a.response + jb.zz * b.response;
-  both.xx = xx;
-  both.xy = xy;
-  both.xz = xz;
-  both.yy = yy;
-  both.yz = yz;
-  both.zz = zz;
+  Sym3 both = pc_turning_of_both(a, b);
   Vec3 wa = pc_angular_velocity(a);
   Vec3 wb = pc_angular_velocity(b);
   Vec3 couple = pc_angle_steps(PC_PASS m, pc_sub(wb, wa), both, angle);
-
 #ifdef PC_DRIVES
   couple = pc_add(couple, pc_drive_steps(PC_PASS m, pc_add(pc_sub(wb, wa), pc_sym_mul(both, couple)), both));
 #endif
@@ -51,25 +61,17 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   precise Real minus_response = -a.response;
   Vec3 la = pc_madd(a.l, couple, minus_response);
   Vec3 lb = pc_madd(b.l, couple, b.response);
-  Vec3 gap = pc_ld3_joint(PC_PASS m, JOINT_GAP);
-  Vec3 frozen_a = pc_ld3_joint(PC_PASS m, JOINT_ARM_A);
-  Vec3 frozen_b = pc_ld3_joint(PC_PASS m, JOINT_ARM_B);
   Vec3 apart = pc_add(pc_sub(place_b.v, place_a.v), pc_sub(low_b.v, low_a.v));
-  PinArms arms = pc_common_arms(frozen_a, frozen_b, apart);
-  Vec3 arm_a = arms.a;
-  Vec3 arm_b = arms.b;
-  Vec3 va = pc_add(a.v, pc_cross(pc_sym_mul(ja, la), arm_a));
-  Vec3 vb = pc_add(b.v, pc_cross(pc_sym_mul(jb, lb), arm_b));
-  precise Vec3 wanted = (vb - va) + gap * PC_INFO(soft_rate);
-  Vec3 answer = pc_sym_mul(pc_lds_joint(PC_PASS m, JOINT_K), wanted);
-  precise Real minus_scale = -PC_INFO(soft_mass_scale);
-  precise Vec3 change = answer * minus_scale - pin.v * PC_INFO(soft_impulse_scale);
-  change = pc_within_most(PC_PASS m, pin.v, change);
+  PinArms arms = pc_common_arms(pc_ld3_joint(PC_PASS m, JOINT_ARM_A), pc_ld3_joint(PC_PASS m, JOINT_ARM_B), apart);
+  Vec3 va = pc_add(a.v, pc_cross(pc_sym_mul(a.inertia, la), arms.a));
+  Vec3 vb = pc_add(b.v, pc_cross(pc_sym_mul(b.inertia, lb), arms.b));
+  Vec3 rate = pc_sub(vb, va);
+  Vec3 change = pc_pin_change(PC_PASS m, rate, pin.v);
 #ifdef PC_DRIVES
-  change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, pc_sub(vb, va), pin.v), change);
+  change = pc_select3(pc_is_spring(PC_PASS m), pc_spring_change(PC_PASS m, rate, pin.v), change);
 #endif
   pin.v = pc_snap3(pc_add(pin.v, change));
   PC_SCATTER(joint_impulse, joint, 0u, pin);
   PC_SCATTER(joint_impulse, joint, 1u, angle);
-  pc_joint_apply(PC_PASS ia, ib, a, b, arm_a, arm_b, change, couple);
+  pc_joint_apply(PC_PASS ia, ib, a, b, arms.a, arms.b, change, couple);
 }

@@ -12,7 +12,6 @@
 #include "reach_turning.inl"
 #include "kept_meeting.inl"
 #include "reach_motion.inl"
-#include "row_approach.inl"
 
 // In the relax visit: with which speed a row is to leave that was pressed in this sub-step and approached fast as it
 // began, before and after what is remembered acted.
@@ -26,7 +25,7 @@ PC_FN Real pc_leaves(PC_IO Slot m, uint i, Twist v, Real fastest) {
 PC_FN FourRows pc_bounce(PC_IO Way w, Slot m) {
   Real none = PC_REAL(0.0);
   Mask may = pc_and(PC_INFO(load_ahead) > PC_REAL(0.5), PC_LD(contact_rows, m, ROW_E) > none);
-  if (!PC_ANY(may)) return pc_four(none, none, none, none);  // lint: allow (zeros otherwise)
+  if (!PC_ANY(may)) return pc_no_rows();  // lint: allow (zeros otherwise)
   Twist v = pc_kept_meeting(PC_PASS w, m).twist;
   Real fastest = pc_select(may, PC_LD(contact_reach, PC_NODE(m, w.reach), REACH_APPROACH), none);
   return pc_four(pc_leaves(PC_PASS m, 0u, v, fastest), pc_leaves(PC_PASS m, 1u, v, fastest),
@@ -104,6 +103,3 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   pc_push_trees(PC_PASS w, m, turning, t1, t2, n, r.impulse, r.couple, torque_a, torque_b, r.touch);
 }
 #undef PC_TREES
-#undef pc_thrown
-#undef pc_lasts
-#undef PC_BACK
