@@ -12,6 +12,7 @@
 #include "contact_response.inl"
 #include "contact_masses.inl"
 #include "contact_shift.inl"
+#include "row_approach.inl"
 #include "free_responses.inl"
 #include "contact_coulomb.inl"
 #include "contact_together.inl"
@@ -22,6 +23,7 @@
 // u_aim: the velocity u that the row is to leave with; closes: 1 or 0
 struct Closing {
   Real t;
+  Real u;
   Real u_aim;
   Real closes;
 };
@@ -55,11 +57,12 @@ PC_FN Closing pc_closing(PC_IO Real u, Real s, Real acceleration, Real mass, Rea
   Real aim = pc_select(open, falls, pc_max(falls, zero));
   Closing r;
   r.t = t;
+  r.u = u;
   r.u_aim = aim;
   r.closes = pc_select(now, PC_REAL(1.0), zero);
   return r;
 }
-// What a row asks for, as a change of its impulse.
+// What a row asks for, as a change of its impulse, where its velocity is u by now.
 PC_FN Real pc_impact_row(Real u, Closing c, Real mass) {
   precise Real change = mass * (c.u_aim - u) * c.closes;
   return change;
@@ -145,194 +148,212 @@ PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
   return pc_madd(come, relative, until);
 }
 
+// Two bodies before their impact, in the contact frame; and how they moved since the step began.
+struct Encounter {
+  Index ia;
+  Index ib;
+  BodyState a;
+  BodyState b;
+  Quad moved_a;
+  Quad moved_b;
+  Vec3 n;
+  Vec3 t1;
+  Vec3 t2;
+  Arms arms;
+  Twist v;
+  Shift shift;
+};
+PC_FN Encounter pc_encounter(PC_IO Slot m) {
+  Encounter x;
+  x.ia = PC_ENDS(contact_ends, m, 0u);
+  x.ib = PC_ENDS(contact_ends, m, 1u);
+  x.a = pc_body_state(PC_PASS x.ia);
+  x.b = pc_body_state(PC_PASS x.ib);
+  x.moved_a = PC_GATHER(delta, x.ia, 0u);
+  x.moved_b = PC_GATHER(delta, x.ib, 0u);
+  x.n = pc_ld3_rows(PC_PASS m, ROW_N);
+  x.t1 = pc_ld3_rows(PC_PASS m, ROW_T);
+  x.t2 = pc_cross(x.n, x.t1);
+  Vec3 path = pc_impact_path(PC_PASS m, x.n, pc_sub(x.b.v, x.a.v), pc_sub(x.moved_b.v, x.moved_a.v));
+  x.arms = pc_arms(PC_PASS m, pc_zero3(), path);
+  x.v = pc_twist(x.a, x.b, x.arms, x.n, x.t1, x.t2);
+  x.shift = pc_shift_of(PC_PASS m, x.n, x.t1, x.t2, x.moved_a, x.moved_b, PC_GATHER(delta, x.ia, 1u),
+                        PC_GATHER(delta, x.ib, 1u));
+  return x;
+}
+// What a row's point has along the normal of a shift, or of an acceleration in its place.
+PC_FN Real pc_at_row(PC_IO Slot m, uint i, Shift shift) {
+  precise Real at =
+      shift.n + PC_LD(contact_rows, m, ROW_B + i) * shift.turn1 - PC_LD(contact_rows, m, ROW_A + i) * shift.turn2;
+  return at;
+}
+PC_FN Real pc_gap_of_row(PC_IO Slot m, uint i, Shift shift) {
+  precise Real s = PC_LD(contact_rows, m, ROW_S + i) + pc_at_row(PC_PASS m, i, shift);
+  return s;
+}
+
 // What approaches no faster than the threshold does not bounce: |v*| is at most |u| + |A| h / 2, and has to be |A| h
 // above it. Then the gap closes by at most |u| h + |A| h^2 / 8, less than 5 / 4 |u| h.
-PC_FN Mask pc_closes_fast(PC_IO Slot m, Twist v, Shift shift, uint i, Mask before) {
-  Real a = PC_LD(contact_rows, m, ROW_A + i);
-  Real b = PC_LD(contact_rows, m, ROW_B + i);
-  precise Real u = v.vn + b * v.w1 - a * v.w2;
-  precise Real s = PC_LD(contact_rows, m, ROW_S + i) + (shift.n + b * shift.turn1 - a * shift.turn2);
+PC_FN Mask pc_closes_fast(PC_IO Slot m, Encounter x, uint i, Mask before) {
+  Real u = pc_row_approach(PC_PASS m, i, x.v);
   precise Real slowest = PC_INFO(restitution_threshold) * PC_REAL(-0.5);
   precise Real most = u * PC_INFO(h) * PC_REAL(-2.0);
-  return pc_or(before, pc_and(u < slowest, s < most));
+  return pc_or(before, pc_and(u < slowest, pc_gap_of_row(PC_PASS m, i, x.shift) < most));
 }
 PC_FN Mask pc_may_hit(PC_IO Slot m) {
-  Index ia = PC_ENDS(contact_ends, m, 0u);
-  Index ib = PC_ENDS(contact_ends, m, 1u);
-  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N);
-  Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T);
-  Vec3 t2 = pc_cross(n, t1);
-  BodyState a = pc_body_state(PC_PASS ia);
-  BodyState b = pc_body_state(PC_PASS ib);
-  Quad moved_a = PC_GATHER(delta, ia, 0u);
-  Quad moved_b = PC_GATHER(delta, ib, 0u);
-  Arms arms =
-      pc_arms(PC_PASS m, pc_zero3(), pc_impact_path(PC_PASS m, n, pc_sub(b.v, a.v), pc_sub(moved_b.v, moved_a.v)));
-  Twist v = pc_twist(a, b, arms, n, t1, t2);
-  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
+  Encounter x = pc_encounter(PC_PASS m);
   Mask fast = pc_impact_always(PC_PASS m);
-  fast = pc_closes_fast(PC_PASS m, v, shift, 0u, fast);
-  fast = pc_closes_fast(PC_PASS m, v, shift, 1u, fast);
-  fast = pc_closes_fast(PC_PASS m, v, shift, 2u, fast);
-  fast = pc_closes_fast(PC_PASS m, v, shift, 3u, fast);
+  fast = pc_closes_fast(PC_PASS m, x, 0u, fast);
+  fast = pc_closes_fast(PC_PASS m, x, 1u, fast);
+  fast = pc_closes_fast(PC_PASS m, x, 2u, fast);
+  fast = pc_closes_fast(PC_PASS m, x, 3u, fast);
   return fast;
 }
-PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
-  Real zero = PC_REAL(0.0);
-  Real e = PC_LD(contact_rows, m, ROW_E);
-  Mask always = pc_impact_always(PC_PASS m);
-  Index ia = PC_ENDS(contact_ends, m, 0u);
-  Index ib = PC_ENDS(contact_ends, m, 1u);
-  Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N);
-  Vec3 t1 = pc_ld3_rows(PC_PASS m, ROW_T);
-  Vec3 t2 = pc_cross(n, t1);
-  BodyState a = pc_body_state(PC_PASS ia);
-  BodyState b = pc_body_state(PC_PASS ib);
-  Quad moved_a = PC_GATHER(delta, ia, 0u);
-  Quad moved_b = PC_GATHER(delta, ib, 0u);
 
-  Vec3 relative = pc_sub(b.v, a.v);
-  Vec3 come = pc_sub(moved_b.v, moved_a.v);
-  Vec3 path = pc_impact_path(PC_PASS m, n, relative, come);
-  Mask both_move = pc_and(a.inverse_mass > zero, b.inverse_mass > zero);
-  Arms arms = pc_arms(PC_PASS m, pc_zero3(), path);
-  Twist v = pc_twist(a, b, arms, n, t1, t2);
+// How the rows close, all four.
+struct Closings {
+  Closing c0;
+  Closing c1;
+  Closing c2;
+  Closing c3;
+};
+// How the gaps accelerate between impulses.
+PC_FN Shift pc_pull(PC_IO Encounter x) {
+  Acceleration a = pc_acceleration(PC_PASS x.ia, x.a);
+  Acceleration b = pc_acceleration(PC_PASS x.ib, x.b);
+  Vec3 centre = pc_sub(pc_add(b.a, pc_cross(b.turn, x.arms.b)), pc_add(a.a, pc_cross(a.turn, x.arms.a)));
+  Vec3 turn = pc_sub(b.turn, a.turn);
+  Shift pull;
+  pull.n = pc_dot(x.n, centre);
+  pull.turn1 = pc_dot(x.t1, turn);
+  pull.turn2 = pc_dot(x.t2, turn);
+  return pull;
+}
+PC_FN Closing pc_closing_of_row(PC_IO Slot m, uint i, Encounter x, Shift pull) {
+  return pc_closing(PC_PASS pc_row_approach(PC_PASS m, i, x.v), pc_gap_of_row(PC_PASS m, i, x.shift),
+                    pc_at_row(PC_PASS m, i, pull), PC_LD(contact_rows, m, ROW_MASS + i), PC_LD(contact_rows, m, ROW_E),
+                    pc_impact_always(PC_PASS m));
+}
+PC_FN Closings pc_closings(PC_IO Slot m, Encounter x) {
+  Shift pull = pc_pull(PC_PASS x);
+  Closings c;
+  c.c0 = pc_closing_of_row(PC_PASS m, 0u, x, pull);
+  c.c1 = pc_closing_of_row(PC_PASS m, 1u, x, pull);
+  c.c2 = pc_closing_of_row(PC_PASS m, 2u, x, pull);
+  c.c3 = pc_closing_of_row(PC_PASS m, 3u, x, pull);
+  return c;
+}
 
-  Real a0 = PC_LD(contact_rows, m, ROW_A);
-  Real a1 = PC_LD(contact_rows, m, ROW_A + 1u);
-  Real a2 = PC_LD(contact_rows, m, ROW_A + 2u);
-  Real a3 = PC_LD(contact_rows, m, ROW_A + 3u);
-  Real b0 = PC_LD(contact_rows, m, ROW_B);
-  Real b1 = PC_LD(contact_rows, m, ROW_B + 1u);
-  Real b2 = PC_LD(contact_rows, m, ROW_B + 2u);
-  Real b3 = PC_LD(contact_rows, m, ROW_B + 3u);
-  precise Real u0 = v.vn + b0 * v.w1 - a0 * v.w2;
-  precise Real u1 = v.vn + b1 * v.w1 - a1 * v.w2;
-  precise Real u2 = v.vn + b2 * v.w1 - a2 * v.w2;
-  precise Real u3 = v.vn + b3 * v.w1 - a3 * v.w2;
-
-  // gaps, and accelerations in the contact frame
-  Shift shift = pc_shift_of(PC_PASS m, n, t1, t2, moved_a, moved_b, PC_GATHER(delta, ia, 1u), PC_GATHER(delta, ib, 1u));
-  Real shift_n = shift.n;
-  Real turn1 = shift.turn1;
-  Real turn2 = shift.turn2;
-  Acceleration pull_a = pc_acceleration(PC_PASS ia, a);
-  Acceleration pull_b = pc_acceleration(PC_PASS ib, b);
-  Vec3 pull = pc_sub(pc_add(pull_b.a, pc_cross(pull_b.turn, arms.b)), pc_add(pull_a.a, pc_cross(pull_a.turn, arms.a)));
-  Vec3 spin_up = pc_sub(pull_b.turn, pull_a.turn);
-  Real pull_n = pc_dot(n, pull);
-  Real up1 = pc_dot(t1, spin_up);
-  Real up2 = pc_dot(t2, spin_up);
-  precise Real s0 = PC_LD(contact_rows, m, ROW_S) + (shift_n + b0 * turn1 - a0 * turn2);
-  precise Real s1 = PC_LD(contact_rows, m, ROW_S + 1u) + (shift_n + b1 * turn1 - a1 * turn2);
-  precise Real s2 = PC_LD(contact_rows, m, ROW_S + 2u) + (shift_n + b2 * turn1 - a2 * turn2);
-  precise Real s3 = PC_LD(contact_rows, m, ROW_S + 3u) + (shift_n + b3 * turn1 - a3 * turn2);
-  precise Real g0 = pull_n + b0 * up1 - a0 * up2;
-  precise Real g1 = pull_n + b1 * up1 - a1 * up2;
-  precise Real g2 = pull_n + b2 * up1 - a2 * up2;
-  precise Real g3 = pull_n + b3 * up1 - a3 * up2;
-  Real m0 = PC_LD(contact_rows, m, ROW_MASS);
-  Real m1 = PC_LD(contact_rows, m, ROW_MASS + 1u);
-  Real m2 = PC_LD(contact_rows, m, ROW_MASS + 2u);
-  Real m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
-  Closing c0 = pc_closing(PC_PASS u0, s0, g0, m0, e, always);
-  Closing c1 = pc_closing(PC_PASS u1, s1, g1, m1, e, always);
-  Closing c2 = pc_closing(PC_PASS u2, s2, g2, m2, e, always);
-  Closing c3 = pc_closing(PC_PASS u3, s3, g3, m3, e, always);
-  precise Real closing = c0.closes + c1.closes + c2.closes + c3.closes;
-  Mask hits = pc_and(mine, closing > zero);
-  if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
-
-  // effective masses at the arms of the impact
-  Responses r = pc_free_responses(a, b, arms.a, arms.b, n, t1, t2);
-  r.these = hits;
-  pc_renew_masses(PC_PASS m, r);
-  m0 = PC_LD(contact_rows, m, ROW_MASS);
-  m1 = PC_LD(contact_rows, m, ROW_MASS + 1u);
-  m2 = PC_LD(contact_rows, m, ROW_MASS + 2u);
-  m3 = PC_LD(contact_rows, m, ROW_MASS + 3u);
-  // all rows that close, together: equal shares of what stops their mean, then rounds of what each asks for
-  Real d01 = PC_LD(contact_rows, m, ROW_D);
-  Real d02 = PC_LD(contact_rows, m, ROW_D + 1u);
-  Real d03 = PC_LD(contact_rows, m, ROW_D + 2u);
-  Real d12 = PC_LD(contact_rows, m, ROW_D + 3u);
-  Real d13 = PC_LD(contact_rows, m, ROW_D + 4u);
-  Real d23 = PC_LD(contact_rows, m, ROW_D + 5u);
-  precise Real own = c0.closes * pc_inverse_or_zero(m0) + c1.closes * pc_inverse_or_zero(m1) +
-                     c2.closes * pc_inverse_or_zero(m2) + c3.closes * pc_inverse_or_zero(m3);
-  precise Real coupled = c0.closes * (c1.closes * d01 + c2.closes * d02 + c3.closes * d03) +
-                         c1.closes * (c2.closes * d12 + c3.closes * d13) + c2.closes * c3.closes * d23;
+// Equal shares of what stops the mean of the rows that close.
+PC_FN FourRows pc_equal_shares(Closings c, FourRows mass, Couplings d) {
+  Closing c0 = c.c0;
+  Closing c1 = c.c1;
+  Closing c2 = c.c2;
+  Closing c3 = c.c3;
+  precise Real own = c0.closes * pc_inverse_or_zero(mass.r0) + c1.closes * pc_inverse_or_zero(mass.r1) +
+                     c2.closes * pc_inverse_or_zero(mass.r2) + c3.closes * pc_inverse_or_zero(mass.r3);
+  precise Real coupled = c0.closes * (c1.closes * d.d01 + c2.closes * d.d02 + c3.closes * d.d03) +
+                         c1.closes * (c2.closes * d.d12 + c3.closes * d.d13) + c2.closes * c3.closes * d.d23;
   precise Real whole = own + coupled * PC_REAL(2.0);
-  precise Real missing = c0.closes * (c0.u_aim - u0) + c1.closes * (c1.u_aim - u1) + c2.closes * (c2.u_aim - u2) +
-                         c3.closes * (c3.u_aim - u3);
-  precise Real each = pc_max(missing, zero) * pc_inverse_or_zero(whole);
+  precise Real missing = c0.closes * (c0.u_aim - c0.u) + c1.closes * (c1.u_aim - c1.u) + c2.closes * (c2.u_aim - c2.u) +
+                         c3.closes * (c3.u_aim - c3.u);
+  precise Real each = pc_max(missing, PC_REAL(0.0)) * pc_inverse_or_zero(whole);
   precise Real j0 = each * c0.closes;
   precise Real j1 = each * c1.closes;
   precise Real j2 = each * c2.closes;
   precise Real j3 = each * c3.closes;
-  FourRows masses = pc_four(m0, m1, m2, m3);
-  Couplings d;
-  d.d01 = d01;
-  d.d02 = d02;
-  d.d03 = d03;
-  d.d12 = d12;
-  d.d13 = d13;
-  d.d23 = d23;
+  return pc_four(j0, j1, j2, j3);
+}
+// What each row asks for after the impulses j.
+PC_FN FourRows pc_asked(Closings c, FourRows j, FourRows mass, Couplings d) {
+  precise Real u0 = c.c0.u + j.r0 * pc_inverse_or_zero(mass.r0) + j.r1 * d.d01 + j.r2 * d.d02 + j.r3 * d.d03;
+  precise Real u1 = c.c1.u + j.r0 * d.d01 + j.r1 * pc_inverse_or_zero(mass.r1) + j.r2 * d.d12 + j.r3 * d.d13;
+  precise Real u2 = c.c2.u + j.r0 * d.d02 + j.r1 * d.d12 + j.r2 * pc_inverse_or_zero(mass.r2) + j.r3 * d.d23;
+  precise Real u3 = c.c3.u + j.r0 * d.d03 + j.r1 * d.d13 + j.r2 * d.d23 + j.r3 * pc_inverse_or_zero(mass.r3);
+  return pc_four(pc_impact_row(u0, c.c0, mass.r0), pc_impact_row(u1, c.c1, mass.r1), pc_impact_row(u2, c.c2, mass.r2),
+                 pc_impact_row(u3, c.c3, mass.r3));
+}
+// Impulses of all rows that close, together: equal shares of what stops their mean, then rounds of what each asks for.
+PC_FN FourRows pc_stopping_impulses(PC_IO Slot m, Closings c, Mask hits) {
+  Real zero = PC_REAL(0.0);
+  FourRows mass = pc_four(PC_LD(contact_rows, m, ROW_MASS), PC_LD(contact_rows, m, ROW_MASS + 1u),
+                          PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u));
+  Couplings d = pc_couplings(PC_PASS m);
+  FourRows j = pc_equal_shares(c, mass, d);
   for (uint k = 0u; k < 8u; k++) {
-    precise Real r0 = u0 + j0 * pc_inverse_or_zero(m0) + j1 * d01 + j2 * d02 + j3 * d03;
-    precise Real r1 = u1 + j0 * d01 + j1 * pc_inverse_or_zero(m1) + j2 * d12 + j3 * d13;
-    precise Real r2 = u2 + j0 * d02 + j1 * d12 + j2 * pc_inverse_or_zero(m2) + j3 * d23;
-    precise Real r3 = u3 + j0 * d03 + j1 * d13 + j2 * d23 + j3 * pc_inverse_or_zero(m3);
-    FourRows asked = pc_four(pc_impact_row(r0, c0, m0), pc_impact_row(r1, c1, m1), pc_impact_row(r2, c2, m2),
-                             pc_impact_row(r3, c3, m3));
-    Real share = pc_common_share(pc_four(j0, j1, j2, j3), asked, masses, d);
-    precise Real n0 = j0 + asked.r0 * share;
-    precise Real n1 = j1 + asked.r1 * share;
-    precise Real n2 = j2 + asked.r2 * share;
-    precise Real n3 = j3 + asked.r3 * share;
-    j0 = pc_max(n0, zero);
-    j1 = pc_max(n1, zero);
-    j2 = pc_max(n2, zero);
-    j3 = pc_max(n3, zero);
+    FourRows asked = pc_asked(c, j, mass, d);
+    Real share = pc_common_share(j, asked, mass, d);
+    precise Real n0 = j.r0 + asked.r0 * share;
+    precise Real n1 = j.r1 + asked.r1 * share;
+    precise Real n2 = j.r2 + asked.r2 * share;
+    precise Real n3 = j.r3 + asked.r3 * share;
+    j = pc_four(pc_max(n0, zero), pc_max(n1, zero), pc_max(n2, zero), pc_max(n3, zero));
   }
-  j0 = pc_select(hits, j0, zero);
-  j1 = pc_select(hits, j1, zero);
-  j2 = pc_select(hits, j2, zero);
-  j3 = pc_select(hits, j3, zero);
+  return pc_four(pc_select(hits, j.r0, zero), pc_select(hits, j.r1, zero), pc_select(hits, j.r2, zero),
+                 pc_select(hits, j.r3, zero));
+}
 
-  Push push = pc_push(PC_PASS m, j0, j1, j2, j3);
-  Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, v, push), push.n, zero, zero, zero);
-  precise Real late = j0 * c0.t + j1 * c1.t + j2 * c2.t + j3 * c3.t;
-  precise Real mean = late * pc_inverse_or_zero(push.n);
-  // none comes before one that a body of it had already
-  Quad hit_a = PC_GATHER(delta, ia, 2u);
-  Quad hit_b = PC_GATHER(delta, ib, 2u);
-  Real t = pc_max(mean, pc_max(hit_a.v.x, hit_b.v.x));
-
+// When the rows close, by the mean of their impulses j of the sum `whole`. None comes before one that a body of it had
+// already.
+PC_FN Real pc_instant(PC_IO Encounter x, Closings c, FourRows j, Real whole) {
+  precise Real late = j.r0 * c.c0.t + j.r1 * c.c1.t + j.r2 * c.c2.t + j.r3 * c.c3.t;
+  precise Real mean = late * pc_inverse_or_zero(whole);
+  Quad hit_a = PC_GATHER(delta, x.ia, 2u);
+  Quad hit_b = PC_GATHER(delta, x.ib, 2u);
+  return pc_max(mean, pc_max(hit_a.v.x, hit_b.v.x));
+}
+// A body that turns far answers otherwise there than the rows think, and the points of two that both move do not close
+// all at once: the impulse leaves no more energy than e allows.
+PC_FN Real pc_allowed_share(PC_IO Slot m, Encounter x, Arms struck, Wrench w) {
+  Real zero = PC_REAL(0.0);
+  Real one = PC_REAL(1.0);
+  Mask both_move = pc_and(x.a.inverse_mass > zero, x.b.inverse_mass > zero);
+  Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS x.a, x.moved_a), pc_turns_far(PC_PASS x.b, x.moved_b)));
+  precise Real most = (PC_LD(contact_rows, m, ROW_E) + one) * pc_calming_share(x.a, x.b, struck, w.impulse, w.couple);
+  return pc_select(far, pc_clamp(most, zero, one), one);
+}
+// Notes when shapes that meet in flight did. (what rounding leaves of an approach closes anywhere)
+PC_FN void pc_keep_met(PC_IO Slot m, Encounter x, Real t, Mask hits) {
+  Vec3 relative = pc_sub(x.b.v, x.a.v);
+  precise Real nearing = -pc_dot(x.n, relative);
+  Real met = PC_LD(contact_rows, m, ROW_MET);
+  Mask anew = pc_or(met<PC_TINY, nearing> pc_noise(PC_PASS relative));
+  PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, pc_impact_always(PC_PASS m)), anew), t, met));
+}
+// The impulses j at the instant of the impact, with friction.
+PC_FN void pc_strike(PC_IO Slot m, Encounter x, Closings c, FourRows j, Mask hits) {
+  Real zero = PC_REAL(0.0);
+  Push push = pc_push(PC_PASS m, j.r0, j.r1, j.r2, j.r3);
+  Friction f = pc_coulomb(PC_PASS m, pc_pushed_twist(PC_PASS m, x.v, push), push.n, zero, zero, zero);
+  Real t = pc_instant(PC_PASS x, c, j, push.n);
   // another sweep is to follow, until one changes nothing: else what others do would tell how many there are
   PC_RAISE(hits, velocity_parts, 2u);
   // the arms of the instant itself, which end in one point: so angular momentum is kept to rounding
-  Arms struck = pc_arms(PC_PASS m, pc_madd(moved_a.v, a.v, t), pc_madd(moved_b.v, b.v, t));
-  BodyState before_a = a;
-  BodyState before_b = b;
-  Wrench w = pc_wrench(n, t1, t2, push, f.change1, f.change2, f.change_twist);
-  // a body that turns far answers otherwise there than the rows think, and the points of two that both move do not
-  // close all at once: the impulse leaves no more energy than e allows
-  Mask far = pc_or(both_move, pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b)));
-  precise Real most = (e + PC_REAL(1.0)) * pc_calming_share(a, b, struck, w.impulse, w.couple);
-  Real share = pc_select(far, pc_clamp(most, zero, PC_REAL(1.0)), PC_REAL(1.0));
-  pc_apply(PC_PASS ia, ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
-  pc_keep_impact(PC_PASS m, 0u, j0, share);
-  pc_keep_impact(PC_PASS m, 1u, j1, share);
-  pc_keep_impact(PC_PASS m, 2u, j2, share);
-  pc_keep_impact(PC_PASS m, 3u, j3, share);
-  // (what rounding leaves of an approach closes anywhere)
-  precise Real nearing = -pc_dot(n, relative);
-  Real met = PC_LD(contact_rows, m, ROW_MET);
-  Mask anew = pc_or(met<PC_TINY, nearing> pc_noise(PC_PASS relative));
-  PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, always), anew), t, met));
-  pc_set_back(PC_PASS ia, before_a, a, t, hits);
-  pc_set_back(PC_PASS ib, before_b, b, t, hits);
+  Arms struck = pc_arms(PC_PASS m, pc_madd(x.moved_a.v, x.a.v, t), pc_madd(x.moved_b.v, x.b.v, t));
+  Wrench w = pc_wrench(x.n, x.t1, x.t2, push, f.change1, f.change2, f.change_twist);
+  Real share = pc_allowed_share(PC_PASS m, x, struck, w);
+  BodyState a = x.a;
+  BodyState b = x.b;
+  pc_apply(PC_PASS x.ia, x.ib, a, b, struck, pc_scale(w.impulse, share), pc_scale(w.couple, share));
+  pc_keep_impact(PC_PASS m, 0u, j.r0, share);
+  pc_keep_impact(PC_PASS m, 1u, j.r1, share);
+  pc_keep_impact(PC_PASS m, 2u, j.r2, share);
+  pc_keep_impact(PC_PASS m, 3u, j.r3, share);
+  pc_keep_met(PC_PASS m, x, t, hits);
+  pc_set_back(PC_PASS x.ia, x.a, a, t, hits);
+  pc_set_back(PC_PASS x.ib, x.b, b, t, hits);
+}
+PC_FN_LARGE void pc_hit(PC_IO Slot m, Mask mine) {
+  Encounter x = pc_encounter(PC_PASS m);
+  Closings c = pc_closings(PC_PASS m, x);
+  precise Real closing = c.c0.closes + c.c1.closes + c.c2.closes + c.c3.closes;
+  Mask hits = pc_and(mine, closing > PC_REAL(0.0));
+  if (!PC_ANY(hits)) return;  // lint: allow (zeros otherwise)
+  // effective masses at the arms of the impact
+  Responses r = pc_free_responses(x.a, x.b, x.arms.a, x.arms.b, x.n, x.t1, x.t2);
+  r.these = hits;
+  pc_renew_masses(PC_PASS m, r);
+  pc_strike(PC_PASS m, x, c, pc_stopping_impulses(PC_PASS m, c, hits), hits);
 }
 
 // A sweep that is not the first of its sub-step comes in the coefficients of the relax pass: it looks at what the sweep

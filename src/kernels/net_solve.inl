@@ -41,71 +41,75 @@ PC_FN Vec3 pc_net_root(PC_IO Slot s, Vec3 v) {
   precise Real more = (PC_LD(net_rows, s, NET_ALONG) - across) * pc_dot(axis, v);
   return pc_madd(pc_scale(v, across), axis, more);
 }
-// What the impulse lacks at the foreseen length, its derivative, and what prepares the search.
-// `taken`: share of the step that was found.
-PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
-  Real h = PC_INFO(h);
-  Real zero = PC_REAL(0.0);
-  Vec3 line = pc_ld3_net(PC_PASS s, NET_LINE);
-  Vec3 arm_a = pc_ld3_net(PC_PASS s, NET_START);
-  Vec3 arm_b = pc_ld3_net(PC_PASS s, NET_START + 3u);
+// A spring at the foreseen length: the impulse that it wants along n, the roots of its derivative along n and across
+// it, and its part in what the solve lowers (Merit).
+struct Pull {
+  Vec3 n;
+  Vec3 axis;
+  Real wanted;
+  Real along;
+  Real across;
+  Real level;
+};
+PC_FN Pull pc_net_pull(PC_IO Slot s, Slot a, Slot b, Vec3 then) {
   Real length = PC_LD(net_rows, s, NET_LENGTH);
   Real stiffness = PC_LD(net_rows, s, NET_STIFFNESS);
   Real damping = PC_LD(net_rows, s, NET_DAMPING);
-  Vec3 apart = pc_sub(pc_ld3_net(PC_PASS b, NET_STEP), pc_ld3_net(PC_PASS a, NET_STEP));
-  Vec3 swing_a = pc_net_swing(PC_PASS a, arm_a);
-  Vec3 swing_b = pc_net_swing(PC_PASS b, arm_b);
-  Vec3 ra = pc_madd(arm_a, swing_a, PC_REAL(0.5));
-  Vec3 rb = pc_madd(arm_b, swing_b, PC_REAL(0.5));
-  pc_st3_net(PC_PASS s, NET_MID, ra);
-  pc_st3_net(PC_PASS s, NET_MID + 3u, rb);
-  Vec3 swung = pc_sub(swing_b, swing_a);
-  Vec3 then = pc_add(line, pc_add(apart, swung));
   Real long_then = pc_length(then);
   precise Real both = length + long_then;
   Real inverse_both = pc_inverse_or_zero(both);
-  Vec3 n = pc_scale(pc_add(line, then), inverse_both);
-  Real n_size = pc_length(n);
-  Vec3 axis = pc_scale(n, pc_inverse_or_zero(n_size));
   precise Real share = PC_LD(net_rows, s, NET_LATE) * PC_REAL(0.5) + PC_REAL(0.5);
   precise Real longer = long_then - length;
   precise Real away = (length - PC_LD(net_rows, s, NET_REST)) + share * longer;
-  precise Real time = h * share;
+  precise Real time = PC_INFO(h) * share;
   precise Real elastic = stiffness * away * time;
   precise Real viscous = damping * longer * share;
   precise Real wanted = -(elastic + viscous);
   precise Real along = time * stiffness * share + damping * share;
   precise Real pull = (elastic + viscous) * inverse_both;
-  Real across = pc_clamp(pull, zero, along);
-  Sym3 answer = pc_net_answer(PC_PASS a, b, ra, rb);
-  precise Real free = (PC_LD(net_rows, a, NET_MASS) + PC_LD(net_rows, b, NET_MASS)) * h;
+  Real across = pc_clamp(pull, PC_REAL(0.0), along);
+  precise Real free = (PC_LD(net_rows, a, NET_MASS) + PC_LD(net_rows, b, NET_MASS)) * PC_INFO(h);
   precise Real felt = across * free;
-  Real root = pc_select(felt > PC_FELT, pc_sqrt(across), zero);
-  Vec3 impulse = pc_net_further(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), taken);
-  Vec3 lack = pc_sub(pc_scale(n, wanted), impulse);
-  Real lack_along = pc_dot(axis, lack);
-  Vec3 lack_across = pc_madd(lack, axis, -lack_along);
-  Real root_along = pc_sqrt(along);
-  precise Real y_along = lack_along * pc_inverse_or_zero(root_along);
-  Mask searched = root > zero;
-  Vec3 y_across = pc_scale(lack_across, pc_inverse_or_zero(root));
-  pc_st3_net(PC_PASS s, NET_AXIS, axis);
-  PC_ST(net_rows, s, NET_ALONG, root_along);
-  PC_ST(net_rows, s, NET_ACROSS, root);
-  pc_st3_net(PC_PASS s, NET_LACK, pc_madd(y_across, axis, y_along));
-  pc_st3_net(PC_PASS s, NET_TURNED, pc_select3(searched, pc_zero3(), lack_across));
   precise Real gain = (length - PC_LD(net_rows, s, NET_REST)) + longer * share * PC_REAL(0.5);
   precise Real by_length = time * stiffness * gain * longer;
   precise Real by_rate = damping * share * longer * longer * PC_REAL(0.5);
   precise Real level = (by_length + by_rate) * PC_INFO(inverse_h);
+  Pull p;
+  p.n = pc_scale(pc_add(pc_ld3_net(PC_PASS s, NET_LINE), then), inverse_both);
+  p.axis = pc_unit_or_zero(p.n);
+  p.wanted = wanted;
+  p.along = pc_sqrt(along);
+  p.across = pc_select(felt > PC_FELT, pc_sqrt(across), PC_REAL(0.0));
+  p.level = level;
+  PC_ST(net_rows, s, NET_THEN, long_then);
+  return p;
+}
+// What the impulse lacks of what the spring wants: along its axis and across it by what their roots make of it, and
+// across where that is not solved for, whole.
+PC_FN void pc_net_keep_lack(PC_IO Slot s, Pull p, Vec3 lack) {
+  Real lack_along = pc_dot(p.axis, lack);
+  Vec3 lack_across = pc_madd(lack, p.axis, -lack_along);
+  precise Real y_along = lack_along * pc_inverse_or_zero(p.along);
+  Vec3 y_across = pc_scale(lack_across, pc_inverse_or_zero(p.across));
+  pc_st3_net(PC_PASS s, NET_AXIS, p.axis);
+  PC_ST(net_rows, s, NET_ALONG, p.along);
+  PC_ST(net_rows, s, NET_ACROSS, p.across);
+  pc_st3_net(PC_PASS s, NET_LACK, pc_madd(y_across, p.axis, y_along));
+  pc_st3_net(PC_PASS s, NET_TURNED, pc_select3(p.across > PC_REAL(0.0), pc_zero3(), lack_across));
+}
+// Its parts in what the solve is judged by (Merit).
+PC_FN void pc_net_keep_merit(PC_IO Slot s, Real level, Vec3 lack, Vec3 impulse, Sym3 answer) {
   precise Real trace = answer.xx + answer.yy + answer.zz;
   precise Real open = pc_dot(lack, lack) * trace;
   precise Real given = pc_dot(impulse, impulse) * trace;
-  PC_ST(net_rows, s, NET_THEN, long_then);
   PC_ST(net_rows, s, NET_LEVEL, level);
   PC_ST(net_rows, s, NET_OPEN, open);
   PC_ST(net_rows, s, NET_GIVEN, given);
-  // 1 + h R A R
+}
+// The inverse of its own block 1 + h R A R, which prepares the search.
+PC_FN void pc_net_keep_block(PC_IO Slot s, Sym3 answer) {
+  Real h = PC_INFO(h);
+  Real zero = PC_REAL(0.0);
   Vec3 x = pc_net_root(PC_PASS s, Vec3(PC_REAL(1.0), zero, zero));
   Vec3 y = pc_net_root(PC_PASS s, Vec3(zero, PC_REAL(1.0), zero));
   Vec3 z = pc_net_root(PC_PASS s, Vec3(zero, zero, PC_REAL(1.0)));
@@ -126,6 +130,27 @@ PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
   block.yz = yz;
   block.zz = zz;
   pc_sts_net(PC_PASS s, NET_BLOCK, pc_sym_inverse(block));
+}
+// What the impulse lacks at the foreseen length, its derivative, and what prepares the search.
+// `taken`: share of the step that was found.
+PC_FN void pc_net_look(PC_IO Slot s, Slot a, Slot b, Real taken) {
+  Vec3 arm_a = pc_ld3_net(PC_PASS s, NET_START);
+  Vec3 arm_b = pc_ld3_net(PC_PASS s, NET_START + 3u);
+  Vec3 apart = pc_sub(pc_ld3_net(PC_PASS b, NET_STEP), pc_ld3_net(PC_PASS a, NET_STEP));
+  Vec3 swing_a = pc_net_swing(PC_PASS a, arm_a);
+  Vec3 swing_b = pc_net_swing(PC_PASS b, arm_b);
+  Vec3 ra = pc_madd(arm_a, swing_a, PC_REAL(0.5));
+  Vec3 rb = pc_madd(arm_b, swing_b, PC_REAL(0.5));
+  pc_st3_net(PC_PASS s, NET_MID, ra);
+  pc_st3_net(PC_PASS s, NET_MID + 3u, rb);
+  Vec3 then = pc_add(pc_ld3_net(PC_PASS s, NET_LINE), pc_add(apart, pc_sub(swing_b, swing_a)));
+  Pull p = pc_net_pull(PC_PASS s, a, b, then);
+  Vec3 impulse = pc_net_further(pc_ld3_net(PC_PASS s, NET_IMPULSE), pc_ld3_net(PC_PASS s, NET_FOUND), taken);
+  Vec3 lack = pc_sub(pc_scale(p.n, p.wanted), impulse);
+  Sym3 answer = pc_net_answer(PC_PASS a, b, ra, rb);
+  pc_net_keep_lack(PC_PASS s, p, lack);
+  pc_net_keep_merit(PC_PASS s, p.level, lack, impulse, answer);
+  pc_net_keep_block(PC_PASS s, answer);
 }
 // Impulses and arms with a share of the step that was found, and what they make of the bodies, where `live`.
 PC_FN void pc_net_try(PC_IO Slot m, Net n, Real share, Mask live) {
@@ -261,6 +286,26 @@ PC_FN Mask pc_net_wants(PC_IO Slot m, Net n) {
   return wants;
 }
 
+// Gives the bodies of nets that are `asked` what their springs push; of others nothing changes.
+PC_FN void pc_net_end_solve(PC_IO Slot m, Net n, Mask asked) {
+  PC_ST(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH, PC_REAL(0.0));
+  Mask kept = pc_select(asked, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5);
+  for (uint k = 0u; k < n.bodies; k++) {
+    Slot b = pc_net_body(PC_PASS m, n, k);
+    Index row = pc_net_row(PC_PASS m, n, k);
+    Quad linear = PC_GATHER(motion, row, 0u);
+    Quad angular = PC_GATHER(motion, row, 1u);
+    Mask moves = pc_and(asked, linear.s > PC_REAL(0.0));
+    pc_net_keep(PC_PASS b, NET_PUSH, kept, pc_ld3_net(PC_PASS b, NET_PUSHED));
+    pc_net_keep(PC_PASS b, NET_PUSH + 3u, kept, pc_ld3_net(PC_PASS b, NET_PUSHED + 3u));
+    PC_ST(net_rows, b, NET_MADE, pc_select(asked, pc_net_count(PC_PASS b), PC_LD(net_rows, b, NET_MADE)));
+    linear.v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
+    Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
+    PC_SCATTER_IF(moves, motion, row, 0u, linear);
+    PC_SCATTER_IF(moves, motion, row, 1u, pc_quad(l, angular.s));
+  }
+}
+
 PC_FN void pc_kernel(PC_IO Slot m) {
   Net n = pc_net(PC_PASS m);
   Real zero = PC_REAL(0.0);
@@ -305,20 +350,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   }
   pc_net_bound(PC_PASS m, n, asked);
   pc_net_even(PC_PASS m, n, asked);
-  PC_ST(net_rows, pc_net_body(PC_PASS m, n, 0u), NET_FRESH, zero);
-  for (uint k = 0u; k < n.bodies; k++) {
-    Slot b = pc_net_body(PC_PASS m, n, k);
-    Index row = pc_net_row(PC_PASS m, n, k);
-    Quad linear = PC_GATHER(motion, row, 0u);
-    Quad angular = PC_GATHER(motion, row, 1u);
-    Mask moves = pc_and(asked, linear.s > zero);
-    Mask kept = pc_select(asked, zero, one) > PC_REAL(0.5);
-    pc_net_keep(PC_PASS b, NET_PUSH, kept, pc_ld3_net(PC_PASS b, NET_PUSHED));
-    pc_net_keep(PC_PASS b, NET_PUSH + 3u, kept, pc_ld3_net(PC_PASS b, NET_PUSHED + 3u));
-    PC_ST(net_rows, b, NET_MADE, pc_select(asked, pc_net_count(PC_PASS b), PC_LD(net_rows, b, NET_MADE)));
-    linear.v = pc_madd(pc_ld3_net(PC_PASS b, NET_VELOCITY), pc_ld3_net(PC_PASS b, NET_PUSH), linear.s);
-    Vec3 l = pc_add(pc_ld3_net(PC_PASS b, NET_MOMENTUM), pc_ld3_net(PC_PASS b, NET_PUSH + 3u));
-    PC_SCATTER_IF(moves, motion, row, 0u, linear);
-    PC_SCATTER_IF(moves, motion, row, 1u, pc_quad(l, angular.s));
-  }
+  pc_net_end_solve(PC_PASS m, n, asked);
 }

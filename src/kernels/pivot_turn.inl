@@ -123,127 +123,7 @@ PC_FN Motion pc_swing_on(Pivot p, Motion start, Real h) {
   m.at = pc_righted(pc_turned(q, start.at.low, pc_quaternion_mul(change, back)));
   return m;
 }
-// The same of a hinge, whose axis stays where it is: one angle, and the torque of a weight that goes round. What it
-// gains of the momentum about the axis is summed by itself, and so is the angle: of either no digit is lost between the
-// kicks.
-struct Hinge {
-  Vec3 axis;
-  Real steady;
-  Real beside;
-  Real under;
-  Real momentum;
-};
-struct Way {
-  Real angle;
-  Real gained;
-};
-PC_FN Hinge pc_hinge(Pivot p, Motion start) {
-  Quaternion q = pc_facing(start);
-  Hinge g;
-  g.axis = pc_hinge_axis(p, q);
-  Vec3 side = pc_cross(g.axis, pc_from_pin(p, q));
-  g.steady = pc_dot(g.axis, p.torque);
-  g.beside = pc_dot(p.weight, side);
-  g.under = pc_dot(pc_cross(g.axis, p.weight), side);
-  precise Real momentum = pc_dot(g.axis, start.l) + pc_dot(g.axis, start.low);
-  g.momentum = momentum;
-  return g;
-}
-PC_FN Way pc_hinge_way(Pivot p, Hinge g, Real from, Real momentum, Real h) {
-  Real gained = PC_REAL(0.0);
-  Real angle = from;
-  for (uint i = 0u; i < 7u; i++) {
-    Shares s = pc_shares(i);
-    precise Real kick = s.kick * h;
-    precise Real time = s.turn * h;
-    SinCos at = pc_sincos(angle);
-    precise Real torque = g.steady + g.beside * at.cosine - g.under * at.sine;
-    precise Real sum = gained + torque * kick;
-    gained = sum;
-    precise Real further = angle + (momentum + gained) * p.inverse.x * time;
-    if (i < 6u) angle = further;
-  }
-  Way w;
-  w.angle = angle;
-  w.gained = gained;
-  return w;
-}
-PC_FN Motion pc_hinged(Hinge g, Motion start, Way way) {
-  Quaternion q = pc_facing(start);
-  Turn turn = pc_axis_turn(g.axis, way.angle);
-  Motion m = pc_kick(start, g.axis, way.gained);
-  m.at = pc_turned(q, start.at.low, pc_quaternion_mul(pc_quaternion(turn.q.v, turn.fall), q));
-  return m;
-}
-
-// A hinge's limit that it comes to within the sub-step stops it, or throws it back, at the instant at which it is there
-// (tree_prepare keeps its row from the solve until then).
-// Sense: +1 where the slack grows with the angle, else -1; back: restitution.
-struct Stop {
-  Real slack;
-  Real sense;
-  Real back;
-};
-struct Stopped {
-  Way way;
-  Real impulse;
-};
-PC_FN Stop pc_stop(PC_IO Slot n, Vec3 axis) {
-  Mask waits = pc_and(PC_LD(tree_rows, n, TREE_KIND) < PC_REAL(0.5), pc_nonzero(PC_LD(tree_rows, n, TREE_SIGN)));
-  Real one = PC_REAL(1.0);
-  Real zero = PC_REAL(0.0);
-  Stop s;
-  s.slack = pc_select(waits, PC_LD(tree_rows, n, TREE_SLACK), PC_FAR);
-  s.sense = pc_select(pc_dot(pc_ld3_tree(PC_PASS n, TREE_AXIS), axis) > zero, one, -one);
-  s.back = pc_select(pc_throws_back(PC_PASS n), PC_LD(tree_rows, n, TREE_REBOUND), zero);
-  return s;
-}
-PC_FN Real pc_left_of(Stop s, Real angle) {
-  precise Real left = s.slack + s.sense * angle;
-  return left;
-}
-PC_FN Stopped pc_stopped(PC_IO Pivot p, Hinge g, Stop s, Way beyond, Real h) {
-  precise Real share = s.slack - pc_left_of(s, beyond.angle);
-  precise Real when = pc_div(s.slack, share) * h;
-  Way there = beyond;
-  for (uint i = 0u; i < 5u; i++) {  // Newton's method: the rate hardly changes on the way
-    there = pc_hinge_way(p, g, PC_REAL(0.0), g.momentum, when);
-    if (i == 4u) break;
-    precise Real rate = (g.momentum + there.gained) * p.inverse.x * -s.sense;
-    precise Real later = when + pc_left_of(s, there.angle) * pc_inverse_or_zero(rate);
-    when = pc_clamp(later, PC_REAL(0.0), h);
-  }
-  precise Real limit = s.slack * -s.sense;
-  precise Real arriving = g.momentum + there.gained;
-  precise Real approach = s.sense * arriving * -p.inverse.x;
-  precise Real thrown = arriving * -s.back;
-  Real leaving = pc_select(approach > PC_INFO(restitution_threshold), thrown, PC_REAL(0.0));
-  precise Real rest = h - when;
-  Way after = pc_hinge_way(p, g, limit, leaving, rest);
-  Mask held = pc_left_of(s, after.angle) < PC_REAL(0.0);
-  precise Real end = leaving + after.gained;
-  precise Real gained = pc_select(held, PC_REAL(0.0), end) - g.momentum;
-  precise Real impulse = (gained - there.gained - after.gained) * s.sense;
-  Stopped o;
-  o.way.angle = pc_select(held, limit, after.angle);
-  o.way.gained = gained;
-  o.impulse = pc_max(impulse, PC_REAL(0.0));
-  return o;
-}
-PC_FN Stopped pc_hinge_on(PC_IO Slot n, Pivot p, Hinge g, Real h) {
-  Stopped o;
-  o.way = pc_hinge_way(p, g, PC_REAL(0.0), g.momentum, h);
-  o.impulse = PC_REAL(0.0);
-  if (!PC_ANY(pc_has_rows(PC_PASS n))) return o;  // lint: allow (no limit otherwise)
-  Stop s = pc_stop(PC_PASS n, g.axis);
-  Mask meets = pc_left_of(s, o.way.angle) < PC_REAL(0.0);
-  if (!PC_ANY(meets)) return o;  // lint: allow (selected below)
-  Stopped there = pc_stopped(PC_PASS p, g, s, o.way, h);
-  o.way.angle = pc_select(meets, there.way.angle, o.way.angle);
-  o.way.gained = pc_select(meets, there.way.gained, o.way.gained);
-  o.impulse = pc_select(meets, there.impulse, o.impulse);
-  return o;
-}
+#include "pivot_hinge.inl"
 PC_FN Motion pc_select_motion(Mask m, Motion a, Motion b) {
   Motion o;
   o.at.q = pc_quad(pc_select3(m, a.at.q.v, b.at.q.v), pc_select(m, a.at.q.s, b.at.q.s));
@@ -316,49 +196,39 @@ PC_FN void pc_add_impulse(PC_IO Slot n, Vec3 push, Vec3 turn, Vec3 r, Real press
   }
 }
 
-PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m);
-  Slot n = PC_NODE(m, t.first + 1u);
-  if (!PC_ANY(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5))) {  // lint: allow (the same for all lanes of a block)
-    return;
-  }
-  Index body = PC_ENDS(tree_ends, n, 0u);
-  Index joint = PC_ENDS(tree_ends, n, 1u);
-  Real h = PC_INFO(h);
-  precise Real half_h = h * PC_REAL(0.5);
-  Quad linear = PC_GATHER(motion, body, 0u);
-  Quad angular = PC_GATHER(motion, body, 1u);
-  Quad place = PC_GATHER(pose, body, 0u);
-  Quad turned = PC_GATHER(pose, body, 1u);
-  Quad place_low = PC_GATHER(pose, body, 2u);
-  Quad turned_low = PC_GATHER(pose, body, 3u);
-  Quad u_before = PC_GATHER(velocity_parts, body, 0u);
-  Quad l_before = PC_GATHER(velocity_parts, body, 1u);
-  Quad u_low = PC_GATHER(velocity_parts, body, 2u);
-  Quad l_low = PC_GATHER(velocity_parts, body, 3u);
-  Pivot p = pc_pivot(PC_PASS n, body, joint, linear.s);
-
-  Quaternion q = pc_quaternion(turned.v, turned.s);
-  Vec3 r = pc_from_pin(p, q);
-  Mask swings = pc_swings(p);
-  Mask hinged = pc_select(swings, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5);
-  Vec3 axis = pc_hinge_axis(p, q);
+// Of the torque about the pin what turns it.
+PC_FN Vec3 pc_turning_torque(Pivot p, Vec3 r, Vec3 axis) {
   Vec3 all = pc_torque(p, r);
-  Vec3 torque = pc_select3(swings, all, pc_along(axis, all));
-  // the momentum of before to the bit, and beside it what was given since: their sum as one real would round anew each
-  // time
-  Vec3 given = pc_about_pin(p, r, pc_sub(linear.v, u_before.v), pc_sub(angular.v, l_before.v));
-  TwoSum before = pc_sum_about_pin(p, r, u_before.v, l_before.v);
+  return pc_select3(pc_swings(p), all, pc_along(axis, all));
+}
+// The momentum about the pin that was given since the velocities were stored.
+PC_FN Vec3 pc_given(PC_IO Index body, Pivot p, Vec3 r) {
+  Vec3 u = pc_sub(PC_GATHER(motion, body, 0u).v, PC_GATHER(velocity_parts, body, 0u).v);
+  Vec3 l = pc_sub(PC_GATHER(motion, body, 1u).v, PC_GATHER(velocity_parts, body, 1u).v);
+  return pc_about_pin(p, r, u, l);
+}
+// The orientation, straightened, and the momentum: that of before to the bit, and beside it what was given since, as
+// their sum as one real would round anew each time.
+PC_FN Motion pc_pivot_start(PC_IO Slot n, Index body, Pivot p, Vec3 r, Vec3 given) {
+  Quad turned = PC_GATHER(pose, body, 1u);
+  Quaternion q = pc_quaternion(turned.v, turned.s);
+  Vec3 u_low = PC_GATHER(velocity_parts, body, 2u).v;
+  Vec3 l_low = PC_GATHER(velocity_parts, body, 3u).v;
+  TwoSum before = pc_sum_about_pin(p, r, PC_GATHER(velocity_parts, body, 0u).v, PC_GATHER(velocity_parts, body, 1u).v);
   Motion start;
   start.l = before.sum;
-  start.low = pc_add(pc_add(given, pc_about_pin(p, r, u_low.v, l_low.v)), before.low);
+  start.low = pc_add(pc_add(given, pc_about_pin(p, r, u_low, l_low)), before.low);
   Turn straight = pc_turn(pc_add(pc_straightening(PC_PASS n), pc_pushed_turn(PC_PASS n, p, q, r)));
-  start.at = pc_turned(q, turned_low, pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q));
-  // in phase with the pose: it has had a whole kick and was half a one behind
-  precise Real back = -half_h;
-  start = pc_kick(start, torque, back);
+  Quaternion change = pc_quaternion_mul(pc_quaternion(straight.q.v, straight.fall), q);
+  start.at = pc_turned(q, PC_GATHER(pose, body, 3u), change);
+  return start;
+}
+// The sub-step; `pressed`: what a limit pressed in it.
+PC_FN Motion pc_pivot_on(PC_IO Slot n, Pivot p, Motion start, PC_INOUT(Real) pressed) {
+  Real h = PC_INFO(h);
+  Mask swings = pc_swings(p);
+  Mask hinged = pc_select(swings, PC_REAL(0.0), PC_REAL(1.0)) > PC_REAL(0.5);
   Motion next = start;
-  Real pressed = PC_REAL(0.0);
   if (PC_ANY(swings)) next = pc_swing_on(p, start, h);  // lint: allow (selected below)
   if (PC_ANY(hinged)) {                                 // lint: allow (other lanes keep what they have)
     Hinge g = pc_hinge(p, start);
@@ -366,46 +236,84 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     next = pc_select_motion(swings, next, pc_hinged(g, start, on.way));
     pressed = pc_select(swings, pressed, on.impulse);
   }
-  Quaternion q_next = pc_facing(next);
-  Vec3 r_next = pc_from_pin(p, q_next);
-  Vec3 all_next = pc_torque(p, r_next);
-  Vec3 torque_next = pc_select3(swings, all_next, pc_along(axis, all_next));
-  next = pc_kick(next, torque_next, back);
-
-  // the way about the pin, and of a gap what may be closed
+  return next;
+}
+// Takes the body the way about the pin, from r to r_next, and of a gap what may be closed.
+PC_FN void pc_store_way(PC_IO Slot n, Index body, Vec3 r, Vec3 r_next, Turned next) {
+  Quad place = PC_GATHER(pose, body, 0u);
+  Quad turned = PC_GATHER(pose, body, 1u);
+  Quad place_low = PC_GATHER(pose, body, 2u);
   Vec3 gap = pc_ld3_tree(PC_PASS n, TREE_GAP);
   Real closed = pc_share_closed(PC_PASS gap);
   precise Vec3 step = (r_next - r) - gap * closed;
   TwoSum there = pc_two_sum(place.v, pc_add(place_low.v, step));
-  Quaternion rotation = pc_quaternion_mul(q_next, pc_conjugate(q));
+  Quaternion rotation =
+      pc_quaternion_mul(pc_quaternion(next.q.v, next.q.s), pc_conjugate(pc_quaternion(turned.v, turned.s)));
   Real two = pc_select(rotation.w < PC_REAL(0.0), PC_REAL(-2.0), PC_REAL(2.0));
   precise Real square = pc_four_times(pc_dot(rotation.v, rotation.v));
-
-  Swing now = pc_swing_of(p, q_next, r_next, next.l);
-  TwoSum kept = pc_sum_about_pin(p, r_next, now.u, now.l);
-  precise Vec3 lost = ((next.l - kept.sum) - kept.low) + next.low;
-  Vec3 low = pc_select3(swings, lost, pc_along(axis, lost));
-  pc_add_impulse(PC_PASS n, pc_scale(pc_sub(now.u, linear.v), p.mass), pc_sub(now.l, angular.v),
-                 pc_scale(pc_add(r, r_next), PC_REAL(0.5)), pressed);
-  // the velocities that are read are half a kick ahead: of what acts from a distance that of now, of the rest half of
-  // the last
-  Vec3 change = pc_sub(torque_next, torque);
-  Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
-
+  Mask exists = PC_GATHER(motion, body, 0u).s > PC_REAL(0.0);
+  pc_st6_tree(PC_PASS n, TREE_F, pc_six(step, pc_scale(rotation.v, two)));
+  PC_ST(tree_rows, n, TREE_C, square);
+  PC_SCATTER_IF(exists, pose, body, 0u, pc_quad(there.sum, place.s));
+  PC_SCATTER_IF(exists, pose, body, 1u, next.q);
+  PC_SCATTER_IF(exists, pose, body, 2u, pc_quad(pc_snap3(there.low), place_low.s));
+  PC_SCATTER_IF(exists, pose, body, 3u, next.low);
+}
+// The velocities `now`, and beside them what their sum about the pin rounds away (`low`). Those that are read are half
+// a kick ahead, by `kick`.
+PC_FN void pc_store_swing(PC_IO Slot n, Index body, Swing now, Swing kick, Vec3 low) {
+  Quad linear = PC_GATHER(motion, body, 0u);
+  Quad angular = PC_GATHER(motion, body, 1u);
+  Quad u_before = PC_GATHER(velocity_parts, body, 0u);
+  Quad l_low = PC_GATHER(velocity_parts, body, 3u);
   Mask exists = linear.s > PC_REAL(0.0);
   Vec3 zero = pc_zero3();
   Real none = PC_REAL(0.0);
   pc_st6_tree(PC_PASS n, TREE_X, pc_six(now.u, now.l));
-  pc_st6_tree(PC_PASS n, TREE_F, pc_six(step, pc_scale(rotation.v, two)));
-  PC_ST(tree_rows, n, TREE_C, square);
   PC_SCATTER_IF(exists, motion, body, 0u, pc_quad(zero, linear.s));
   PC_SCATTER_IF(exists, motion, body, 1u, pc_quad(zero, angular.s));
-  PC_SCATTER_IF(exists, pose, body, 0u, pc_quad(there.sum, place.s));
-  PC_SCATTER_IF(exists, pose, body, 1u, next.at.q);
-  PC_SCATTER_IF(exists, pose, body, 2u, pc_quad(pc_snap3(there.low), place_low.s));
-  PC_SCATTER_IF(exists, pose, body, 3u, next.at.low);
   PC_SCATTER_IF(exists, velocity_parts, body, 0u, pc_quad(pc_snap3(pc_sub(now.u, kick.u)), u_before.s));
   PC_SCATTER_IF(exists, velocity_parts, body, 1u, pc_quad(pc_snap3(pc_sub(now.l, kick.l)), none));
   PC_SCATTER_IF(exists, velocity_parts, body, 2u, pc_quad(zero, none));
   PC_SCATTER_IF(exists, velocity_parts, body, 3u, pc_quad(pc_snap3(low), l_low.s));
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Tree t = pc_tree(PC_PASS m);
+  Slot n = PC_NODE(m, t.first + 1u);
+  if (!PC_ANY(PC_LD(tree_rows, n, TREE_PIVOT) > PC_REAL(0.5))) {  // lint: allow (the same for all lanes of a block)
+    return;
+  }
+  Index body = PC_ENDS(tree_ends, n, 0u);
+  Real h = PC_INFO(h);
+  Quad linear = PC_GATHER(motion, body, 0u);
+  Quad turned = PC_GATHER(pose, body, 1u);
+  Quaternion q = pc_quaternion(turned.v, turned.s);
+  Pivot p = pc_pivot(PC_PASS n, body, PC_ENDS(tree_ends, n, 1u), linear.s);
+  Vec3 r = pc_from_pin(p, q);
+  Vec3 axis = pc_hinge_axis(p, q);
+  Vec3 torque = pc_turning_torque(p, r, axis);
+  Vec3 given = pc_given(PC_PASS body, p, r);
+  // in phase with the pose: it has had a whole kick and was half a one behind
+  precise Real half_h = h * PC_REAL(0.5);
+  precise Real back = -half_h;
+  Motion start = pc_kick(pc_pivot_start(PC_PASS n, body, p, r, given), torque, back);
+  Real pressed = PC_REAL(0.0);
+  Motion next = pc_pivot_on(PC_PASS n, p, start, pressed);
+  Quaternion q_next = pc_facing(next);
+  Vec3 r_next = pc_from_pin(p, q_next);
+  Vec3 torque_next = pc_turning_torque(p, r_next, axis);
+  next = pc_kick(next, torque_next, back);
+
+  Swing now = pc_swing_of(p, q_next, r_next, next.l);
+  TwoSum kept = pc_sum_about_pin(p, r_next, now.u, now.l);
+  precise Vec3 lost = ((next.l - kept.sum) - kept.low) + next.low;
+  Vec3 low = pc_select3(pc_swings(p), lost, pc_along(axis, lost));
+  pc_add_impulse(PC_PASS n, pc_scale(pc_sub(now.u, linear.v), p.mass), pc_sub(now.l, PC_GATHER(motion, body, 1u).v),
+                 pc_scale(pc_add(r, r_next), PC_REAL(0.5)), pressed);
+  // of what acts from a distance the velocities that are read have that of now, of the rest half of the last
+  Vec3 change = pc_sub(torque_next, torque);
+  Swing kick = pc_swing_of(p, q_next, r_next, pc_madd(given, change, h));
+  pc_store_way(PC_PASS n, body, r, r_next, next.at);
+  pc_store_swing(PC_PASS n, body, now, kick, low);
 }

@@ -304,56 +304,44 @@ PC_FN void pc_smooth_remember(PC_IO Tree t, Slot n, uint k) {
   PC_SCATTER(joint_impulse, joint, 1u, pc_quad(pc_zero3(), PC_REAL(0.0)));
 }
 
-PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m);
-  Slot root = PC_NODE(m, t.first);
+// Before the sweep of a pass: its factor and what the sweep is to undo; 1 where it is to undo anything. Pass 0 brings
+// the velocities onto the pins, 1 to 4 are the four stages. `from`: the first node that moves by itself.
+PC_FN Real pc_smooth_pass(PC_IO Slot m, Tree t, uint from, uint pass) {
+  if (pass > 1u) PC_NODES(k, from, t) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
+  PC_MEET;
+  if (pass != 1u) {  // the first stage is where the pass before it was
+    PC_NODES(k, 1u, t) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+    pc_factor(PC_PASS m, t, true);
+  }
+  if (pass == 0u) return pc_smooth_off_pins(PC_PASS m, t);
+  PC_NODES(k, from, t) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
+  PC_NODES(k, 1u, t) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
+  return PC_REAL(1.0);
+}
+// After a stage's sweep: what all nodes gain, with the weights of Runge and Kutta.
+PC_FN void pc_smooth_stage(PC_IO Slot m, Tree t, uint from, uint pass) {
   Real h = PC_INFO(h);
   precise Real half_h = h * PC_REAL(0.5);
-  Real one = PC_REAL(1.0);
-  Real two = PC_REAL(2.0);
-  PC_NODES(k, 0u, t) pc_smooth_start(PC_PASS PC_NODE(m, t.first + k));
-  uint from = 1u;
-  if (PC_ANY(pc_smooth_moves(PC_PASS root))) from = 0u;  // lint: allow (what stands stays as it is)
-  for (uint pass = 0u; pass < 5u; pass++) {              // onto the pins, and the four stages
-    if (pass > 1u) PC_NODES(k, from, t) pc_smooth_turn(PC_PASS PC_NODE(m, t.first + k));
-    PC_MEET;
-    if (pass != 1u) {  // the first stage is where the pass before it was
-      PC_NODES(k, 1u, t) pc_smooth_arms(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-      pc_factor(PC_PASS m, t, true);
-    }
-    Real acts = one;
-    if (pass == 0u) {
-      acts = pc_smooth_off_pins(PC_PASS m, t);
-    } else {
-      PC_NODES(k, from, t) pc_smooth_load(PC_PASS PC_NODE(m, t.first + k));
-      PC_NODES(k, 1u, t) pc_smooth_open(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
-    }
-    if (PC_ANY(acts > PC_REAL(0.5))) {  // lint: allow (as in pc_smooth_off_pins)
-      pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, PC_REAL(0.0));
-    }
-    if (pass == 0u) {
-      if (PC_ANY(acts > PC_REAL(0.5))) {  // lint: allow (as above)
-        PC_NODES(k, 0u, t) pc_smooth_onto_pins(PC_PASS PC_NODE(m, t.first + k));
-      }
-      PC_NODES(k, 0u, t) pc_smooth_begin(PC_PASS PC_NODE(m, t.first + k));
-      continue;
-    }
-    Real weight = one;
-    Real way = one;
-    Real next = half_h;
-    if (pass == 2u || pass == 3u) weight = two;
-    if (pass == 3u) next = h;
-    if (pass == 4u) way = PC_REAL(0.0);
-    PC_NODES(k, from, t) pc_smooth_gain(PC_PASS PC_NODE(m, t.first + k), weight, way, next);
-  }
-  // the root's way, and its velocity at the end
-  PC_ONE {
-    precise Real sixth = h * PC_SIXTH;
-    Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
-    precise Vec3 gone = (v + pc_ld3_tree(PC_PASS root, SMOOTH_WAY_SUM) * sixth) * h;
-    pc_st3_tree(PC_PASS root, SMOOTH_WAY_SUM, gone);
-    pc_smooth_add(PC_PASS root, SMOOTH_V, SMOOTH_V_LOW, pc_scale(pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
-  }
+  Real weight = PC_REAL(1.0);
+  Real way = PC_REAL(1.0);
+  Real next = half_h;
+  if (pass == 2u || pass == 3u) weight = PC_REAL(2.0);
+  if (pass == 3u) next = h;
+  if (pass == 4u) way = PC_REAL(0.0);
+  PC_NODES(k, from, t) pc_smooth_gain(PC_PASS PC_NODE(m, t.first + k), weight, way, next);
+}
+// The root's way, and its velocity at the end.
+PC_FN void pc_smooth_finish_root(PC_IO Slot root) {
+  Real h = PC_INFO(h);
+  precise Real sixth = h * PC_SIXTH;
+  Vec3 v = pc_ld3_tree(PC_PASS root, SMOOTH_V);
+  precise Vec3 gone = (v + pc_ld3_tree(PC_PASS root, SMOOTH_WAY_SUM) * sixth) * h;
+  pc_st3_tree(PC_PASS root, SMOOTH_WAY_SUM, gone);
+  pc_smooth_add(PC_PASS root, SMOOTH_V, SMOOTH_V_LOW, pc_scale(pc_ld3_tree(PC_PASS root, SMOOTH_V_SUM), sixth));
+}
+// After the stages: all nodes at the end of the sub-step.
+PC_FN void pc_smooth_end(PC_IO Slot m, Tree t, uint from) {
+  PC_ONE pc_smooth_finish_root(PC_PASS PC_NODE(m, t.first));
   PC_NODES(k, from, t) {
     Slot n = PC_NODE(m, t.first + k);
     pc_smooth_finish(PC_PASS n);
@@ -372,4 +360,26 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   PC_MEET;
   PC_NODES(k, from, t) pc_smooth_store(PC_PASS PC_NODE(m, t.first + k));
   PC_NODES(k, 1u, t) pc_smooth_remember(PC_PASS t, PC_NODE(m, t.first + k), k);
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Tree t = pc_tree(PC_PASS m);
+  PC_NODES(k, 0u, t) pc_smooth_start(PC_PASS PC_NODE(m, t.first + k));
+  uint from = 1u;
+  if (PC_ANY(pc_smooth_moves(PC_PASS PC_NODE(m, t.first)))) from = 0u;  // lint: allow (what stands stays as it is)
+  for (uint pass = 0u; pass < 5u; pass++) {
+    Mask acts = pc_smooth_pass(PC_PASS m, t, from, pass) > PC_REAL(0.5);
+    if (PC_ANY(acts)) {  // lint: allow (as in pc_smooth_off_pins)
+      pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, PC_REAL(0.0));
+    }
+    if (pass > 0u) {
+      pc_smooth_stage(PC_PASS m, t, from, pass);
+      continue;
+    }
+    if (PC_ANY(acts)) {  // lint: allow (as above)
+      PC_NODES(k, 0u, t) pc_smooth_onto_pins(PC_PASS PC_NODE(m, t.first + k));
+    }
+    PC_NODES(k, 0u, t) pc_smooth_begin(PC_PASS PC_NODE(m, t.first + k));
+  }
+  pc_smooth_end(PC_PASS m, t, from);
 }

@@ -281,55 +281,73 @@ const uint ROUND_THROW = 7u;
 const uint ROUND_PUSH = 11u;
 const uint ROUND_END = 15u;
 
+// Where a tree stands in its rounds: 1 where the round has something to do (`wanted`), where steps were taken, where
+// limits throw back, and where they do so late; and the push.
+struct Progress {
+  Real wanted;
+  Real steps;
+  Real thrown;
+  Real late;
+  Push push;
+};
+PC_FN Progress pc_no_progress() {
+  Progress p;
+  p.wanted = PC_REAL(1.0);
+  p.steps = PC_REAL(0.0);
+  p.thrown = PC_REAL(0.0);
+  p.late = PC_REAL(0.0);
+  p.push.open = PC_REAL(0.0);
+  p.push.turned = PC_REAL(0.0);
+  p.push.most = PC_REAL(0.0);
+  return p;
+}
+// What a round begins with, before it looks at the prediction.
+PC_FN void pc_begin_round(PC_IO Slot m, Tree t, uint round, PC_INOUT(Progress) p) {
+  if (round == ROUND_JUDGE) {
+    p.thrown = pc_min(pc_tree_is_thrown(PC_PASS m, t), p.steps);
+    p.wanted = p.thrown;
+  }
+  if (round == ROUND_AGAIN) {
+    p.wanted = PC_REAL(0.0);
+    if (PC_ANY(p.steps > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
+      p.wanted = pc_judge_steps(PC_PASS m, t, p.steps, p.thrown, p.late);
+    }
+  }
+  if (round == ROUND_THROW) p.wanted = p.late;
+  if (round == ROUND_PUSH) {
+    Mask late = p.late > PC_REAL(0.5);
+    Mask thrown = p.thrown > PC_REAL(0.5);
+    if (PC_ANY(late)) pc_end_throw(PC_PASS m, t, late);            // lint: allow (as above)
+    if (PC_ANY(thrown)) pc_tell_blow(PC_PASS m, t, thrown, late);  // lint: allow (as above)
+    PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
+    p.wanted = pc_move_by_push(PC_PASS m, t);
+  }
+  if (round > ROUND_PUSH) p.wanted = pc_min(p.wanted, p.push.turned);
+}
+
 // What is rounding (8 epsilon of the arm) is left: in a pile at rest that is nearly all. Steps of Newton's method go on
 // where more than 4e-5 of the arm was left, since one leaves about a tenth of it or less: fast whips come to that.
 PC_FN void pc_kernel(PC_IO Slot m) {
   Tree t = pc_tree(PC_PASS m);
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
   PC_NODES(k, 0u, t) pc_st6_tree(PC_PASS PC_NODE(m, t.first + k), TREE_OUTSIDE, pc_six(pc_zero3(), pc_zero3()));
-  Real wanted = PC_REAL(1.0);
-  Real steps = PC_REAL(0.0);
-  Real thrown = PC_REAL(0.0);
-  Real late = PC_REAL(0.0);
-  Push push;
-  push.open = PC_REAL(0.0);
-  push.turned = PC_REAL(0.0);
-  push.most = PC_REAL(0.0);
+  Progress p = pc_no_progress();
   for (uint round = 0u; round < ROUND_END; round++) {
+    pc_begin_round(PC_PASS m, t, round, p);
     bool throws = round >= ROUND_THROW && round < ROUND_PUSH;
-    if (round == ROUND_JUDGE) {
-      thrown = pc_min(pc_tree_is_thrown(PC_PASS m, t), steps);
-      wanted = thrown;
-    }
-    if (round == ROUND_AGAIN) {
-      wanted = PC_REAL(0.0);
-      if (PC_ANY(steps > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
-        wanted = pc_judge_steps(PC_PASS m, t, steps, thrown, late);
-      }
-    }
-    if (round == ROUND_THROW) wanted = late;
-    if (round == ROUND_PUSH) {
-      if (PC_ANY(late > PC_REAL(0.5))) pc_end_throw(PC_PASS m, t, late > PC_REAL(0.5));  // lint: allow (as above)
-      if (PC_ANY(thrown > PC_REAL(0.5))) {                                               // lint: allow (as above)
-        pc_tell_blow(PC_PASS m, t, thrown > PC_REAL(0.5), late > PC_REAL(0.5));
-      }
-      PC_NODES(k, 1u, t) pc_remember_joint(PC_PASS t, PC_NODE(m, t.first + k), k);
-      wanted = pc_move_by_push(PC_PASS m, t);
-    }
-    if (round > ROUND_PUSH) wanted = pc_min(wanted, push.turned);
     Real most = PC_REAL(1.0);
-    bool goes_on = PC_ANY(wanted > PC_REAL(0.5)) && !(throws && round > ROUND_THROW);
+    bool goes_on = PC_ANY(p.wanted > PC_REAL(0.5)) && !(throws && round > ROUND_THROW);
     if (goes_on) {  // lint: allow (rounds of nothing change nothing)
       if (round == ROUND_AGAIN || round == ROUND_AGAIN + 1u) most = PC_INFO(stale_share);
-      pc_tree_residual_to(PC_PASS m, t, wanted, most);
+      pc_tree_residual_to(PC_PASS m, t, p.wanted, most);
     }
     if (round == ROUND_PUSH) {
-      push = pc_begin_push(PC_PASS m, t, noise, wanted);
-      wanted = push.open;
+      p.push = pc_begin_push(PC_PASS m, t, noise, p.wanted);
+      p.wanted = p.push.open;
     }
-    if (!PC_ANY(wanted > PC_REAL(0.5))) continue;  // lint: allow (as above)
+    if (!PC_ANY(p.wanted > PC_REAL(0.5))) continue;  // lint: allow (rounds of nothing change nothing)
     if (round == ROUND_JUDGE) {
-      late = pc_min(pc_throws_too_far(PC_PASS m, t), thrown);
+      p.late = pc_min(pc_throws_too_far(PC_PASS m, t), p.thrown);
       continue;
     }
     Left left;
@@ -337,23 +355,22 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     left.much = PC_REAL(1.0);
     if (round < ROUND_JUDGE) left = pc_left(PC_PASS m, t);
     if (round == 0u) {
-      wanted = pc_max(pc_always_again(PC_PASS m, t), left.some);
-      steps = wanted;
-      if (!PC_ANY(steps > PC_REAL(0.5))) continue;  // lint: allow (as above)
-      pc_keep_motion(PC_PASS m, t, steps > PC_REAL(0.5));
+      p.wanted = pc_max(pc_always_again(PC_PASS m, t), left.some);
+      p.steps = p.wanted;
+      if (!PC_ANY(p.steps > PC_REAL(0.5))) continue;  // lint: allow (as above)
+      pc_keep_motion(PC_PASS m, t, p.steps > PC_REAL(0.5));
     }
-    if (round < ROUND_THROW) pc_newton_rates(PC_PASS m, t, wanted, most, round < ROUND_JUDGE);
+    if (round < ROUND_THROW) pc_newton_rates(PC_PASS m, t, p.wanted, most, round < ROUND_JUDGE);
     if (throws) left.much = pc_throw_rates(PC_PASS m, t, round == ROUND_THROW);
     if (round > ROUND_PUSH) {
-      Rest rest = pc_continue_push(PC_PASS m, t, noise, wanted, push.most);
+      Rest rest = pc_continue_push(PC_PASS m, t, noise, p.wanted, p.push.most);
       left.much = rest.much;
-      if (round == ROUND_PUSH + 1u) push.most = rest.most;
+      if (round == ROUND_PUSH + 1u) p.push.most = rest.most;
     }
     pc_solve_round(PC_PASS m, t, throws, round >= ROUND_PUSH);
-    wanted = pc_min(wanted, left.much);
+    p.wanted = pc_min(p.wanted, left.much);
   }
-  if (PC_ANY(late > PC_REAL(0.5))) {  // lint: allow (nothing changes otherwise)
-    pc_push_against_throw(PC_PASS m, t, late > PC_REAL(0.5));
-  }
+  Mask late = p.late > PC_REAL(0.5);
+  if (PC_ANY(late)) pc_push_against_throw(PC_PASS m, t, late);  // lint: allow (nothing changes otherwise)
   pc_end_push(PC_PASS m, t);
 }

@@ -29,6 +29,44 @@ PC_FN Real pc_is_driven(PC_IO Slot root) {
   Real most = pc_max(pc_largest(PC_GATHER(motion, body, 0u).v), pc_largest(PC_GATHER(motion, body, 1u).v));
   return pc_select(pc_and(pc_nonzero(most), PC_LD(tree_rows, root, TREE_MASS) < PC_LEAST), PC_REAL(1.0), PC_REAL(0.0));
 }
+// 1 where a gap is more than rounding, and none so wide that the push has it. Gaps are kept where the tree `may` close
+// them.
+PC_FN Real pc_to_close(PC_IO Slot m, Tree t, Mask may) {
+  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
+  Real open = PC_REAL(0.0);
+  Real barred = pc_select(may, PC_REAL(0.0), PC_REAL(1.0));
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Vec3 gap = pc_gap_now(PC_PASS t, n, k);
+    pc_st3_tree(PC_PASS n, TREE_C, pc_select3(may, gap, pc_ld3_tree(PC_PASS n, TREE_C)));
+    open = pc_max(open, pc_gap_over(PC_PASS n, gap, noise));
+    barred = pc_max(barred, pc_gap_over(PC_PASS n, gap, PC_SLIGHT));
+  }
+  PC_MOST(open);
+  PC_MOST(barred);
+  return pc_select(barred < PC_LEAST, open, PC_REAL(0.0));
+}
+// The shifts that close all gaps at once, at TREE_X: of the root none.
+PC_FN void pc_closing_shifts(PC_IO Slot m, Tree t) {
+  PC_ONE pc_st3_tree(PC_PASS PC_NODE(m, t.first), TREE_X, pc_zero3());
+  PC_MEET;
+  PC_DOWN(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Vec3 up = pc_ld3_tree(PC_PASS PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), TREE_X);
+    pc_st3_tree(PC_PASS n, TREE_X, pc_sub(up, pc_ld3_tree(PC_PASS n, TREE_C)));
+  }
+  PC_MEET;
+}
+// Shifts a node so, less what its centre of mass would be shifted by.
+PC_FN void pc_shift_node(PC_IO Slot n, Vec3 mean, Mask closes) {
+  Index body = PC_ENDS(tree_ends, n, 0u);
+  Mask moves = pc_and(closes, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
+  Quad place = PC_GATHER(pose, body, 0u);
+  Quad low = PC_GATHER(pose, body, 2u);
+  TwoSum there = pc_two_sum(place.v, pc_add(low.v, pc_sub(pc_ld3_tree(PC_PASS n, TREE_X), mean)));
+  PC_SCATTER_IF(moves, pose, body, 0u, pc_quad(there.sum, place.s));
+  PC_SCATTER_IF(moves, pose, body, 2u, pc_quad(pc_snap3(there.low), low.s));
+}
 // Returns what the angular momentum of a free tree, about its root's centre, gained by that.
 PC_FN Vec3 pc_tree_close(PC_IO Slot m, Tree t) {
   Vec3 gained = pc_zero3();
@@ -40,30 +78,9 @@ PC_FN Vec3 pc_tree_close(PC_IO Slot m, Tree t) {
   PC_MOST(barred);
   Mask may = barred < PC_LEAST;
   if (!PC_ANY(may)) return gained;  // lint: allow (other lanes keep what they have)
-  precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
-  Real open = PC_REAL(0.0);
-  PC_NODES(k, 1u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    Vec3 gap = pc_gap_now(PC_PASS t, n, k);
-    pc_st3_tree(PC_PASS n, TREE_C, pc_select3(may, gap, pc_ld3_tree(PC_PASS n, TREE_C)));
-    Real over = pc_gap_over(PC_PASS n, gap, noise);
-    open = pc_max(open, over);
-    Real wide = pc_gap_over(PC_PASS n, gap, PC_SLIGHT);
-    barred = pc_max(barred, wide);
-  }
-  PC_MOST(open);
-  PC_MOST(barred);
-  Mask closes = pc_select(barred < PC_LEAST, open, PC_REAL(0.0)) > PC_REAL(0.5);
-  Mask free = PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0);
+  Mask closes = pc_to_close(PC_PASS m, t, may) > PC_REAL(0.5);
   if (!PC_ANY(closes)) return gained;  // lint: allow (selected below)
-  PC_ONE pc_st3_tree(PC_PASS root, TREE_X, pc_zero3());
-  PC_MEET;
-  PC_DOWN(k, 1u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    Vec3 up = pc_ld3_tree(PC_PASS PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), TREE_X);
-    pc_st3_tree(PC_PASS n, TREE_X, pc_sub(up, pc_ld3_tree(PC_PASS n, TREE_C)));
-  }
-  PC_MEET;
+  pc_closing_shifts(PC_PASS m, t);
   Vec3 mean = pc_zero3();
   Vec3 push = pc_zero3();
   PC_ALL(k, 0u, t) {
@@ -76,19 +93,10 @@ PC_FN Vec3 pc_tree_close(PC_IO Slot m, Tree t) {
     gained = pc_add(gained, pc_cross(shift, p));
   }
   PC_MEET;
-  Mask kept = pc_and(closes, free);
+  Mask kept = pc_and(closes, PC_LD(tree_rows, root, TREE_MASS) > PC_REAL(0.0));
   mean = pc_select3(kept, mean, pc_zero3());
   gained = pc_select3(kept, pc_sub(gained, pc_cross(mean, push)), pc_zero3());
-  PC_NODES(k, 0u, t) {
-    Slot n = PC_NODE(m, t.first + k);
-    Index body = PC_ENDS(tree_ends, n, 0u);
-    Mask moves = pc_and(closes, PC_LD(tree_rows, n, TREE_MASS) > PC_REAL(0.0));
-    Quad place = PC_GATHER(pose, body, 0u);
-    Quad low = PC_GATHER(pose, body, 2u);
-    TwoSum there = pc_two_sum(place.v, pc_add(low.v, pc_sub(pc_ld3_tree(PC_PASS n, TREE_X), mean)));
-    PC_SCATTER_IF(moves, pose, body, 0u, pc_quad(there.sum, place.s));
-    PC_SCATTER_IF(moves, pose, body, 2u, pc_quad(pc_snap3(there.low), low.s));
-  }
+  PC_NODES(k, 0u, t) pc_shift_node(PC_PASS PC_NODE(m, t.first + k), mean, closes);
   PC_MEET;
   return gained;
 }

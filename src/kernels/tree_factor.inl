@@ -92,27 +92,35 @@ PC_FN void pc_carry(PC_IO Slot n, Slot up, uint parent, Sym6 rest) {
   Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), pc_ld3_tree(PC_PASS n, TREE_RC));
   pc_sth_tree(PC_PASS up, TREE_H, pc_sym6_add(pc_ldh_tree(PC_PASS up, TREE_H), pc_sym6_shift(rest, d)));
 }
-// Factors a node; what is left of its inertia, H - W U^T, its parent carries.
-PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
-  Real fast = pc_max(PC_LD(tree_rows, n, TREE_FAST), PC_LD(tree_rows, up, TREE_FAST));
-  Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H);
-  Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
+// Six rows of three: of the linear part, and of the angular.
+struct SixRows {
+  Mat3 l;
+  Mat3 a;
+};
+// U = H S.
+PC_FN SixRows pc_joint_columns(Sym6 h, Vec3 rc) {
   Mat3 ct = pc_transpose(h.c);
-  // U = H S
-  Vec3 u0 = pc_add(h.c.a, pc_cross(pc_row0(h.l), rc));
-  Vec3 u1 = pc_add(h.c.b, pc_cross(pc_row1(h.l), rc));
-  Vec3 u2 = pc_add(h.c.c, pc_cross(pc_row2(h.l), rc));
-  Vec3 u3 = pc_add(pc_row0(h.a), pc_cross(ct.a, rc));
-  Vec3 u4 = pc_add(pc_row1(h.a), pc_cross(ct.b, rc));
-  Vec3 u5 = pc_add(pc_row2(h.a), pc_cross(ct.c, rc));
-  // S^T U
-  precise Real xx = u3.x + u1.x * rc.z - u2.x * rc.y;
-  precise Real xy = u3.y + u1.y * rc.z - u2.y * rc.y;
-  precise Real xz = u3.z + u1.z * rc.z - u2.z * rc.y;
-  precise Real yy = u4.y + u2.y * rc.x - u0.y * rc.z;
-  precise Real yz = u4.z + u2.z * rc.x - u0.z * rc.z;
-  precise Real zz = u5.z + u0.z * rc.y - u1.z * rc.x;
-  Sym3 freedom = pc_with_floor(PC_PASS n, pc_sym3(xx, xy, xz, yy, yz, zz), rc, fast);
+  SixRows u;
+  u.l = pc_mat3(pc_add(h.c.a, pc_cross(pc_row0(h.l), rc)), pc_add(h.c.b, pc_cross(pc_row1(h.l), rc)),
+                pc_add(h.c.c, pc_cross(pc_row2(h.l), rc)));
+  u.a = pc_mat3(pc_add(pc_row0(h.a), pc_cross(ct.a, rc)), pc_add(pc_row1(h.a), pc_cross(ct.b, rc)),
+                pc_add(pc_row2(h.a), pc_cross(ct.c, rc)));
+  return u;
+}
+// S^T U.
+PC_FN Sym3 pc_joint_inertia(SixRows u, Vec3 rc) {
+  precise Real xx = u.a.a.x + u.l.b.x * rc.z - u.l.c.x * rc.y;
+  precise Real xy = u.a.a.y + u.l.b.y * rc.z - u.l.c.y * rc.y;
+  precise Real xz = u.a.a.z + u.l.b.z * rc.z - u.l.c.z * rc.y;
+  precise Real yy = u.a.b.y + u.l.c.y * rc.x - u.l.a.y * rc.z;
+  precise Real yz = u.a.b.z + u.l.c.z * rc.x - u.l.a.z * rc.z;
+  precise Real zz = u.a.c.z + u.l.a.z * rc.y - u.l.b.z * rc.x;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
+}
+// The factor of a joint's freedom with that inertia: with its floors, drives and springs.
+PC_FN Sym3 pc_joint_factor(PC_IO Slot n, Slot up, Sym3 inertia, Vec3 rc) {
+  Real fast = pc_max(PC_LD(tree_rows, n, TREE_FAST), PC_LD(tree_rows, up, TREE_FAST));
+  Sym3 freedom = pc_with_floor(PC_PASS n, inertia, rc, fast);
   Sym3 factor = pc_inverse_factor(freedom);
 #ifdef PC_DRIVES
   if (PC_ANY(pc_has_drive(PC_PASS n))) {  // lint: allow (others keep what they have)
@@ -124,34 +132,43 @@ PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
   if (PC_ANY(has_rows)) {  // lint: allow (others keep what they have)
     factor = pc_sym_select(has_rows, pc_with_springs(PC_PASS n, factor), factor);
   }
+  return factor;
+}
+PC_FN Mat3 pc_rows_lower(Sym3 factor, Mat3 u) {
+  return pc_mat3(pc_factor_lower(factor, u.a), pc_factor_lower(factor, u.b), pc_factor_lower(factor, u.c));
+}
+PC_FN Mat3 pc_rows_scaled(Sym3 factor, Mat3 y) {
+  return pc_mat3(pc_factor_scaled(factor, y.a), pc_factor_scaled(factor, y.b), pc_factor_scaled(factor, y.c));
+}
+PC_FN Mat3 pc_rows_upper(Sym3 factor, Mat3 z) {
+  return pc_mat3(pc_factor_upper(factor, z.a), pc_factor_upper(factor, z.b), pc_factor_upper(factor, z.c));
+}
+PC_FN Vec3 pc_dots(Vec3 z, Mat3 y) { return Vec3(pc_dot(z, y.a), pc_dot(z, y.b), pc_dot(z, y.c)); }
+// Factors a node; what is left of its inertia, H - W U^T, its parent carries.
+PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
+  Sym6 h = pc_ldh_tree(PC_PASS n, TREE_H);
+  Vec3 rc = pc_ld3_tree(PC_PASS n, TREE_RC);
+  SixRows u = pc_joint_columns(h, rc);
+  Sym3 factor = pc_joint_factor(PC_PASS n, up, pc_joint_inertia(u, rc), rc);
   // W = U E^T d E, and U D^-1 U^T of the same halves
-  Vec3 y0 = pc_factor_lower(factor, u0);
-  Vec3 y1 = pc_factor_lower(factor, u1);
-  Vec3 y2 = pc_factor_lower(factor, u2);
-  Vec3 y3 = pc_factor_lower(factor, u3);
-  Vec3 y4 = pc_factor_lower(factor, u4);
-  Vec3 y5 = pc_factor_lower(factor, u5);
-  Vec3 z0 = pc_factor_scaled(factor, y0);
-  Vec3 z1 = pc_factor_scaled(factor, y1);
-  Vec3 z2 = pc_factor_scaled(factor, y2);
-  Vec3 z3 = pc_factor_scaled(factor, y3);
-  Vec3 z4 = pc_factor_scaled(factor, y4);
-  Vec3 z5 = pc_factor_scaled(factor, y5);
+  SixRows y;
+  y.l = pc_rows_lower(factor, u.l);
+  y.a = pc_rows_lower(factor, u.a);
+  SixRows z;
+  z.l = pc_rows_scaled(factor, y.l);
+  z.a = pc_rows_scaled(factor, y.a);
 #ifdef PC_SEEN
   pc_keep_seen(PC_PASS n);
 #endif
   pc_sts_tree(PC_PASS n, TREE_D, factor);
-  pc_stm_tree(PC_PASS n, TREE_W,
-              pc_mat3(pc_factor_upper(factor, z0), pc_factor_upper(factor, z1), pc_factor_upper(factor, z2)));
-  pc_stm_tree(PC_PASS n, TREE_W + 9u,
-              pc_mat3(pc_factor_upper(factor, z3), pc_factor_upper(factor, z4), pc_factor_upper(factor, z5)));
+  pc_stm_tree(PC_PASS n, TREE_W, pc_rows_upper(factor, z.l));
+  pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_rows_upper(factor, z.a));
   // H - W U^T, and what of it the parent carries
   Sym6 rest;
-  rest.l = pc_sym_sub(h.l, pc_products(z0, z1, z2, y0, y1, y2));
-  rest.a = pc_sym_sub(h.a, pc_products(z3, z4, z5, y3, y4, y5));
-  rest.c = pc_mat3(pc_sub(h.c.a, Vec3(pc_dot(z0, y3), pc_dot(z0, y4), pc_dot(z0, y5))),
-                   pc_sub(h.c.b, Vec3(pc_dot(z1, y3), pc_dot(z1, y4), pc_dot(z1, y5))),
-                   pc_sub(h.c.c, Vec3(pc_dot(z2, y3), pc_dot(z2, y4), pc_dot(z2, y5))));
+  rest.l = pc_sym_sub(h.l, pc_products(z.l.a, z.l.b, z.l.c, y.l.a, y.l.b, y.l.c));
+  rest.a = pc_sym_sub(h.a, pc_products(z.a.a, z.a.b, z.a.c, y.a.a, y.a.b, y.a.c));
+  rest.c = pc_mat3(pc_sub(h.c.a, pc_dots(z.l.a, y.a)), pc_sub(h.c.b, pc_dots(z.l.b, y.a)),
+                   pc_sub(h.c.c, pc_dots(z.l.c, y.a)));
   pc_sts_tree(PC_PASS n, TREE_A, rest.l);
   pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c);
 #ifndef PC_SEEN

@@ -151,24 +151,32 @@ PC_FN void pc_tree_damping(PC_IO Slot m, Tree t, Mask held) {
   }
 }
 
-PC_FN void pc_kernel(PC_IO Slot m) {
-  Tree t = pc_tree(PC_PASS m);
-  Real one = PC_REAL(1.0);
-  pc_tree_residual(PC_PASS m, t, one);
-  // what contacts and loops give to the tree as a whole, and whether they do
-  Vec3 push = pc_zero3();
-  Vec3 turn = pc_zero3();
-  Real load = PC_REAL(0.0);
+// What contacts and loops give to the tree as a whole, as an impulse and a moment about its root's centre; and `load`,
+// above 0 where they do, or where a limit acts.
+struct Outside {
+  Vec3 push;
+  Vec3 turn;
+  Real load;
+};
+PC_FN Outside pc_outside(PC_IO Slot m, Tree t) {
+  Outside all;
+  all.push = pc_zero3();
+  all.turn = pc_zero3();
+  all.load = PC_REAL(0.0);
   PC_ALL(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     Six f = pc_ld6_tree(PC_PASS n, TREE_OUTSIDE);
-    push = pc_add(push, f.l);
-    load = pc_max(load, pc_max(pc_largest(f.l), pc_largest(f.a)));
-    precise Vec3 moment = turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l);
-    turn = moment;
+    all.push = pc_add(all.push, f.l);
+    all.load = pc_max(all.load, pc_max(pc_largest(f.l), pc_largest(f.a)));
+    precise Vec3 moment = all.turn + f.a + pc_cross(pc_ld3_tree(PC_PASS n, TREE_PLACE), f.l);
+    all.turn = moment;
   }
-  PC_NODES(k, 1u, t) load = pc_max(load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
-  PC_MOST(load);
+  PC_NODES(k, 1u, t) all.load = pc_max(all.load, pc_at_limit(PC_PASS PC_NODE(m, t.first + k)));
+  PC_MOST(all.load);
+  return all;
+}
+// The rates that angle rows and drives must undo, and the tree's energy where a limit throws back.
+PC_FN void pc_begin_rates(PC_IO Slot m, Tree t) {
   Real throws = PC_REAL(0.0);
   PC_NODES(k, 1u, t) {
     Slot n = PC_NODE(m, t.first + k);
@@ -185,24 +193,37 @@ PC_FN void pc_kernel(PC_IO Slot m) {
 #ifdef PC_DRIVES
   PC_NODES(k, 1u, t) pc_drive_rates(PC_PASS PC_NODE(m, t.first + k), PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
 #endif
-  pc_tree_damping(PC_PASS m, t, load > PC_REAL(0.0));
+}
+// After a sweep: joints of which something else is to act are stale. 1 where there is one.
+PC_FN Real pc_revise(PC_IO Slot m, Tree t, bool first) {
+  Real changed = PC_REAL(0.0);
+  PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
+  PC_NODES(k, 1u, t) {
+    Slot n = PC_NODE(m, t.first + k);
+    Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
+    Real here = pc_tree_revise(PC_PASS n, up);
+#ifdef PC_DRIVES
+    here = pc_max(here, pc_drive_revise(PC_PASS n, up, first));
+#endif
+    PC_ST(tree_rows, n, TREE_STALE, here);
+    changed = pc_max(changed, here);
+  }
+  PC_MOST(changed);
+  return changed;
+}
+
+PC_FN void pc_kernel(PC_IO Slot m) {
+  Tree t = pc_tree(PC_PASS m);
+  Real one = PC_REAL(1.0);
+  pc_tree_residual(PC_PASS m, t, one);
+  Outside outside = pc_outside(PC_PASS m, t);
+  pc_begin_rates(PC_PASS m, t);
+  pc_tree_damping(PC_PASS m, t, outside.load > PC_REAL(0.0));
   for (uint round = 0u; round < 4u; round++) {
     pc_factor(PC_PASS m, t, round == 0u);
     pc_tree_sweep(PC_PASS m, t, TREE_C, TREE_PIN, one);
     if (round == 3u) break;  // what acts is what the factor knows of
-    Real changed = PC_REAL(0.0);
-    PC_ONE PC_ST(tree_rows, PC_NODE(m, t.first), TREE_STALE, changed);
-    PC_NODES(k, 1u, t) {
-      Slot n = PC_NODE(m, t.first + k);
-      Slot up = PC_NODE(m, t.first + pc_parent(PC_PASS t, k));
-      Real here = pc_tree_revise(PC_PASS n, up);
-#ifdef PC_DRIVES
-      here = pc_max(here, pc_drive_revise(PC_PASS n, up, round == 0u));
-#endif
-      PC_ST(tree_rows, n, TREE_STALE, here);
-      changed = pc_max(changed, here);
-    }
-    PC_MOST(changed);
+    Real changed = pc_revise(PC_PASS m, t, round == 0u);
     if (!PC_ANY(changed > PC_REAL(0.5))) break;  // lint: allow (a lane that is done computes the same again)
     PC_UP(k, t) {
       Slot n = PC_NODE(m, t.first + k);
@@ -215,5 +236,5 @@ PC_FN void pc_kernel(PC_IO Slot m) {
     pc_st3_tree(PC_PASS n, TREE_LIMIT, pc_row_impulses(PC_PASS t, n, k));
     pc_rates_left(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)));
   }
-  pc_tree_apply(PC_PASS m, t, push, turn);
+  pc_tree_apply(PC_PASS m, t, outside.push, outside.turn);
 }
