@@ -19,6 +19,54 @@ Soft soft(double frequency_times_h, double damping_ratio, double h) {
   return {frequency_times_h / (h * a), c / (1 + c), 1 / (1 + c)};
 }
 
+/// Of the phase that all others differ little from; `h`: the sub-step of the octave.
+template <class Scalar> InfoOf<Scalar> biased_info(const InfoInputs& from, double h, unsigned octave) {
+  const double step = from.h * from.substeps, gravity = length(from.gravity);
+  const Soft rows =
+      soft(constants::soft_frequency_times_h * (from.h / from.soft_substep), constants::soft_damping_ratio, h);
+
+  InfoOf<Scalar> info{};
+  info.h = Scalar(h);
+  info.inverse_h = Scalar(1 / h);
+  info.gravity_x = Scalar(from.gravity.x);
+  info.gravity_y = Scalar(from.gravity.y);
+  info.gravity_z = Scalar(from.gravity.z);
+  info.h_before = Scalar(h);
+  info.by_forces = octave > 0;
+  info.impulse_ratio = 1;
+  info.soft_rate = Scalar(rows.rate);
+  info.soft_mass_scale = Scalar(rows.mass_scale);
+  info.soft_impulse_scale = Scalar(rows.impulse_scale);
+  info.soft_trend = Scalar(std::max(0.0, 1 - 2 * rows.impulse_scale / (rows.rate * h)));
+  info.contact_preload = Scalar(constants::contact_preload * gravity * h);
+  info.settled_load = Scalar(constants::settled_load);
+  info.least_load = Scalar(constants::least_load * gravity * h);
+  info.push_speed = Scalar(from.push_speed);
+  info.row_push_speed = Scalar(std::min(from.push_speed, std::max(gravity, from.push_speed) * step));
+  info.tree_push_speed = Scalar(std::min(from.push_speed, gravity * step));
+  info.joint_push_speed = Scalar(constants::joint_push_speed);
+  info.limit_give = Scalar(constants::largest_give);
+  info.loop_give = Scalar(constants::loop_give);
+  info.spin_floor = Scalar(constants::tree_spin_floor);
+  info.rounds = constants::rounds;
+  info.net_made = Scalar(constants::net_made);
+  info.stale_share = Scalar(constants::stale_share);
+  info.locked_interval = Scalar(constants::locked_interval);
+  info.limit_stiffness = Scalar(rows.mass_scale / rows.impulse_scale);
+  info.tree_damping = Scalar(constants::tree_damping);
+  info.lock_stiffness = Scalar(constants::lock_stiffness);
+  info.restitution_threshold = Scalar(from.restitution_threshold);
+  info.struck_speed = Scalar(constants::struck_speed);
+  info.rounding = Scalar(constants::roundings * std::numeric_limits<Scalar>::epsilon());
+
+  info.carries = from.carries;
+  info.substeps = Scalar(from.substeps << octave);
+  info.step = Scalar(from.h * from.substeps);
+  info.largest_state = Scalar(constants::largest_state);
+  info.largest_momentum = Scalar(constants::largest_momentum);
+  return info;
+}
+
 }  // namespace
 
 double soft_substep_length(double before, double h, double dt) {
@@ -26,50 +74,9 @@ double soft_substep_length(double before, double h, double dt) {
 }
 
 template <class Scalar> void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave) {
-  const double h = from.h / double(1u << octave), step = from.h * from.substeps, gravity = length(from.gravity);
-  const Soft rows =
-      soft(constants::soft_frequency_times_h * (from.h / from.soft_substep), constants::soft_damping_ratio, h);
-
+  const double h = from.h / double(1u << octave);
   InfoOf<Scalar>& biased = infos[unsigned(Phase::biased)];
-  biased = {};
-  biased.h = Scalar(h);
-  biased.inverse_h = Scalar(1 / h);
-  biased.gravity_x = Scalar(from.gravity.x);
-  biased.gravity_y = Scalar(from.gravity.y);
-  biased.gravity_z = Scalar(from.gravity.z);
-  biased.h_before = Scalar(h);
-  biased.by_forces = octave > 0;
-  biased.impulse_ratio = 1;
-  biased.soft_rate = Scalar(rows.rate);
-  biased.soft_mass_scale = Scalar(rows.mass_scale);
-  biased.soft_impulse_scale = Scalar(rows.impulse_scale);
-  biased.soft_trend = Scalar(std::max(0.0, 1 - 2 * rows.impulse_scale / (rows.rate * h)));
-  biased.contact_preload = Scalar(constants::contact_preload * gravity * h);
-  biased.settled_load = Scalar(constants::settled_load);
-  biased.least_load = Scalar(constants::least_load * gravity * h);
-  biased.push_speed = Scalar(from.push_speed);
-  biased.row_push_speed = Scalar(std::min(from.push_speed, std::max(gravity, from.push_speed) * step));
-  biased.tree_push_speed = Scalar(std::min(from.push_speed, gravity * step));
-  biased.joint_push_speed = Scalar(constants::joint_push_speed);
-  biased.limit_give = Scalar(constants::largest_give);
-  biased.loop_give = Scalar(constants::loop_give);
-  biased.spin_floor = Scalar(constants::tree_spin_floor);
-  biased.rounds = constants::rounds;
-  biased.net_made = Scalar(constants::net_made);
-  biased.stale_share = Scalar(constants::stale_share);
-  biased.locked_interval = Scalar(constants::locked_interval);
-  biased.limit_stiffness = Scalar(rows.mass_scale / rows.impulse_scale);
-  biased.tree_damping = Scalar(constants::tree_damping);
-  biased.lock_stiffness = Scalar(constants::lock_stiffness);
-  biased.restitution_threshold = Scalar(from.restitution_threshold);
-  biased.struck_speed = Scalar(constants::struck_speed);
-  biased.rounding = Scalar(constants::roundings * std::numeric_limits<Scalar>::epsilon());
-
-  biased.carries = from.carries;
-  biased.substeps = Scalar(from.substeps << octave);
-  biased.step = Scalar(from.h * from.substeps);
-  biased.largest_state = Scalar(constants::largest_state);
-  biased.largest_momentum = Scalar(constants::largest_momentum);
+  biased = biased_info<Scalar>(from, h, octave);
 
   const auto change = [&](Phase phase, double before, double after) {
     InfoOf<Scalar>& info = infos[unsigned(phase)];

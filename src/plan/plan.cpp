@@ -1,184 +1,16 @@
 #include "plan/plan.h"
 
 #include <algorithm>
-#include <bit>
-#include <utility>
 
 #include "pcphys/constants.h"
 #include "plan/fourth_order.h"
 #include "plan/island_class.h"
 #include "plan/left_out.h"
 #include "plan/own_kernels.h"
+#include "plan/plan_builder.h"
 
 namespace pcphys {
 namespace {
-/// Of Detector::meet.
-constexpr Access collide_accesses[] = {{Buffer::pose, false},
-                                       {Buffer::motion, false},
-                                       {Buffer::mass, false},
-                                       {Buffer::delta, false},
-                                       {Buffer::contact, true}};
-
-/// Adds kernels to a plan, with the transfers and barriers that their declared accesses ask for.
-class Builder {
- public:
-  Builder(const PlanSignature& signature, OwnKernels::Ordered own, StepPlan& plan)
-      : signature_(signature), own_(own), plan_(plan) {
-    std::size_t count = buffer_count;
-    for (const auto& k : own)
-      for (const Access& a : k->accesses) count = std::max(count, std::size_t(a.buffer) + 1);
-    buffers_.resize(count);
-    for (const auto& k : own)
-      for (const OwnArgument& a : k->arguments)
-        if (a.of_property() && a.property.starts_with(own_prefix)) at(a.buffer).of_library = true;
-    for (Known& b : buffers_) b.current[std::size_t(Place::cpu)] = true;
-    at(Buffer::island_labels).current[std::size_t(Place::gl)] = true;  // its kernels begin anew
-  }
-
-  /// The kernels that follow are for islands of this octave.
-  void enter(std::uint8_t octave) { octave_ = octave; }
-
-  /// `again`: PlanEntry::again.
-  void kernel(Kernel kernel, Phase phase, std::uint32_t substep, std::uint32_t again = 0) {
-    const KernelSchema& k = schema(kernel);
-    const Place place = k.stage == Stage::islands ? Place::gl : signature_.places[std::size_t(k.stage)];
-    add({PlanEntry::Kind::kernel, place, kernel, {}, phase, false, substep, octave_, nullptr, again}, k.accesses,
-        k.domain);
-  }
-
-  /// The narrow phase of a sub-step, on the host: Detector::meet.
-  void collide(Phase phase, std::uint32_t substep) {
-    for (const Access& a : collide_accesses) bring(a.buffer, Place::cpu, substep);
-    plan_.entries.push_back({PlanEntry::Kind::collide, Place::cpu, {}, {}, phase, false, substep, octave_, nullptr, 0});
-    for (const Access& a : collide_accesses) {
-      if (!a.write) continue;
-      overwrite(a.buffer);
-      at(a.buffer).current = {true, false};
-      at(a.buffer).host_wrote = true;
-    }
-  }
-
-  /// The host's own kernels of a moment of the step, in a sub-step of `count`.
-  void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count, bool once_a_step) {
-    for (const auto& k : own_) {
-      if (k->stage != stage || k->after != after || k->once_a_step != once_a_step) continue;
-      if (k->form == OwnKernel::Form::reduction) continue;
-      if (once_a_step && substep != (after ? count - 1 : 0)) continue;
-      // rows that are no bodies are of no octave, but for joints with theirs
-      const bool of_bodies = k->table == Table::body || k->form == OwnKernel::Form::joined;
-      if (!of_bodies && octave_ != std::countr_zero(signature_.octaves)) continue;
-      add(*k, substep);
-    }
-  }
-  /// Those that make one value of all rows, when the step is made.
-  void totals() {
-    enter(0);
-    for (const auto& k : own_)
-      if (k->form == OwnKernel::Form::reduction) add(*k, plan_.entries.empty() ? 0 : plan_.entries.back().substep);
-  }
-  void own(Stage stage, bool after, std::uint32_t substep, std::uint32_t count) {
-    own(stage, after, substep, count, true);
-    own(stage, after, substep, count, false);
-  }
-
-  /// What the host is to know of it when the step is made.
-  void bring_home(Buffer buffer) { bring(buffer, Place::cpu, plan_.entries.back().substep); }
-
-  void results(std::uint32_t substep) {
-    for (std::size_t b = 0; b < buffers_.size(); b++)
-      if (is_result(Buffer(b)))
-        leave(Buffer(b)) ? plan_.left_there.push_back(Buffer(b)) : bring(Buffer(b), Place::cpu, substep);
-  }
-
- private:
-  struct Known {
-    std::array<bool, 2> current{}, bound{};  // by Place
-    bool written = false, read = false;      // on GL since the last barrier
-    bool host_wrote = false, own_wrote = false, overwritten = false;
-    bool of_library = false;  // a column of the library's beside those of the host's own: of one step
-  };
-  Known& at(Buffer buffer) { return buffers_[std::size_t(buffer)]; }
-  /// What the host reads after a step: every buffer that holds state, or that events are made of, or that the host's
-  /// own kernels wrote; and of what both sides wrote the last version, since the next step begins with the host's.
-  bool is_result(Buffer b) const {
-    const Known& known = buffers_[std::size_t(b)];
-    if (!of_table(b) || known.of_library) return false;
-    return is_own(b) || holds(b, Role::state) || b == Buffer::touch || known.host_wrote || known.own_wrote;
-  }
-  static bool is_rows(Buffer b) { return !of_table(b) && schema(b).reals > 0; }
-
-  /// Whether the device may keep it.
-  bool leave(Buffer b) const {
-    return plan_.flight && signature_.resident && !is_own(b) &&
-           !buffers_[std::size_t(b)].current[std::size_t(Place::cpu)];
-  }
-
-  void add(const OwnKernel& k, std::uint32_t substep) {
-    Place place = signature_.places[std::size_t(k.stage)];
-    if (k.body.empty()) place = Place::cpu;
-    if (!k.in_cpp()) place = Place::gl;
-    add({PlanEntry::Kind::kernel, place, {}, {}, Phase::biased, false, substep, octave_, &k, 0}, k.accesses,
-        Domain::body);
-  }
-  void add(PlanEntry entry, std::span<const Access> accesses, Domain domain) {
-    const Place place = entry.place;
-    for (const Access& a : accesses) {
-      if (!is_rows(a.buffer)) bring(a.buffer, place, entry.substep);
-      entry.barrier |= place == Place::gl && (at(a.buffer).written || (a.write && at(a.buffer).read));
-    }
-    if (entry.barrier) settle();
-    plan_.entries.push_back(entry);
-    for (const Access& a : accesses) {
-      Known& known = at(a.buffer);
-      if (!std::exchange(known.bound[std::size_t(place)], true)) plan_.bindings.push_back({place, a.buffer, domain});
-      if (place == Place::gl) (a.write ? known.written : known.read) = true;
-      if (!a.write) continue;
-      if (place == Place::cpu) overwrite(a.buffer);
-      known.current[0] = place == Place::cpu;
-      known.current[1] = place == Place::gl;
-      known.host_wrote |= place == Place::cpu;
-      known.own_wrote |= entry.own != nullptr;
-    }
-  }
-
-  void bring(Buffer buffer, Place place, std::uint32_t substep) {
-    bool& here = at(buffer).current[std::size_t(place)];
-    if (here) return;
-    here = true;
-    const auto kind = place == Place::gl ? PlanEntry::Kind::upload : PlanEntry::Kind::download;
-    plan_.entries.push_back({kind,
-                             place,
-                             {},
-                             buffer,
-                             Phase::biased,
-                             kind == PlanEntry::Kind::download,
-                             substep,
-                             octave_,
-                             user_of(buffer),
-                             0});
-    if (kind == PlanEntry::Kind::upload) return;
-    overwrite(buffer);
-    settle();
-  }
-  const OwnKernel* user_of(Buffer buffer) const {
-    for (const auto& k : own_)
-      for (const Access& a : k->accesses)
-        if (a.buffer == buffer && is_own(buffer)) return k.get();
-    return nullptr;
-  }
-  void overwrite(Buffer buffer) {
-    if (of_table(buffer) && !std::exchange(at(buffer).overwritten, true)) plan_.overwritten.push_back(buffer);
-  }
-  void settle() {
-    for (Known& b : buffers_) b.written = b.read = false;
-  }
-
-  const PlanSignature& signature_;
-  OwnKernels::Ordered own_;
-  StepPlan& plan_;
-  std::uint8_t octave_ = 0;
-  std::vector<Known> buffers_;  // by Buffer
-};
 
 /// The kernels that move bodies between impulses.
 struct Motion {
@@ -213,7 +45,7 @@ Contacts contacts(const PlanSignature& s) {
 }
 
 // what acts on trees first: the floor under what lies on them comes later (see Colouring)
-void solve_on_trees(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+void solve_on_trees(PlanBuilder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.tree_joints && phase == Phase::relax) b.kernel(Kernel::tree_joint_arms, phase, substep);
   if (s.tree_joints)
     b.kernel(s.joint_drives ? Kernel::tree_joint_solve_driven : Kernel::tree_joint_solve, phase, substep);
@@ -221,53 +53,41 @@ void solve_on_trees(Builder& b, const PlanSignature& s, Phase phase, std::uint32
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_flush, phase, substep);
 }
 // before the forces, and before the first sub-step brings velocities out of phase
-void look_at_drives(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+void look_at_drives(PlanBuilder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.tree_drives) b.kernel(Kernel::tree_drive_rates, phase, substep);
   if (s.joint_drives) b.kernel(Kernel::joint_drives, phase, substep);
 }
 // of the poses that a sub-step begins with; forces do not change them
-void look_at_inertia(Builder& b, const PlanSignature& s, std::uint32_t substep) {
+void look_at_inertia(PlanBuilder& b, const PlanSignature& s, std::uint32_t substep) {
   if (s.joints() || s.solves_trees() || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
 }
 /// Which act in the sub-step, and where; in the sent phase, which of limbs that contacts and joints have sent
 /// elsewhere.
-void look_at_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+void look_at_contacts(PlanBuilder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (!s.contacts()) return;
   b.collide(phase, substep);
   b.kernel(contacts(s).prepare, phase, substep);
 }
-void solve_free_joints(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+void solve_free_joints(PlanBuilder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (s.free_joints) b.kernel(s.joint_drives ? Kernel::joint_solve_driven : Kernel::joint_solve, phase, substep);
 }
-void solve_contacts(Builder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
+void solve_contacts(PlanBuilder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   solve_on_trees(b, s, phase, substep);
   if (s.free_contacts) b.kernel(contacts(s).solve, phase, substep);
   for (unsigned visit = 1; s.free_contacts && visit < s.visits; visit++) b.kernel(contacts(s).placed, phase, substep);
 }
 
 /// What contacts remember acts on each body by a share.
-void recall(Builder& b, const PlanSignature& s, std::uint32_t substep) {
+void recall(PlanBuilder& b, const PlanSignature& s, std::uint32_t substep) {
   if (!s.contacts()) return;
   b.kernel(contacts(s).recall, Phase::biased, substep);
   if (s.tree_contacts) b.kernel(Kernel::tree_recall, Phase::biased, substep);
   b.kernel(Kernel::recall_share, Phase::biased, substep);
 }
 
-/// A sub-step; `count`: of how many.
-void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32_t k, std::uint32_t count) {
-  if (k > 0) b.own(Stage::integrate, false, k, count);
-  // pivots go on from the momentum of before; the last change of velocities is that of the last sub-step
-  if (s.pivots || (k + 1 == count && s.integrator != Integrator::seed)) b.kernel(Kernel::remember, Phase::biased, k);
-  if (k > 0) look_at_drives(b, s, Phase::biased, k);
-  b.kernel(with.integrate, Phase::biased, k);
-  if (k > 0 && s.rotates) look_at_inertia(b, s, k);
-  look_at_contacts(b, s, k == 0 ? Phase::first : Phase::biased, k);
-  b.own(Stage::integrate, true, k, count);
-  b.own(Stage::joints, false, k, count);
-  if (s.tree_contacts && k == 0) b.kernel(Kernel::push_back, Phase::first, k);
-  if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
-  if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
-  // both warm starts come before either solve: joints that do not yet feel the contacts' load over-correct
+/// The warm starts: what contacts and joints are expected to hold.
+void warm_start(PlanBuilder& b, const PlanSignature& s, std::uint32_t k, std::uint32_t count) {
+  // both come before either solve: joints that do not yet feel the contacts' load over-correct
   if (s.joints()) b.kernel(Kernel::joint_prepare, k == 0 ? Phase::first : Phase::biased, k);
   if (s.free_joints) b.kernel(Kernel::joint_warm, Phase::biased, k);
   b.own(Stage::impulses, false, k, count);
@@ -283,6 +103,10 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.tree_contacts) b.kernel(Kernel::tree_contact_warm, Phase::biased, k);
   if (s.tree_joints || s.tree_contacts) b.kernel(Kernel::tree_collect, Phase::biased, k);
   if (s.contacts() && s.rolling) b.kernel(Kernel::contact_rolling, Phase::biased, k);
+}
+
+/// The solves with a push towards where joints and contacts should be.
+void solve_biased(PlanBuilder& b, const PlanSignature& s, std::uint32_t k, std::uint32_t count) {
   solve_free_joints(b, s, Phase::biased, k);
   if (s.nets) b.kernel(Kernel::net_prepare, Phase::biased, k);
   if (s.nets) b.kernel(Kernel::net_solve, Phase::biased, k);
@@ -306,6 +130,24 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
   if (s.limits_after_contacts())
     b.kernel(s.tree_drives ? Kernel::tree_limits_driven : Kernel::tree_limits, Phase::biased, k);
   if (s.solves_trees()) b.kernel(Kernel::tree_again, Phase::biased, k);
+}
+
+/// A sub-step; `count`: of how many.
+void substep(PlanBuilder& b, const PlanSignature& s, const Motion& with, std::uint32_t k, std::uint32_t count) {
+  if (k > 0) b.own(Stage::integrate, false, k, count);
+  // pivots go on from the momentum of before; the last change of velocities is that of the last sub-step
+  if (s.pivots || (k + 1 == count && s.integrator != Integrator::seed)) b.kernel(Kernel::remember, Phase::biased, k);
+  if (k > 0) look_at_drives(b, s, Phase::biased, k);
+  b.kernel(with.integrate, Phase::biased, k);
+  if (k > 0 && s.rotates) look_at_inertia(b, s, k);
+  look_at_contacts(b, s, k == 0 ? Phase::first : Phase::biased, k);
+  b.own(Stage::integrate, true, k, count);
+  b.own(Stage::joints, false, k, count);
+  if (s.tree_contacts && k == 0) b.kernel(Kernel::push_back, Phase::first, k);
+  if (s.trees) b.kernel(Kernel::tree_prepare, k == 0 ? Phase::first : Phase::biased, k);
+  if (s.tree_drives) b.kernel(Kernel::tree_drives, Phase::biased, k);
+  warm_start(b, s, k, count);
+  solve_biased(b, s, k, count);
   if (s.pivots) b.kernel(Kernel::pivot_turn, Phase::biased, k);
   if (!s.pivots_alone) b.kernel(with.advance, Phase::biased, k);
   if (s.pivots) b.kernel(Kernel::pivot_settle, Phase::biased, k);
@@ -320,7 +162,7 @@ void substep(Builder& b, const PlanSignature& s, const Motion& with, std::uint32
 }
 
 /// All sub-steps of bodies in flight, which no kernel needs to look at in between.
-void fly(Builder& b, const PlanSignature& s) {
+void fly(PlanBuilder& b, const PlanSignature& s) {
   const std::uint32_t last = s.substeps - 1;
   b.enter(0);
   b.own(Stage::integrate, false, 0, s.substeps);
@@ -332,14 +174,14 @@ void fly(Builder& b, const PlanSignature& s) {
 }
 
 /// Where nothing moves the host's own kernels have their sub-steps all the same.
-void own_alone(Builder& b, const PlanSignature& s) {
+void own_alone(PlanBuilder& b, const PlanSignature& s) {
   for (std::uint32_t k = 0; k < s.substeps; k++)
     for (const Stage stage : {Stage::integrate, Stage::joints, Stage::impulses})
       for (const bool after : {false, true}) b.own(stage, after, k, s.substeps);
 }
 
 /// All sub-steps of the islands of an octave.
-void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
+void substeps(PlanBuilder& b, const PlanSignature& s, std::uint8_t octave) {
   const Motion with = motion(s);
   const std::uint32_t count = s.substeps << octave, last = count - 1;
   b.enter(octave);
@@ -363,7 +205,7 @@ void substeps(Builder& b, const PlanSignature& s, std::uint8_t octave) {
 
 /// All sub-steps of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on
 /// them.
-void smooth_substeps(Builder& b, const PlanSignature& s, unsigned octave) {
+void smooth_substeps(PlanBuilder& b, const PlanSignature& s, unsigned octave) {
   const std::uint32_t count = s.substeps << octave, last = count - 1;
   b.enter(std::uint8_t(octave_count + octave));
   b.kernel(Kernel::smooth_prepare, Phase::biased, 0);
@@ -374,7 +216,7 @@ void smooth_substeps(Builder& b, const PlanSignature& s, unsigned octave) {
 }
 
 /// Who is in which island: rounds of label propagation until no label falls.
-void label_islands(Builder& b, const StepPlan& plan) {
+void label_islands(PlanBuilder& b, const StepPlan& plan) {
   const std::uint32_t last = plan.entries.empty() ? 0 : plan.entries.back().substep;
   b.enter(0);
   b.kernel(Kernel::island_start, Phase::last, last);
@@ -407,7 +249,7 @@ StepPlan make_plan(const PlanSignature& s, OwnKernels::Ordered own) {
   plan.flight = in_flight(s, own);
   leave_out(s, own, plan);
   if (!s.bodies && own.empty() && !s.islands) return plan;
-  Builder b(s, own, plan);
+  PlanBuilder b(s, own, plan);
   if (!s.bodies) own_alone(b, s);
   if (plan.flight) fly(b, s);
   for (std::uint8_t octave = 0; s.bodies && !plan.flight && octave < octave_count; octave++)

@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -136,7 +135,8 @@ struct Stepper::Inside {
     return ok;
   }
 
-  Status step(World& world, double dt) {
+  /// Refuses what cannot be stepped, and asks the callbacks for their forces.
+  Status make_ready(World& world, double dt) {
     WorldState& s = world.state();
     Status ok = check_dt(dt);
     if (ok) ok = follow_own(s);
@@ -148,6 +148,12 @@ struct Stepper::Inside {
     }
     if (ok && prepared != s.tables.precision()) ok = prepare(s.tables.precision());
     if (ok) ok = called.ask(world);
+    return ok;
+  }
+
+  Status step(World& world, double dt) {
+    WorldState& s = world.state();
+    Status ok = make_ready(world, dt);
     if (!ok) return ok;
     lap(Timer::forces);
 
@@ -252,12 +258,7 @@ struct Stepper::Inside {
   void unfreeze(WorldState& s);
 
   /// Bodies in flight that their kernel has left where they were: all others have made the step.
-  void freeze_left(WorldState& s) {
-    leaving.clear();
-    for (const std::uint32_t row : schedule.moving_bodies())
-      if (s.tables.get(Buffer::motion, row, 7) == frozen_phase) leaving.push_back(row);
-    freeze(s);
-  }
+  void freeze_left(WorldState& s);
 
   /// Pairs and contacts. What sleeps and is stirred or touched wakes, and then has its contacts found, too.
   Status detect(WorldState& s, double dt, Detector::Found& found) {
@@ -353,19 +354,7 @@ struct Stepper::Inside {
   }
 
   /// Of a step that was made.
-  void tell(const PlanSignature& wanted, const Detector::Found& found) {
-    report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
-    report.refined = octaves.refined();
-    report.limited = octaves.limited();
-    report.fourth_order = octaves.fourth_order();
-    report.pairs = found.pairs;
-    report.contacts = found.contacts;
-    report.points = found.points;
-    report.joints_as_rows =
-        schedule.joints.constraints() - schedule.joints.with_trees() - schedule.trees.free_springs();
-    report.tree_contacts_as_rows = schedule.contacts.beside_trees();
-    report.colours = found.contacts ? schedule.contacts.colours() : 0;
-  }
+  void tell(const PlanSignature& wanted, const Detector::Found& found);
 
   /// Whether a step that asks for it is made anew: most_tries times in all.
   bool once_more(bool asked) {

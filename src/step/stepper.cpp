@@ -1,5 +1,6 @@
 // What a host calls of a stepper.
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -186,6 +187,13 @@ void Stepper::Inside::unfreeze(WorldState& s) {
   s.count_rest();
 }
 
+void Stepper::Inside::freeze_left(WorldState& s) {
+  leaving.clear();
+  for (const std::uint32_t row : schedule.moving_bodies())
+    if (s.tables.get(Buffer::motion, row, 7) == frozen_phase) leaving.push_back(row);
+  freeze(s);
+}
+
 void Stepper::Inside::write_solved(WorldState& s) {
   undone = false;
   restores = s.restores;
@@ -208,6 +216,19 @@ void Stepper::Inside::update_structure(WorldState& s) {
   write_solved(s);
   octaves.update_structure(s, schedule.trees.solved(), schedule.trees.closing(), schedule.trees.parallel());
   fourth.forget();
+}
+
+void Stepper::Inside::tell(const PlanSignature& wanted, const Detector::Found& found) {
+  report.substeps = wanted.substeps << (std::bit_width(octaves_of(octaves.used())) - 1);
+  report.refined = octaves.refined();
+  report.limited = octaves.limited();
+  report.fourth_order = octaves.fourth_order();
+  report.pairs = found.pairs;
+  report.contacts = found.contacts;
+  report.points = found.points;
+  report.joints_as_rows = schedule.joints.constraints() - schedule.joints.with_trees() - schedule.trees.free_springs();
+  report.tree_contacts_as_rows = schedule.contacts.beside_trees();
+  report.colours = found.contacts ? schedule.contacts.colours() : 0;
 }
 
 /// Where there is no memory for a step the world is as it was, and what the stepper holds of it is made anew by the

@@ -10,6 +10,7 @@
 #include "narrow_core.inl"
 #include "narrow_gjk.inl"
 #include "narrow_epa.inl"
+#include "narrow_face.inl"
 #include "narrow_convex.inl"
 
 // Shapes in the order of their kinds; the normal points from a to b.

@@ -94,12 +94,30 @@ PC_FN EdgeGap pc_edge_gap(BoxPair k, uint i, uint j) {
   return e;
 }
 
-// Axis 6 + 3 i + j is a_i x b_j; `beat`: what the next edge axis must exceed.
+// Axis 0 to 2 is a face's of a, 3 to 5 of b, 6 + 3 i + j is a_i x b_j; `beat`: what the next axis must exceed.
 struct BoxAxis {
   Real gap;
   Real beat;
   uint axis;
 };
+PC_FN void pc_try_face(BoxPair k, uint axis, PC_INOUT(BoxAxis) best) {
+  Real gap = pc_face_gap(k, axis);
+  if (gap > best.beat) {
+    best.gap = gap;
+    best.beat = gap;
+    best.axis = axis;
+  }
+}
+// Of the three from `first` on.
+PC_FN BoxAxis pc_best_face(BoxPair k, uint first) {
+  BoxAxis best;
+  best.gap = pc_face_gap(k, first);
+  best.beat = best.gap;
+  best.axis = first;
+  pc_try_face(k, first + 1u, best);
+  pc_try_face(k, first + 2u, best);
+  return best;
+}
 PC_FN void pc_try_edge(BoxPair k, uint i, uint j, PC_INOUT(BoxAxis) best) {
   EdgeGap e = pc_edge_gap(k, i, j);
   precise Real numerator2 = e.numerator * e.numerator;
@@ -112,6 +130,17 @@ PC_FN void pc_try_edge(BoxPair k, uint i, uint j, PC_INOUT(BoxAxis) best) {
     best.beat = gap;
     best.axis = 6u + i * 3u + j;
   }
+}
+PC_FN void pc_try_edges(BoxPair k, PC_INOUT(BoxAxis) best) {
+  pc_try_edge(k, 0u, 0u, best);
+  pc_try_edge(k, 0u, 1u, best);
+  pc_try_edge(k, 0u, 2u, best);
+  pc_try_edge(k, 1u, 0u, best);
+  pc_try_edge(k, 1u, 1u, best);
+  pc_try_edge(k, 1u, 2u, best);
+  pc_try_edge(k, 2u, 0u, best);
+  pc_try_edge(k, 2u, 1u, best);
+  pc_try_edge(k, 2u, 2u, best);
 }
 
 // The hint is an axis of an earlier call. It may only end the search early, where the full search would too.
@@ -130,91 +159,93 @@ PC_FN Real pc_face_area(Vec3 h, uint axis) {
   return area;
 }
 
+// Centre of a face, its two directions, and half its sides along them.
+struct BoxFace {
+  uint id;
+  Vec3 c;
+  Vec3 e1;
+  Vec3 e2;
+  Real h1;
+  Real h2;
+};
+// The one that looks most against fn.
+PC_FN BoxFace pc_incident_face(Vec3 x, Axes axes, Vec3 h, Vec3 fn) {
+  Vec3 look = pc_to_local(axes, fn);
+  uint i = pc_greatest_component(pc_abs3(look));
+  bool up = pc_component(look, i) < PC_REAL(0.0);
+  uint i1 = pc_next(i);
+  uint i2 = pc_next(i1);
+  Real lift = pc_component(h, i);
+  BoxFace f;
+  f.id = up ? i * 2u + 1u : i * 2u;
+  f.c = pc_madd(x, pc_axis(axes, i), up ? lift : -lift);
+  f.e1 = pc_axis(axes, i1);
+  f.e2 = pc_axis(axes, i2);
+  f.h1 = pc_component(h, i1);
+  f.h2 = pc_component(h, i2);
+  return f;
+}
+// Two opposite sides of the reference face, `edge` at h along u and edge + 2 at -h, in the incident face's coordinates,
+// whose centre is at c; those that cut nothing are passed over.
+PC_FN void pc_clip_between(PC_INOUT(NarrowPolygon) polygon, BoxFace f, Vec3 c, Vec3 u, Real h, uint edge) {
+  Real along = pc_dot(c, u);
+  Real a = pc_dot(f.e1, u);
+  Real b = pc_dot(f.e2, u);
+  precise Real extent = pc_abs(a) * f.h1 + pc_abs(b) * f.h2;
+  precise Real slop = pc_min(h, extent) * PC_CLIP_SLOP;
+  precise Real over = along + extent - h;
+  precise Real under = extent - along - h;
+  precise Real before = h - along;
+  precise Real behind = h + along;
+  if (over > slop) pc_clip(polygon, a, b, before, slop, edge);
+  if (under > slop) pc_clip(polygon, -a, -b, behind, slop, edge + 2u);
+}
+
 // Incident face of one box against face `axis` of the reference one; fn is the outward normal of the latter.
 PC_FN_LARGE void pc_box_faces(Vec3 xr, Axes reference, Vec3 hr, uint axis, Vec3 fn, Vec3 xi, Axes incident, Vec3 hi,
                               Real gap, Real margin, uint tag, PC_INOUT(NarrowManifold) m) {
-  // incident face: the one that looks most against fn
-  Vec3 look = pc_to_local(incident, fn);
-  Vec3 steep = pc_abs3(look);
-  uint f = pc_greatest_component(steep);
-  bool up = pc_component(look, f) < PC_REAL(0.0);
-  uint f1 = pc_next(f);
-  uint f2 = pc_next(f1);
+  BoxFace f = pc_incident_face(xi, incident, hi, fn);
+  Vec3 c = pc_sub(f.c, xr);
   uint r1 = pc_next(axis);
   uint r2 = pc_next(r1);
-  Vec3 e1 = pc_axis(incident, f1);
-  Vec3 e2 = pc_axis(incident, f2);
-  Real h1 = pc_component(hi, f1);
-  Real h2 = pc_component(hi, f2);
-  Vec3 u = pc_axis(reference, r1);
-  Vec3 v = pc_axis(reference, r2);
-  Real hu = pc_component(hr, r1);
-  Real hv = pc_component(hr, r2);
-  Real lift = pc_component(hi, f);
-  Vec3 centre = pc_madd(xi, pc_axis(incident, f), up ? lift : -lift);
-  Vec3 c = pc_sub(centre, xr);
-
   NarrowPolygon polygon;
-  polygon.count = 4u;
-  polygon.x[0] = -h1;
-  polygon.y[0] = -h2;
-  polygon.id[0] = 3u * 32u + 0u;
-  polygon.x[1] = h1;
-  polygon.y[1] = -h2;
-  polygon.id[1] = 0u * 32u + 1u;
-  polygon.x[2] = h1;
-  polygon.y[2] = h2;
-  polygon.id[2] = 1u * 32u + 2u;
-  polygon.x[3] = -h1;
-  polygon.y[3] = h2;
-  polygon.id[3] = 2u * 32u + 3u;
+  pc_rectangle(polygon, f.h1, f.h2);
+  pc_number_edges(polygon, 4u);
+  pc_clip_between(polygon, f, c, pc_axis(reference, r1), pc_component(hr, r1), 16u);
+  pc_clip_between(polygon, f, c, pc_axis(reference, r2), pc_component(hr, r2), 17u);
 
-  // the reference face's sides in the incident face's coordinates; those that cut nothing are passed over
-  Real u0 = pc_dot(c, u);
-  Real ua = pc_dot(e1, u);
-  Real ub = pc_dot(e2, u);
-  Real v0 = pc_dot(c, v);
-  Real va = pc_dot(e1, v);
-  Real vb = pc_dot(e2, v);
-  precise Real extent_u = pc_abs(ua) * h1 + pc_abs(ub) * h2;
-  precise Real extent_v = pc_abs(va) * h1 + pc_abs(vb) * h2;
-  precise Real slop_u = pc_min(hu, extent_u) * PC_CLIP_SLOP;
-  precise Real slop_v = pc_min(hv, extent_v) * PC_CLIP_SLOP;
-  precise Real over_u = u0 + extent_u - hu;
-  precise Real under_u = extent_u - u0 - hu;
-  precise Real over_v = v0 + extent_v - hv;
-  precise Real under_v = extent_v - v0 - hv;
-  precise Real cu = hu - u0;
-  precise Real du = hu + u0;
-  precise Real cv = hv - v0;
-  precise Real dv = hv + v0;
-  if (over_u > slop_u) pc_clip(polygon, ua, ub, cu, slop_u, 16u);
-  if (under_u > slop_u) pc_clip(polygon, -ua, -ub, du, slop_u, 18u);
-  if (over_v > slop_v) pc_clip(polygon, va, vb, cv, slop_v, 17u);
-  if (under_v > slop_v) pc_clip(polygon, -va, -vb, dv, slop_v, 19u);
-
-  Real g1 = pc_dot(e1, fn);
-  Real g2 = pc_dot(e2, fn);
+  Real g1 = pc_dot(f.e1, fn);
+  Real g2 = pc_dot(f.e2, fn);
   precise Real g0 = pc_dot(c, fn) - pc_component(hr, axis);
   for (uint i = 0u; i < polygon.count; i++) {
     precise Real s = g0 + g1 * polygon.x[i] + g2 * polygon.y[i];
     polygon.s[i] = s;
   }
-  precise Real slop = pc_min(h1, h2) * PC_DEEPER_SLOP;
+  precise Real slop = pc_min(f.h1, f.h2) * PC_DEEPER_SLOP;
   pc_reduce(polygon, margin, slop);
-  uint turned = up ? 1u : 0u;
-  uint face = tag + (f * 2u + turned) * 1024u;
+  uint face = tag + f.id * 1024u;
   for (uint i = 0u; i < polygon.count; i++) {
-    Vec3 x = pc_combine(e1, polygon.x[i], e2, polygon.y[i], centre, PC_REAL(1.0));
+    Vec3 x = pc_combine(f.e1, polygon.x[i], f.e2, polygon.y[i], f.c, PC_REAL(1.0));
     precise Real back = polygon.s[i] * PC_REAL(-0.5);
     uint corner = polygon.id[i];
     pc_push(m, pc_madd(x, fn, back), polygon.s[i], face + corner);
   }
   if (m.count == 0u && gap <= PC_REAL(0.0)) {  // they overlap where clipping found nothing: the deepest corner
-    Real x = g1 > PC_REAL(0.0) ? -h1 : h1;
-    Real y = g2 > PC_REAL(0.0) ? -h2 : h2;
+    Real x = g1 > PC_REAL(0.0) ? -f.h1 : f.h1;
+    Real y = g2 > PC_REAL(0.0) ? -f.h2 : f.h2;
     precise Real back = gap * PC_REAL(-0.5);
-    pc_push(m, pc_madd(pc_combine(e1, x, e2, y, centre, PC_REAL(1.0)), fn, back), gap, face);
+    pc_push(m, pc_madd(pc_combine(f.e1, x, f.e2, y, f.c, PC_REAL(1.0)), fn, back), gap, face);
+  }
+}
+PC_FN void pc_box_face_points(BoxPair k, Vec3 xa, Vec3 xb, BoxAxis best, Real margin, PC_INOUT(NarrowManifold) m) {
+  uint tag = best.axis * 8192u;
+  if (best.axis < 3u) {
+    m.normal = pc_scale(pc_axis(k.a, best.axis), pc_sign(pc_component(k.da, best.axis)));
+    pc_box_faces(xa, k.a, k.ha, best.axis, m.normal, xb, k.b, k.hb, best.gap, margin, tag, m);
+  } else {
+    uint axis = best.axis - 3u;
+    m.normal = pc_scale(pc_axis(k.b, axis), pc_sign(pc_component(k.db, axis)));
+    pc_box_faces(xb, k.b, k.hb, axis, pc_negate(m.normal), xa, k.a, k.ha, best.gap, margin, tag, m);
   }
 }
 
@@ -257,74 +288,34 @@ PC_FN_LARGE bool pc_box_box(NarrowShape a, NarrowShape b, Real margin, PC_INOUT(
   precise Real edge_slop = smallest * PC_EDGE_SLOP;
   if (hint - 1u < 15u && pc_hint_separates(k, hint - 1u, margin, edge_slop)) return true;
 
-  Real gap_a = pc_face_gap(k, 0u);
-  uint axis_a = 0u;
-  Real g1 = pc_face_gap(k, 1u);
-  if (g1 > gap_a) {
-    gap_a = g1;
-    axis_a = 1u;
-  }
-  Real g2 = pc_face_gap(k, 2u);
-  if (g2 > gap_a) {
-    gap_a = g2;
-    axis_a = 2u;
-  }
-  if (gap_a > margin) {
-    hint = 1u + axis_a;
+  BoxAxis best_a = pc_best_face(k, 0u);
+  if (best_a.gap > margin) {
+    hint = 1u + best_a.axis;
     return true;
   }
-  Real gap_b = pc_face_gap(k, 3u);
-  uint axis_b = 0u;
-  Real g4 = pc_face_gap(k, 4u);
-  if (g4 > gap_b) {
-    gap_b = g4;
-    axis_b = 1u;
-  }
-  Real g5 = pc_face_gap(k, 5u);
-  if (g5 > gap_b) {
-    gap_b = g5;
-    axis_b = 2u;
-  }
-  if (gap_b > margin) {
-    hint = 4u + axis_b;
+  BoxAxis best_b = pc_best_face(k, 3u);
+  if (best_b.gap > margin) {
+    hint = 1u + best_b.axis;
     return true;
   }
 
   // the larger of the two faces, unless the other separates more
-  bool prefer_b = pc_face_area(b.size, axis_b) > pc_face_area(a.size, axis_a);
-  precise Real lead_a = gap_a - gap_b;
-  precise Real lead_b = gap_b - gap_a;
+  bool prefer_b = pc_face_area(b.size, best_b.axis - 3u) > pc_face_area(a.size, best_a.axis);
+  precise Real lead_a = best_a.gap - best_b.gap;
+  precise Real lead_b = best_b.gap - best_a.gap;
   bool on_b = prefer_b ? !(lead_a > face_slop) : lead_b > face_slop;
-  BoxAxis best;
-  best.gap = on_b ? gap_b : gap_a;
-  best.axis = on_b ? 3u + axis_b : axis_a;
+  BoxAxis best = best_a;
+  if (on_b) best = best_b;
   precise Real beat = best.gap + edge_slop;
   best.beat = beat;
-  pc_try_edge(k, 0u, 0u, best);
-  pc_try_edge(k, 0u, 1u, best);
-  pc_try_edge(k, 0u, 2u, best);
-  pc_try_edge(k, 1u, 0u, best);
-  pc_try_edge(k, 1u, 1u, best);
-  pc_try_edge(k, 1u, 2u, best);
-  pc_try_edge(k, 2u, 0u, best);
-  pc_try_edge(k, 2u, 1u, best);
-  pc_try_edge(k, 2u, 2u, best);
+  pc_try_edges(k, best);
   if (best.gap > margin) {
     hint = 1u + best.axis;
     return true;
   }
 
   if (best.axis >= 6u) return pc_box_edges(k, a.p, b.p, best.axis - 6u, best.gap, m);
-  if (best.axis < 3u) {
-    Vec3 n = pc_scale(pc_axis(k.a, best.axis), pc_sign(pc_component(k.da, best.axis)));
-    m.normal = n;
-    pc_box_faces(a.p, k.a, a.size, best.axis, n, b.p, k.b, b.size, best.gap, margin, best.axis * 8192u, m);
-  } else {
-    Vec3 n = pc_scale(pc_axis(k.b, best.axis - 3u), pc_sign(pc_component(k.db, best.axis - 3u)));
-    m.normal = n;
-    pc_box_faces(b.p, k.b, b.size, best.axis - 3u, pc_negate(n), a.p, k.a, a.size, best.gap, margin, best.axis * 8192u,
-                 m);
-  }
+  pc_box_face_points(k, a.p, b.p, best, margin, m);
   if (best.gap <= PC_REAL(0.0)) return true;
   // apart: does the corner nearest to the face lie over it?
   precise Real nearest = best.gap + edge_slop;

@@ -12,6 +12,23 @@ struct NarrowPolygon {
   uint id[32];
 };
 
+PC_FN void pc_put_corner(PC_INOUT(NarrowPolygon) polygon, uint i, Real x, Real y) {
+  polygon.x[i] = x;
+  polygon.y[i] = y;
+}
+// Of half sides h1 and h2.
+PC_FN void pc_rectangle(PC_INOUT(NarrowPolygon) polygon, Real h1, Real h2) {
+  polygon.count = 4u;
+  pc_put_corner(polygon, 0u, -h1, -h2);
+  pc_put_corner(polygon, 1u, h1, -h2);
+  pc_put_corner(polygon, 2u, h1, h2);
+  pc_put_corner(polygon, 3u, -h1, h2);
+}
+// Edge i leaves vertex i.
+PC_FN void pc_number_edges(PC_INOUT(NarrowPolygon) polygon, uint count) {
+  for (uint i = 0u; i < count; i++) polygon.id[i] = ((i == 0u ? count - 1u : i - 1u) << 5u) | i;
+}
+
 // What is left of the polygon on the side a x + b y <= c; outside by less than `slop` counts as inside.
 PC_FN_LARGE void pc_clip(PC_INOUT(NarrowPolygon) polygon, Real a, Real b, Real c, Real slop, uint edge) {
   Real off[32];
@@ -66,10 +83,10 @@ struct Corner {
   Real x;
   Real y;
 };
-PC_FN Corner pc_corner(Real x, Real y) {
+PC_FN Corner pc_corner(PC_INOUT(NarrowPolygon) polygon, uint i) {
   Corner c;
-  c.x = x;
-  c.y = y;
+  c.x = polygon.x[i];
+  c.y = polygon.y[i];
   return c;
 }
 PC_FN Real pc_corner_area(Corner a, Corner b, Corner c) {
@@ -77,10 +94,7 @@ PC_FN Real pc_corner_area(Corner a, Corner b, Corner c) {
   return r;
 }
 
-// Drops points beyond the margin and keeps four: the deepest (to `slop`), the farthest from it, the one that spans the
-// largest triangle with them, and the one that adds most on the other side. Gains within noise go to the
-// first in order, so that a flat contact keeps its choice.
-PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real slop) {
+PC_FN void pc_drop_beyond(PC_INOUT(NarrowPolygon) polygon, Real margin) {
   uint count = 0u;
   for (uint i = 0u; i < polygon.count; i++) {
     if (polygon.s[i] <= margin) {
@@ -89,16 +103,20 @@ PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real sl
     }
   }
   polygon.count = count;
-  if (count <= 4u) return;
+}
+PC_FN uint pc_deepest(PC_INOUT(NarrowPolygon) polygon, Real slop) {
   uint a = 0u;
-  for (uint i = 1u; i < count; i++) {
+  for (uint i = 1u; i < polygon.count; i++) {
     precise Real s = polygon.s[i] + slop;
     if (s < polygon.s[a]) a = i;
   }
-  Corner at_a = pc_corner(polygon.x[a], polygon.y[a]);
+  return a;
+}
+PC_FN uint pc_farthest(PC_INOUT(NarrowPolygon) polygon, uint a) {
+  Corner at_a = pc_corner(polygon, a);
   uint b = a;
   Real best = PC_REAL(0.0);
-  for (uint i = 0u; i < count; i++) {
+  for (uint i = 0u; i < polygon.count; i++) {
     precise Real dx = polygon.x[i] - at_a.x;
     precise Real dy = polygon.y[i] - at_a.y;
     precise Real far = dx * dx + dy * dy;
@@ -108,12 +126,16 @@ PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real sl
       b = i;
     }
   }
-  Corner at_b = pc_corner(polygon.x[b], polygon.y[b]);
+  return b;
+}
+// `turn`: the triangle is counter-clockwise.
+PC_FN uint pc_widest(PC_INOUT(NarrowPolygon) polygon, uint a, uint b, PC_INOUT(bool) turn) {
+  Corner at_a = pc_corner(polygon, a);
+  Corner at_b = pc_corner(polygon, b);
   uint c = a;
-  best = PC_REAL(0.0);
-  bool turn = false;
-  for (uint i = 0u; i < count; i++) {
-    Real area = pc_corner_area(at_a, at_b, pc_corner(polygon.x[i], polygon.y[i]));
+  Real best = PC_REAL(0.0);
+  for (uint i = 0u; i < polygon.count; i++) {
+    Real area = pc_corner_area(at_a, at_b, pc_corner(polygon, i));
     precise Real least = best * PC_WIDER_SLOP;
     if (pc_abs(area) > least) {
       best = pc_abs(area);
@@ -121,12 +143,17 @@ PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real sl
       turn = area > PC_REAL(0.0);
     }
   }
-  Corner at_c = pc_corner(polygon.x[c], polygon.y[c]);
-  // the fourth: largest triangle beyond any side of a, b, c
+  return c;
+}
+// Of the largest triangle beyond any side of a, b, c.
+PC_FN uint pc_fourth(PC_INOUT(NarrowPolygon) polygon, uint a, uint b, uint c, bool turn) {
+  Corner at_a = pc_corner(polygon, a);
+  Corner at_b = pc_corner(polygon, b);
+  Corner at_c = pc_corner(polygon, c);
   uint d = a;
-  best = PC_REAL(0.0);
-  for (uint i = 0u; i < count; i++) {
-    Corner p = pc_corner(polygon.x[i], polygon.y[i]);
+  Real best = PC_REAL(0.0);
+  for (uint i = 0u; i < polygon.count; i++) {
+    Corner p = pc_corner(polygon, i);
     Real ab = pc_corner_area(at_a, at_b, p);
     Real bc = pc_corner_area(at_b, at_c, p);
     Real ca = pc_corner_area(at_c, at_a, p);
@@ -140,9 +167,23 @@ PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real sl
       d = i;
     }
   }
+  return d;
+}
+
+// Drops points beyond the margin and keeps four: the deepest (to `slop`), the farthest from it, the one that spans the
+// largest triangle with them, and the one that adds most on the other side. Gains within noise go to the
+// first in order, so that a flat contact keeps its choice.
+PC_FN_LARGE void pc_reduce(PC_INOUT(NarrowPolygon) polygon, Real margin, Real slop) {
+  pc_drop_beyond(polygon, margin);
+  if (polygon.count <= 4u) return;
+  bool turn = false;
+  uint a = pc_deepest(polygon, slop);
+  uint b = pc_farthest(polygon, a);
+  uint c = pc_widest(polygon, a, b, turn);
+  uint d = pc_fourth(polygon, a, b, c, turn);
   // the chosen ones to the front, in their order along the polygon
   uint kept = 0u;
-  for (uint i = 0u; i < count; i++) {
+  for (uint i = 0u; i < polygon.count; i++) {
     if (i == a || i == b || i == c || i == d) {
       pc_keep(polygon, kept, i);
       kept = kept + 1u;

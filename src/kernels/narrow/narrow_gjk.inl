@@ -17,6 +17,16 @@ struct Distance {
   Vec3 a;
 };
 
+// The simplex of one point (in place: glslangValidator takes memory without end where a function returns it).
+PC_FN void pc_one_point(PC_INOUT(Simplex) s, Support p) {
+  s.count = 1u;
+  s.v = p.w;
+  for (uint i = 0u; i < 4u; i++) {
+    s.w[i] = p.w;
+    s.a[i] = p.a;
+    s.l[i] = PC_REAL(1.0);
+  }
+}
 PC_FN void pc_simplex_point(PC_INOUT(Simplex) s, uint i, Real l) {
   s.w[s.count] = s.w[i];
   s.a[s.count] = s.a[i];
@@ -155,15 +165,8 @@ PC_FN_LARGE Distance pc_distance(Core a, Core b, Vec3 start, Real farthest, Real
   Distance o;
   o.separated = false;
   o.touching = false;
-  Support first = pc_support(a, b, start);
   Simplex s;
-  s.count = 1u;
-  s.v = first.w;
-  for (uint i = 0u; i < 4u; i++) {
-    s.w[i] = first.w;
-    s.a[i] = first.a;
-    s.l[i] = PC_REAL(1.0);
-  }
+  pc_one_point(s, pc_support(a, b, start));
   precise Real touch_squared = touch * touch;
   Simplex best = s;
   uint starts = 0u;
@@ -200,11 +203,7 @@ PC_FN_LARGE Distance pc_distance(Core a, Core b, Vec3 start, Real farthest, Real
       precise Real good = squared * PC_CORE_TOUCH;
       if (gap <= good || starts == 2u) break;
       starts = starts + 1u;
-      s.count = 1u;
-      s.v = p.w;
-      s.w[0] = p.w;
-      s.a[0] = p.a;
-      s.l[0] = PC_REAL(1.0);
+      pc_one_point(s, p);
     }
   }
   if (pc_dot(best.v, best.v) < pc_dot(s.v, s.v)) s = best;
