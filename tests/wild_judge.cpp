@@ -165,3 +165,17 @@ TEST_CASE("a family and a seed are one scene, and the library takes its calls") 
 }
 
 TEST_SUITE_END();
+
+// ODE throws where it would end the process. In the middle of a step that leaves a space locked, and to destroy it
+// threw once more, out of a destructor.
+TEST_CASE("wild: a peer that gives up in the middle of a step breaks its scene, not the program") {
+  const auto scene = draw("pile", 448);
+  REQUIRE(scene);
+  const auto verdict = judge_peer(*scene, "ode-dantzig");
+  if (!verdict) {
+    CHECK(verdict.error().code == ErrorCode::unavailable);
+    return;
+  }
+  CHECK(verdict->steps > 0);
+  CHECK(verdict->broken());
+}
