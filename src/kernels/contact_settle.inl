@@ -1,7 +1,7 @@
 // A manifold whose load has just come, or whose friction has just let go: its rows are solved together, by further
 // rounds of friction and normal rows. One round a visit is enough where the last sub-step's impulses still hold; here
 // they do not, and what one round leaves (a box that tilts a little, and slides while it does) is never undone.
-// (What hangs on joints makes none.)
+// (Manifolds of bodies on joints take no rounds.)
 #ifdef PC_TREES
 PC_FN Rows pc_settled(PC_IO Slot m, Twist v, Found found, Foreseen foreseen, Rows now) { return now; }
 #else
