@@ -29,6 +29,8 @@ PC_FN BodyState pc_body_state(PC_IO Index i) {
   b.unlike = i1.s;
   return b;
 }
+// How it answers a couple: the inverse inertia, zero of what does not answer.
+PC_FN Sym3 pc_responding_inertia(BodyState b) { return pc_sym_scale(b.inertia, b.response); }
 // What answers impulses at an arm by turning: the sum over three axes.
 PC_FN Real pc_turning_answer(BodyState b, Vec3 arm) {
   precise Real trace = b.inertia.xx + b.inertia.yy + b.inertia.zz;

@@ -5,22 +5,6 @@
 #include "contact_rows.inl"
 #include "body_state.inl"
 
-PC_FN Sym3 pc_turning(BodyState b) {
-  precise Real xx = b.inertia.xx * b.response;
-  precise Real xy = b.inertia.xy * b.response;
-  precise Real xz = b.inertia.xz * b.response;
-  precise Real yy = b.inertia.yy * b.response;
-  precise Real yz = b.inertia.yz * b.response;
-  precise Real zz = b.inertia.zz * b.response;
-  Sym3 r;
-  r.xx = xx;
-  r.xy = xy;
-  r.xz = xz;
-  r.yy = yy;
-  r.yz = yz;
-  r.zz = zz;
-  return r;
-}
 PC_FN void pc_turned(PC_IO Index i, BodyState b, Vec3 couple, Real sign) {
   precise Real share = b.response * sign;
   PC_SCATTER_IF(b.inverse_mass > PC_REAL(0.0), motion, i, 1u, pc_quad(pc_madd(b.l, couple, share), b.phase));
@@ -46,7 +30,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 t2 = pc_cross(n, t1);
   BodyState a = pc_body_state(PC_PASS ia);
   BodyState b = pc_body_state(PC_PASS ib);
-  Sym3 both = pc_sym_add(pc_turning(a), pc_turning(b));
+  Sym3 both = pc_sym_add(pc_responding_inertia(a), pc_responding_inertia(b));
   Vec3 w = pc_sub(pc_angular_velocity(b), pc_angular_velocity(a));
   Real w1 = pc_dot(t1, w);
   Real w2 = pc_dot(t2, w);

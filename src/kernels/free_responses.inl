@@ -1,21 +1,4 @@
 // How two free bodies answer impulses at their arms ra and rb, in the contact frame.
-PC_FN Sym3 pc_responding_inertia(BodyState b) {
-  precise Real xx = b.inertia.xx * b.response;
-  precise Real xy = b.inertia.xy * b.response;
-  precise Real xz = b.inertia.xz * b.response;
-  precise Real yy = b.inertia.yy * b.response;
-  precise Real yz = b.inertia.yz * b.response;
-  precise Real zz = b.inertia.zz * b.response;
-  Sym3 r;
-  r.xx = xx;
-  r.xy = xy;
-  r.xz = xz;
-  r.yy = yy;
-  r.yz = yz;
-  r.zz = zz;
-  return r;
-}
-
 PC_FN Responses pc_free_responses(BodyState a, BodyState b, Vec3 ra, Vec3 rb, Vec3 n, Vec3 t1, Vec3 t2) {
   Sym3 inertia_a = pc_responding_inertia(a);
   Sym3 inertia_b = pc_responding_inertia(b);

@@ -27,18 +27,7 @@ PC_FN DrivenBody pc_driven_body(PC_IO Index i) {
   b.w = pc_sym_mul(inertia, angular.v);
   b.inverse_mass = linear.s;
   b.fresh = pc_and(moves, angular.s < PC_REAL(0.0));
-  precise Real xx = inertia.xx * response;
-  precise Real xy = inertia.xy * response;
-  precise Real xz = inertia.xz * response;
-  precise Real yy = inertia.yy * response;
-  precise Real yz = inertia.yz * response;
-  precise Real zz = inertia.zz * response;
-  b.inertia.xx = xx;
-  b.inertia.xy = xy;
-  b.inertia.xz = xz;
-  b.inertia.yy = yy;
-  b.inertia.yz = yz;
-  b.inertia.zz = zz;
+  b.inertia = pc_sym_scale(inertia, response);
   return b;
 }
 PC_FN Real pc_turned_by(Sym3 inertia, Vec3 axis) { return pc_dot(axis, pc_sym_mul(inertia, axis)); }

@@ -39,14 +39,7 @@ PC_FN Sym3 pc_pin_block(BodyState a, BodyState b, Vec3 ra, Vec3 rb) {
   precise Real yy = k + pc_dot(ay, iay) + pc_dot(by, iby);
   precise Real yz = pc_dot(ay, iaz) + pc_dot(by, ibz);
   precise Real zz = k + pc_dot(az, iaz) + pc_dot(bz, ibz);
-  Sym3 m;
-  m.xx = xx;
-  m.xy = xy;
-  m.xz = xz;
-  m.yy = yy;
-  m.yz = yz;
-  m.zz = zz;
-  return m;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
 
 // One angle row at its nearer limit; writes it and returns its impulse.
@@ -70,23 +63,6 @@ PC_FN Real pc_angle_row(PC_IO Slot m, uint row, Vec3 axis, Real angle, Real lowe
   return result;
 }
 
-// How relative angular velocity answers a couple.
-PC_FN Sym3 pc_turning_of_both(BodyState a, BodyState b) {
-  precise Real xx = a.inertia.xx * a.response + b.inertia.xx * b.response;
-  precise Real xy = a.inertia.xy * a.response + b.inertia.xy * b.response;
-  precise Real xz = a.inertia.xz * a.response + b.inertia.xz * b.response;
-  precise Real yy = a.inertia.yy * a.response + b.inertia.yy * b.response;
-  precise Real yz = a.inertia.yz * a.response + b.inertia.yz * b.response;
-  precise Real zz = a.inertia.zz * a.response + b.inertia.zz * b.response;
-  Sym3 both;
-  both.xx = xx;
-  both.xy = xy;
-  both.xz = xz;
-  both.yy = yy;
-  both.yz = yz;
-  both.zz = zz;
-  return both;
-}
 // All three, from the joint frames fa and fb; answers their impulses.
 PC_FN Vec3 pc_angle_rows(PC_IO Slot m, Index joint, BodyState a, BodyState b, Quaternion fa, Quaternion fb, Real kind,
                          Vec3 remembered) {
@@ -97,7 +73,7 @@ PC_FN Vec3 pc_angle_rows(PC_IO Slot m, Index joint, BodyState a, BodyState b, Qu
   Mask is_angles = kind > PC_REAL(1.0);
   Angles angles = pc_joint_angles(fa, fb, is_cone);
   Vec3 now = angles.value;
-  Sym3 both = pc_turning_of_both(a, b);
+  Sym3 both = pc_sym_add(pc_responding_inertia(a), pc_responding_inertia(b));
   Real c0 = pc_angle_row(PC_PASS m, 0u, angles.roll_axis, now.x, lower.x, upper.x, any, remembered.x, both);
   Real c1 = pc_angle_row(PC_PASS m, 1u, angles.second_axis, now.y, lower.y, upper.y, any, remembered.y, both);
   Real c2 = pc_angle_row(PC_PASS m, 2u, angles.third_axis, now.z, lower.z, upper.z, is_angles, remembered.z, both);

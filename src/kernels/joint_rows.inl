@@ -37,14 +37,8 @@ PC_FN Vec3 pc_ld3_joint(PC_IO Slot m, uint f) {
 }
 
 PC_FN Sym3 pc_lds_joint(PC_IO Slot m, uint f) {
-  Sym3 k;
-  k.xx = PC_LD(joint_rows, m, f);
-  k.xy = PC_LD(joint_rows, m, f + 1u);
-  k.xz = PC_LD(joint_rows, m, f + 2u);
-  k.yy = PC_LD(joint_rows, m, f + 3u);
-  k.yz = PC_LD(joint_rows, m, f + 4u);
-  k.zz = PC_LD(joint_rows, m, f + 5u);
-  return k;
+  return pc_sym3(PC_LD(joint_rows, m, f), PC_LD(joint_rows, m, f + 1u), PC_LD(joint_rows, m, f + 2u),
+                 PC_LD(joint_rows, m, f + 3u), PC_LD(joint_rows, m, f + 4u), PC_LD(joint_rows, m, f + 5u));
 }
 // What a pin of so much impulse changes it by, where it would change it by so much.
 PC_FN Vec3 pc_within_most(PC_IO Slot m, Vec3 before, Vec3 change) {

@@ -10,23 +10,6 @@
 #include "joint_drive_rows.inl"
 #endif
 
-// How relative angular velocity answers a couple.
-PC_FN Sym3 pc_turning_of_both(BodyState a, BodyState b) {
-  precise Real xx = a.inertia.xx * a.response + b.inertia.xx * b.response;
-  precise Real xy = a.inertia.xy * a.response + b.inertia.xy * b.response;
-  precise Real xz = a.inertia.xz * a.response + b.inertia.xz * b.response;
-  precise Real yy = a.inertia.yy * a.response + b.inertia.yy * b.response;
-  precise Real yz = a.inertia.yz * a.response + b.inertia.yz * b.response;
-  precise Real zz = a.inertia.zz * a.response + b.inertia.zz * b.response;
-  Sym3 both;
-  both.xx = xx;
-  both.xy = xy;
-  both.xz = xz;
-  both.yy = yy;
-  both.yz = yz;
-  both.zz = zz;
-  return both;
-}
 // Change of the pin's impulse at the relative velocity of its ends.
 PC_FN Vec3 pc_pin_change(PC_IO Slot m, Vec3 rate, Vec3 impulse) {
   precise Vec3 wanted = rate + pc_ld3_joint(PC_PASS m, JOINT_GAP) * PC_INFO(soft_rate);
@@ -49,7 +32,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad pin = PC_GATHER(joint_impulse, joint, 0u);
   Quad angle = PC_GATHER(joint_impulse, joint, 1u);
 
-  Sym3 both = pc_turning_of_both(a, b);
+  Sym3 both = pc_sym_add(pc_responding_inertia(a), pc_responding_inertia(b));
   Vec3 wa = pc_angular_velocity(a);
   Vec3 wb = pc_angular_velocity(b);
   Vec3 couple = pc_angle_steps(PC_PASS m, pc_sub(wb, wa), both, angle);

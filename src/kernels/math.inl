@@ -171,6 +171,25 @@ PC_FN Vec3 pc_sym_mul(Sym3 m, Vec3 v) {
   precise Real z = m.xz * v.x + m.yz * v.y + m.zz * v.z;
   return Vec3(x, y, z);
 }
+PC_FN Sym3 pc_sym3(Real xx, Real xy, Real xz, Real yy, Real yz, Real zz) {
+  Sym3 m;
+  m.xx = xx;
+  m.xy = xy;
+  m.xz = xz;
+  m.yy = yy;
+  m.yz = yz;
+  m.zz = zz;
+  return m;
+}
+PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
+  precise Real xx = m.xx * s;
+  precise Real xy = m.xy * s;
+  precise Real xz = m.xz * s;
+  precise Real yy = m.yy * s;
+  precise Real yz = m.yz * s;
+  precise Real zz = m.zz * s;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
+}
 PC_FN Sym3 pc_sym_add(Sym3 a, Sym3 b) {
   precise Real xx = a.xx + b.xx;
   precise Real xy = a.xy + b.xy;
@@ -178,14 +197,7 @@ PC_FN Sym3 pc_sym_add(Sym3 a, Sym3 b) {
   precise Real yy = a.yy + b.yy;
   precise Real yz = a.yz + b.yz;
   precise Real zz = a.zz + b.zz;
-  Sym3 r;
-  r.xx = xx;
-  r.xy = xy;
-  r.xz = xz;
-  r.yy = yy;
-  r.yz = yz;
-  r.zz = zz;
-  return r;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
 // Inverse by cofactors; zero where the determinant is not above zero (padding, two fixed bodies).
 PC_FN Sym3 pc_sym_inverse(Sym3 m) {
@@ -203,14 +215,7 @@ PC_FN Sym3 pc_sym_inverse(Sym3 m) {
   precise Real yy = d * i;
   precise Real yz = e * i;
   precise Real zz = f * i;
-  Sym3 r;
-  r.xx = xx;
-  r.xy = xy;
-  r.xz = xz;
-  r.yy = yy;
-  r.yz = yz;
-  r.zz = zz;
-  return r;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
 
 // ---- rotations ----------------------------------------------------------------------------------------
@@ -252,14 +257,7 @@ PC_FN Sym3 pc_world_inertia(Quaternion q, Vec3 m) {
   precise Real yy = m.x * a.y * a.y + m.y * b.y * b.y + m.z * c.y * c.y;
   precise Real yz = m.x * a.y * a.z + m.y * b.y * b.z + m.z * c.y * c.z;
   precise Real zz = m.x * a.z * a.z + m.y * b.z * b.z + m.z * c.z * c.z;
-  Sym3 r;
-  r.xx = xx;
-  r.xy = xy;
-  r.xz = xz;
-  r.yy = yy;
-  r.yz = yz;
-  r.zz = zz;
-  return r;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
 
 // ---- elementary functions -----------------------------------------------------------------------------

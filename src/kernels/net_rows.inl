@@ -90,14 +90,8 @@ PC_FN void pc_st3_net(PC_IO Slot s, uint f, Vec3 v) {
   PC_ST(net_rows, s, f + 2u, v.z);
 }
 PC_FN Sym3 pc_lds_net(PC_IO Slot s, uint f) {
-  Sym3 k;
-  k.xx = PC_LD(net_rows, s, f);
-  k.xy = PC_LD(net_rows, s, f + 1u);
-  k.xz = PC_LD(net_rows, s, f + 2u);
-  k.yy = PC_LD(net_rows, s, f + 3u);
-  k.yz = PC_LD(net_rows, s, f + 4u);
-  k.zz = PC_LD(net_rows, s, f + 5u);
-  return k;
+  return pc_sym3(PC_LD(net_rows, s, f), PC_LD(net_rows, s, f + 1u), PC_LD(net_rows, s, f + 2u),
+                 PC_LD(net_rows, s, f + 3u), PC_LD(net_rows, s, f + 4u), PC_LD(net_rows, s, f + 5u));
 }
 PC_FN void pc_sts_net(PC_IO Slot s, uint f, Sym3 k) {
   PC_ST(net_rows, s, f, k.xx);
@@ -139,14 +133,7 @@ PC_FN Sym3 pc_net_answer(PC_IO Slot a, Slot b, Vec3 ra, Vec3 rb) {
   precise Real yy = both + pc_dot(ay, iay) + pc_dot(by, iby);
   precise Real yz = pc_dot(ay, iaz) + pc_dot(by, ibz);
   precise Real zz = both + pc_dot(az, iaz) + pc_dot(bz, ibz);
-  Sym3 k;
-  k.xx = xx;
-  k.xy = xy;
-  k.xz = xz;
-  k.yy = yy;
-  k.yz = yz;
-  k.zz = zz;
-  return k;
+  return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
 // Adds an impulse on b, and its opposite on a, to sums of their bodies.
 PC_FN void pc_net_add(PC_IO Slot a, Slot b, uint sums, Vec3 ra, Vec3 rb, Vec3 impulse) {

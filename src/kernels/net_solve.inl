@@ -122,13 +122,7 @@ PC_FN void pc_net_keep_block(PC_IO Slot s, Sym3 answer) {
   precise Real yy = pc_dot(y, ay) * h + PC_REAL(1.0);
   precise Real yz = pc_dot(y, az) * h;
   precise Real zz = pc_dot(z, az) * h + PC_REAL(1.0);
-  Sym3 block;
-  block.xx = xx;
-  block.xy = xy;
-  block.xz = xz;
-  block.yy = yy;
-  block.yz = yz;
-  block.zz = zz;
+  Sym3 block = pc_sym3(xx, xy, xz, yy, yz, zz);
   pc_sts_net(PC_PASS s, NET_BLOCK, pc_sym_inverse(block));
 }
 // What the impulse lacks at the foreseen length, its derivative, and what prepares the search.

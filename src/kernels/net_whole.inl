@@ -49,13 +49,7 @@ PC_FN Whole pc_net_whole(PC_IO Slot m, Net n, Real ahead) {
     precise Real yy = own.yy * counts + heavy * (square - arm.y * arm.y);
     precise Real yz = own.yz * counts - heavy * arm.y * arm.z;
     precise Real zz = own.zz * counts + heavy * (square - arm.z * arm.z);
-    Sym3 more;
-    more.xx = xx;
-    more.xy = xy;
-    more.xz = xz;
-    more.yy = yy;
-    more.yz = yz;
-    more.zz = zz;
+    Sym3 more = pc_sym3(xx, xy, xz, yy, yz, zz);
     all = pc_sym_add(all, more);
   }
   // (in units of its largest, whose cube is a number in single precision too)

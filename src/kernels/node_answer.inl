@@ -7,11 +7,8 @@ PC_FN Sym6 pc_response(PC_IO Index node) {
   Quad q3 = PC_ROW_QUAD(node_response, row, 3u);
   Quad q4 = PC_ROW_QUAD(node_response, row, 4u);
   Quad q5 = PC_ROW_QUAD(node_response, row, 5u);
-  Sym6 g;
-  g.l = pc_sym3(q0.v.x, q0.v.y, q0.v.z, q0.s, q1.s, q2.s);
-  g.c = pc_mat3(q1.v, q2.v, q3.v);
-  g.a = pc_sym3(q3.s, q4.v.x, q4.v.y, q4.v.z, q4.s, q5.s);
-  return g;
+  return pc_sym6(pc_sym3(q0.v.x, q0.v.y, q0.v.z, q0.s, q1.s, q2.s), pc_mat3(q1.v, q2.v, q3.v),
+                 pc_sym3(q3.s, q4.v.x, q4.v.y, q4.v.z, q4.s, q5.s));
 }
 // X g X^T, where X x = (l + a x r, a): of a response at one point that at another, r away.
 PC_FN Sym6 pc_response_at(Sym6 g, Vec3 r) {

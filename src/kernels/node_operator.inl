@@ -48,11 +48,8 @@ PC_FN Sym6 pc_root_factor(PC_IO Index root) {
   Quad q4 = PC_ROW_QUAD(node_operator, row, 4u);
   Quad q5 = PC_ROW_QUAD(node_operator, row, 5u);
   Quad q6 = PC_ROW_QUAD(node_operator, row, 6u);
-  Sym6 e;
-  e.c = pc_mat3(q0.v, q1.v, q2.v);
-  e.l = pc_sym3(q3.v.x, q3.v.y, q3.v.z, q4.v.x, q4.v.y, q4.v.z);
-  e.a = pc_sym3(q5.v.x, q5.v.y, q5.v.z, q6.v.x, q6.v.y, q6.v.z);
-  return e;
+  return pc_sym6(pc_sym3(q3.v.x, q3.v.y, q3.v.z, q4.v.x, q4.v.y, q4.v.z), pc_mat3(q0.v, q1.v, q2.v),
+                 pc_sym3(q5.v.x, q5.v.y, q5.v.z, q6.v.x, q6.v.y, q6.v.z));
 }
 // How the body moves when its parent moves by x and it turns by `turn` about the joint besides.
 PC_FN Six pc_down(Link n, Six x, Vec3 turn) {

@@ -8,16 +8,10 @@ PC_FN Sym6 pc_side_response(PC_IO Way w, Slot m, uint side, Index body, Vec3 arm
   BodyState b = pc_body_state(PC_PASS body);
   Vec3 zero = pc_zero3();
   Mask in_tree = pc_in_tree(PC_PASS w, m, side);
-  precise Real xx = b.inertia.xx * b.response;
-  precise Real xy = b.inertia.xy * b.response;
-  precise Real xz = b.inertia.xz * b.response;
-  precise Real yy = b.inertia.yy * b.response;
-  precise Real yz = b.inertia.yz * b.response;
-  precise Real zz = b.inertia.zz * b.response;
-  Sym6 r;
-  r.l = pc_sym_select(in_tree, g.l, pc_diagonal(b.inverse_mass));
-  r.a = pc_sym_select(in_tree, g.a, pc_sym3(xx, xy, xz, yy, yz, zz));
-  r.c = pc_mat3(pc_select3(in_tree, g.c.a, zero), pc_select3(in_tree, g.c.b, zero), pc_select3(in_tree, g.c.c, zero));
+  Sym6 r = pc_sym6(
+      pc_sym_select(in_tree, g.l, pc_diagonal(b.inverse_mass)),
+      pc_mat3(pc_select3(in_tree, g.c.a, zero), pc_select3(in_tree, g.c.b, zero), pc_select3(in_tree, g.c.c, zero)),
+      pc_sym_select(in_tree, g.a, pc_responding_inertia(b)));
   return pc_response_at(r, arm);
 }
 

@@ -80,10 +80,9 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Mask exists = total > PC_REAL(0.0);
   Real share = pc_inverse_or_zero(total);
   Sym6 h = pc_ldh_tree(PC_PASS root, TREE_H);
-  Sym6 g;
-  g.l = pc_sym_scale(h.l, share);
-  g.a = pc_sym_scale(h.a, share);
-  g.c = pc_mat3(pc_scale(h.c.a, share), pc_scale(h.c.b, share), pc_scale(h.c.c, share));
+  Sym6 g =
+      pc_sym6(pc_sym_scale(h.l, share), pc_mat3(pc_scale(h.c.a, share), pc_scale(h.c.b, share), pc_scale(h.c.c, share)),
+              pc_sym_scale(h.a, share));
   PC_ONE pc_store_response(PC_PASS PC_ORDER(tree_order, root), exists, g);
   PC_MEET;
   PC_DOWN(k, 1u, t) {

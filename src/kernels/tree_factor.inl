@@ -164,11 +164,10 @@ PC_FN Sym6 pc_factor_node(PC_IO Slot n, Slot up) {
   pc_stm_tree(PC_PASS n, TREE_W, pc_rows_upper(factor, z.l));
   pc_stm_tree(PC_PASS n, TREE_W + 9u, pc_rows_upper(factor, z.a));
   // H - W U^T, and what of it the parent carries
-  Sym6 rest;
-  rest.l = pc_sym_sub(h.l, pc_products(z.l.a, z.l.b, z.l.c, y.l.a, y.l.b, y.l.c));
-  rest.a = pc_sym_sub(h.a, pc_products(z.a.a, z.a.b, z.a.c, y.a.a, y.a.b, y.a.c));
-  rest.c = pc_mat3(pc_sub(h.c.a, pc_dots(z.l.a, y.a)), pc_sub(h.c.b, pc_dots(z.l.b, y.a)),
-                   pc_sub(h.c.c, pc_dots(z.l.c, y.a)));
+  Sym6 rest = pc_sym6(pc_sym_sub(h.l, pc_products(z.l.a, z.l.b, z.l.c, y.l.a, y.l.b, y.l.c)),
+                      pc_mat3(pc_sub(h.c.a, pc_dots(z.l.a, y.a)), pc_sub(h.c.b, pc_dots(z.l.b, y.a)),
+                              pc_sub(h.c.c, pc_dots(z.l.c, y.a))),
+                      pc_sym_sub(h.a, pc_products(z.a.a, z.a.b, z.a.c, y.a.a, y.a.b, y.a.c)));
   pc_sts_tree(PC_PASS n, TREE_A, rest.l);
   pc_stm_tree(PC_PASS n, TREE_A + 6u, rest.c);
 #ifndef PC_SEEN
@@ -182,10 +181,8 @@ PC_FN void pc_factor(PC_IO Slot m, Tree t, bool all) {
   PC_NODES(k, 0u, t) {
     Slot n = PC_NODE(m, t.first + k);
     if (all || PC_ANY(pc_is_stale(PC_PASS n))) {  // lint: allow (others keep what they have)
-      Sym6 h;
-      h.l = pc_diagonal(PC_LD(tree_rows, n, TREE_MASS));
-      h.c = pc_mat3(z, z, z);
-      h.a = pc_lds_tree(PC_PASS n, TREE_INERTIA);
+      Sym6 h =
+          pc_sym6(pc_diagonal(PC_LD(tree_rows, n, TREE_MASS)), pc_mat3(z, z, z), pc_lds_tree(PC_PASS n, TREE_INERTIA));
       pc_sth_tree(PC_PASS n, TREE_H, h);
     }
   }

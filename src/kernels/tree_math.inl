@@ -30,15 +30,12 @@ PC_FN Six pc_six(Vec3 l, Vec3 a) {
   x.a = a;
   return x;
 }
-PC_FN Sym3 pc_sym3(Real xx, Real xy, Real xz, Real yy, Real yz, Real zz) {
-  Sym3 m;
-  m.xx = xx;
-  m.xy = xy;
-  m.xz = xz;
-  m.yy = yy;
-  m.yz = yz;
-  m.zz = zz;
-  return m;
+PC_FN Sym6 pc_sym6(Sym3 l, Mat3 c, Sym3 a) {
+  Sym6 h;
+  h.l = l;
+  h.c = c;
+  h.a = a;
+  return h;
 }
 PC_FN Sym3 pc_diagonal(Real d) {
   Real o = PC_REAL(0.0);
@@ -90,11 +87,8 @@ PC_FN Sym3 pc_sym_select(Mask m, Sym3 a, Sym3 b) {
                  pc_select(m, a.yz, b.yz), pc_select(m, a.zz, b.zz));
 }
 PC_FN Sym6 pc_sym6_add(Sym6 x, Sym6 y) {
-  Sym6 r;
-  r.l = pc_sym_add(x.l, y.l);
-  r.c = pc_mat3(pc_add(x.c.a, y.c.a), pc_add(x.c.b, y.c.b), pc_add(x.c.c, y.c.c));
-  r.a = pc_sym_add(x.a, y.a);
-  return r;
+  return pc_sym6(pc_sym_add(x.l, y.l), pc_mat3(pc_add(x.c.a, y.c.a), pc_add(x.c.b, y.c.b), pc_add(x.c.c, y.c.c)),
+                 pc_sym_add(x.a, y.a));
 }
 // The symmetric matrix of dot products of the vectors u with the vectors v, where these commute.
 PC_FN Sym3 pc_products(Vec3 u0, Vec3 u1, Vec3 u2, Vec3 v0, Vec3 v1, Vec3 v2) {
@@ -123,11 +117,8 @@ PC_FN Sym6 pc_sym6_inverse(Sym6 h) {
   Vec3 c0 = pc_sym_mul(si, w.a);
   Vec3 c1 = pc_sym_mul(si, w.b);
   Vec3 c2 = pc_sym_mul(si, w.c);  // rows of W S^-1
-  Sym6 r;
-  r.l = pc_sym_add(li, pc_products(c0, c1, c2, w.a, w.b, w.c));
-  r.c = pc_mat3(pc_negate(c0), pc_negate(c1), pc_negate(c2));
-  r.a = si;
-  return r;
+  return pc_sym6(pc_sym_add(li, pc_products(c0, c1, c2, w.a, w.b, w.c)),
+                 pc_mat3(pc_negate(c0), pc_negate(c1), pc_negate(c2)), si);
 }
 // X^T h X, where X x = (l + a x d, a) moves a motion along the arm d.
 PC_FN Sym6 pc_sym6_shift(Sym6 h, Vec3 d) {
@@ -147,15 +138,6 @@ PC_FN Sym6 pc_sym6_shift(Sym6 h, Vec3 d) {
   precise Real zz = e2.z + d.x * r.c.b.z - d.y * r.c.a.z;
   r.a = pc_sym3(xx, xy, xz, yy, yz, zz);
   return r;
-}
-PC_FN Sym3 pc_sym_scale(Sym3 m, Real s) {
-  precise Real xx = m.xx * s;
-  precise Real xy = m.xy * s;
-  precise Real xz = m.xz * s;
-  precise Real yy = m.yy * s;
-  precise Real yz = m.yz * s;
-  precise Real zz = m.zz * s;
-  return pc_sym3(xx, xy, xz, yy, yz, zz);
 }
 // Positive matrices m by the factor of their inverse: m^-1 = E^T d E, E a lower triangle with ones on its diagonal,
 // where d stands in these. It stays positive, and a small scale beside large ones keeps its digits: cofactors are off

@@ -39,10 +39,8 @@ PC_FN void pc_hand_root(PC_IO Slot root, Index row, Mask exists, Real scale) {
   Sym3 l = pc_cholesky(PC_PASS h.l, h.l);
   Mat3 b = pc_mat3(pc_lower_solve(l, ct.a), pc_lower_solve(l, ct.b), pc_lower_solve(l, ct.c));
   Sym3 rest = pc_sym_sub(h.a, pc_products(b.a, b.b, b.c, b.a, b.b, b.c));
-  Sym6 e;
-  e.l = pc_sym_scale(l, scale);
-  e.c = pc_mat3(pc_scale(b.a, scale), pc_scale(b.b, scale), pc_scale(b.c, scale));
-  e.a = pc_sym_scale(pc_cholesky(PC_PASS rest, h.a), scale);
+  Sym6 e = pc_sym6(pc_sym_scale(l, scale), pc_mat3(pc_scale(b.a, scale), pc_scale(b.b, scale), pc_scale(b.c, scale)),
+                   pc_sym_scale(pc_cholesky(PC_PASS rest, h.a), scale));
   Real zero = PC_REAL(0.0);
   pc_sth_tree(PC_PASS root, TREE_ROOT_FACTOR, e);
   PC_SCATTER_IF(exists, node_operator, row, 0u, pc_quad(e.c.a, zero));

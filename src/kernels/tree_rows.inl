@@ -79,11 +79,7 @@ PC_FN Mat3 pc_ldm_tree(PC_IO Slot n, uint f) {
   return pc_mat3(pc_ld3_tree(PC_PASS n, f), pc_ld3_tree(PC_PASS n, f + 3u), pc_ld3_tree(PC_PASS n, f + 6u));
 }
 PC_FN Sym6 pc_ldh_tree(PC_IO Slot n, uint f) {
-  Sym6 h;
-  h.l = pc_lds_tree(PC_PASS n, f);
-  h.c = pc_ldm_tree(PC_PASS n, f + 6u);
-  h.a = pc_lds_tree(PC_PASS n, f + 15u);
-  return h;
+  return pc_sym6(pc_lds_tree(PC_PASS n, f), pc_ldm_tree(PC_PASS n, f + 6u), pc_lds_tree(PC_PASS n, f + 15u));
 }
 // W^T times a motion, with the six rows of W at w (tree_sweep.inl).
 PC_FN Vec3 pc_w_tmul(PC_IO Slot n, uint w, Six a) {
