@@ -1,8 +1,8 @@
 // A world in which nothing meets, holds or slows a body, beside what one would write by hand for it: the same
 // arithmetic over the same arrays, in turns with pcphys so that what else happens on the machine hits both. The time is
 // pcphys's median step.
-//   ballistic/BODIES/cpu     beside a loop of one thread (ballistic_hand.cpp); `differs`: bodies whose rows are not the
-//                            same bits
+//   ballistic/BODIES/cpu     beside a loop of one thread (ballistic_hand.cpp);
+//                            `differs`: bodies whose rows are not the same bits
 //   ballistic/BODIES/gl      beside a compute shader over buffers that stay on the device
 //   ballistic/BODIES/create  making the world, a body
 #include <benchmark/benchmark.h>

@@ -1,7 +1,7 @@
-// What a step does not pay for: kinds of scene with all on and with something left out, taking turns; and what planning
-// costs.
-//   leaving_out/KIND                 median step of both [ms], its contacts, kernel runs of a step, memory of its
-//                                    buffers; docs/leaving-out.md
+// What a step does not pay for: kinds of scene with all on and with something left out, taking turns;
+// and what planning costs.
+//   leaving_out/KIND                 median step of both [ms], its contacts, kernel runs of a step,
+//                                    memory of its buffers; docs/leaving-out.md
 //   planning/unchanged/SCENE         the timer `plan` where nothing has changed
 //   planning/joint/SCENE             lists, pairs and plan of a step after a joint was added, beyond an ordinary one's
 //   planning/nothing                 a step of a world in which nothing moves
@@ -126,8 +126,8 @@ struct Run {
     const auto made = world.create_joint(pin);
     if (!made) check(made.error());
   }
-  /// Far away one ball lies on a floor with friction: rows of all contacts are whole, and the heap moves by the same
-  /// bits.
+  /// Far away one ball lies on a floor with friction: rows of all contacts are whole,
+  /// and the heap moves by the same bits.
   void rough_ball() {
     for (const bool floor : {true, false}) {
       BodyDef def;

@@ -1,15 +1,12 @@
 // Kernels of the host's own over pairs, over joints with their bodies, and totals:
 //   own/all_pairs/PLACE/PRECISION/BODIES   magnets, each on each: interactions/s, and arithmetic operations/s (a
-//                                          division and a root
-//                                          count as one). With PCPHYS_PEAK_GFLOPS, the device's figure in that
-//                                          precision as its maker
-//                                          gives it (two operations a fused multiply-add, of which pcphys makes none:
-//                                          half of it is
-//                                          the limit), `of_limit` is the share that was reached.
+//                                          division and a root count as one). With PCPHYS_PEAK_GFLOPS, the device's
+//                                          figure in that precision as its maker gives it (two operations a fused
+//                                          multiply-add, of which pcphys makes none: half of it is the limit),
+//                                          `of_limit` is the share that was reached.
 //   own/near/PLACE/PRECISION/BODIES        the same within a cut-off at one density (about 30 neighbours), lists made
-//                                          anew in each
-//                                          step: `ns_per_nlogn` is level where the time grows as n log n; `lists_ms` is
-//                                          theirs alone.
+//                                          anew in each step: `ns_per_nlogn` is level where the time grows as
+//                                          n log n; `lists_ms` is theirs alone.
 //   own/joined/PLACE/PRECISION/BODIES      cords, one from each body to the next
 //   own/total/PLACE/PRECISION/BODIES       the sum of a number of each body
 // One sub-step a step; the time is that of the stage in which the kernel runs, until the device is done; of `near` that

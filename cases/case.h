@@ -17,8 +17,8 @@ namespace pcphys::cases {
 /// The step lengths that errors are compared at [s].
 inline constexpr std::array<double, 4> ladder{1.0 / 60, 1.0 / 240, 1.0 / 1200, 1e-4};
 
-/// Longer ones, at which nothing has a bound: they show what little work brings, and where methods of high order are of
-/// use [s].
+/// Longer ones, at which nothing has a bound: they show what little work brings,
+/// and where methods of high order are of use [s].
 inline constexpr std::array<double, 2> long_steps{1.0 / 15, 1.0 / 30};
 
 /// One bound a step of the ladder.
@@ -80,8 +80,8 @@ class Trial {
   void finish();
   /// How often `time_again` may be called.
   void set_repeats(int repeats) { repeats_ = repeats; }
-  /// What the steps take by themselves [s], from a new start with nothing read in between; none where that cannot be
-  /// told.
+  /// What the steps take by themselves [s], from a new start with nothing read in between;
+  /// none where that cannot be told.
   std::optional<double> time_again();
 
  private:

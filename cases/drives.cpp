@@ -72,8 +72,8 @@ void stiff_drag(Trial& trial) {
 
 constexpr double spring_mass = 1e-3, rest_length = 0.5;
 
-/// A light ball on a stiff spring from the origin along x, drawn out by 1 cm; at rest, or let go with a speed from its
-/// rest length.
+/// A light ball on a stiff spring from the origin along x, drawn out by 1 cm;
+/// at rest, or let go with a speed from its rest length.
 Simulated& stiff_spring(Trial& trial, double stiffness, double mass, double damping, double drawn, double speed) {
   return trial.start([=](scenes::Builder& builder) {
     BodyDef def = free_body(mass, {1e-2 * mass, 1e-2 * mass, 1e-2 * mass}, {speed, 0, 0});

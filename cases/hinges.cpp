@@ -124,8 +124,8 @@ std::optional<double> never_gains(const Trial& trial, double restitution) {
   return trial.at({restitution == 1 ? std::max(1e-9, rounding) : rounding, rounding, rounding, rounding});
 }
 
-/// The instant at which an angle that grows through four steps is zero, by the polynomial through them [steps from the
-/// first].
+/// The instant at which an angle that grows through four steps is zero,
+/// by the polynomial through them [steps from the first].
 double instant_of_zero(const std::array<double, 4>& angles) {
   double instant = 0;
   for (int i = 0; i < 4; ++i) {
@@ -202,8 +202,8 @@ void thrown_back(Trial& trial, double restitution, double height) {
 
 constexpr double mean_of_random = 1.0 / 240, mean_of_turns = 0.5 * (1.0 / 60 + 1.0 / 240);
 
-/// Step lengths: 1/60 and 1/240 s in turn, or uniform in [0.5, 1.5] / 240 s; or all of them in proportion to another
-/// mean.
+/// Step lengths: 1/60 and 1/240 s in turn, or uniform in [0.5, 1.5] / 240 s;
+/// or all of them in proportion to another mean.
 std::vector<double> step_lengths(bool random, double mean, double seconds) {
   const double scale = mean / (random ? mean_of_random : mean_of_turns);
   std::vector<double> lengths;

@@ -109,8 +109,8 @@ class Trend {
   double first_ = 0, last_ = 0;
 };
 
-/// Largest error of a component relative to itself; of one that is zero, but for the table's rounding, relative to
-/// `scale`.
+/// Largest error of a component relative to itself; of one that is zero, but for the table's rounding,
+/// relative to `scale`.
 double error_of_components(Vec3 found, Vec3 expected, double scale);
 
 /// exp of a rotation vector [rad].

@@ -96,8 +96,8 @@ void flips(Trial& trial) {
 }
 
 /// Instants at which the spin about the intermediate axis changes sign, by Euler's equations and the classical
-/// fourth-order Runge-Kutta method. What each step rounds joins the next: flips grow it, to 3e-9 s at the fourth
-/// without that.
+/// fourth-order Runge-Kutta method. What each step rounds joins the next:
+/// flips grow it, to 3e-9 s at the fourth without that.
 std::vector<double> flip_times(double seconds) {
   const Vec3 i = box_moments;
   const auto rate = [i](Vec3 w) {

@@ -1,5 +1,5 @@
-// A12 to A15: the scenes of SimBenchmark (Hwangbo and Lee, leggedrobotics/SimBenchmark), with RaiSim's figures as
-// bounds.
+// A12 to A15: the scenes of SimBenchmark (Hwangbo and Lee, leggedrobotics/SimBenchmark),
+// with RaiSim's figures as bounds.
 #include <algorithm>
 
 #include "case.h"

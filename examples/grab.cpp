@@ -1,5 +1,5 @@
-// A hand drags a ragdoll by its head through a gap that is too narrow for it: the ragdoll stays whole, and the hand
-// slips.
+// A hand drags a ragdoll by its head through a gap that is too narrow for it: the ragdoll stays whole,
+// and the hand slips.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

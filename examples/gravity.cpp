@@ -1,5 +1,5 @@
-// A cluster of stars under its own gravity, and its energy and momentum as totals over all stars, made where the stars
-// are.
+// A cluster of stars under its own gravity, and its energy and momentum as totals over all stars,
+// made where the stars are.
 #include <cmath>
 #include <cstdio>
 

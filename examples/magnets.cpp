@@ -1,5 +1,5 @@
-// Forces between all pairs of bodies, on the CPU and on the GPU, with the same bits: magnets that pull each other
-// together.
+// Forces between all pairs of bodies, on the CPU and on the GPU, with the same bits:
+// magnets that pull each other together.
 #include <cstdio>
 
 #include "magnet.h"

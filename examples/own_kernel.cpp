@@ -27,7 +27,7 @@ int main() {
     def.mass = 10;
     const auto body = world.create_body(def);
     Stepper stepper({.integrate = place, .joints = place, .impulses = place});
-    // m/s, kg/s
+    // In m/s and kg/s.
     const KernelDef kernel = {.text = rocket::text(), .parameters = {{"exhaust_speed", 300.0}, {"flow", 0.5}}};
     if (const Status added = stepper.add_kernel(world, kernel); !added)
       return std::puts(added.error().message.c_str()), 1;

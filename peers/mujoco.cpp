@@ -29,8 +29,8 @@ struct DeleteFiles {
   }
 };
 
-/// MuJoCo reports through functions of the process: warnings are counted in its data, errors are thrown and caught
-/// here.
+/// MuJoCo reports through functions of the process: warnings are counted in its data,
+/// errors are thrown and caught here.
 void take_reports() {
   mju_user_warning = [](const char*) {};
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };

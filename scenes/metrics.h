@@ -38,8 +38,8 @@ std::vector<Pose> poses(const Scene& scene, const World& world);
 State state(const Scene& scene, const World& world);
 
 /// Scenes with supports: vertical overlap of a box with what it was built on. Scenes in the open-lidded box:
-/// overlap of every pair of round bodies, or of hulls, that no joint connects, and of each with floor and walls.
-/// Others: floor.
+/// overlap of every pair of round bodies, or of hulls, that no joint connects,
+/// and of each with floor and walls. Others: floor.
 Penetration penetration(const Scene& scene, const World& world, std::span<const Pose> poses);
 
 /// In what follows `world` says how the scene's joints and masses are; where the bodies are is in the poses.
@@ -73,8 +73,8 @@ Escapes escapes(const Scene& scene, std::span<const Pose> poses, const RimWatch&
 long nonfinite(const State& state);
 Drift drift(const Scene& scene, std::span<const Pose> poses);
 
-/// Of a rigid body, velocity of its centre, spin in world axes [J]; and its angular momentum about the centre [kg
-/// m^2/s].
+/// Of a rigid body, velocity of its centre, spin in world axes [J];
+/// and its angular momentum about the centre [kg m^2/s].
 double kinetic_energy(const MassProperties& mass, Quat orientation, Vec3 velocity, Vec3 spin);
 Vec3 spin_momentum(const MassProperties& mass, Quat orientation, Vec3 spin);
 

@@ -60,8 +60,8 @@ inline double energy(const Observation& seen) {
 
 /// What a body moves no faster than does not move: its place is rounded by more in a step of `dt` [m/s].
 double unresolved_speed(const SeenBody& body, double rounding, double dt);
-/// How much of the energy of springs one rounding of each end's place, and of each number of an orientation, makes up
-/// [J].
+/// How much of the energy of springs one rounding of each end's place,
+/// and of each number of an orientation, makes up [J].
 double unresolved_spring_energy(const Observation& seen, double rounding);
 
 /// How far the two pins of a joint are apart [m].

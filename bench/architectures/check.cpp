@@ -66,8 +66,8 @@ bool check_one(const NamedDesign& named, SceneKind kind, History history, Refere
   return good & report(same(after, state_of(*design, handles)), what + ": a gather and a scatter change the state");
 }
 
-// What the library's own world takes for the property and the force, counted beside the designs'
-// (tools/architectures_report.py).
+// What the library's own world takes for the property and the force,
+// counted beside the designs' (tools/architectures_report.py).
 Status add_wind(World& world, Stepper& stepper) {
   const auto area = world.add_property<Real>("area");  // [property]
   if (!area) return area.error();

@@ -1,6 +1,6 @@
 // What every design can do, so that one program builds, steps, checks and measures them all. A design is a way to keep
-// objects and to run the library's kernels over them; the kernels' text is the same (kernel_text.inl, or the library's
-// own loops).
+// objects and to run the library's kernels over them; the kernels' text is the same (kernel_text.inl,
+// or the library's own loops).
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Components in an entity-component store: a sparse set a component, in the manner of EnTT (M. Caini), written small.
-// Of an entity's number a page says where its component stands in a dense array; removing moves the last one into the
-// gap.
+// Of an entity's number a page says where its component stands in a dense array;
+// removing moves the last one into the gap.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,6 @@
 // What was added to every design when it stood: a property (the area that a body shows the wind), a force (the wind's),
-// a constraint (ropes). The physics stands here once; what each design needs for it stands in its file between the
-// marks
+// a constraint (ropes). The physics stands here once; what each design needs for it stands
+// in its file between the marks
 //   // [property], // [force], // [constraint] ... // [end]
 // and tools/architectures_report.py counts those lines. A mark behind a line counts that line alone.
 #pragma once

@@ -18,8 +18,8 @@ struct Case {
 
 /// Builds and steps in a process of its own, so that no heap holds what others left. None where the processor has no
 /// such lanes. Keys: seconds a step of each stage, of a gather and a scatter, and of laying out lists after objects
-/// have changed (medians); of building; bytes in use on the heap. From 10,000 bodies on seconds are those of the
-/// thread.
+/// have changed (medians); of building; bytes in use on the heap.
+/// From 10,000 bodies on seconds are those of the thread.
 std::optional<Json> measure(const Case& of);
 /// Steps alone, for a profiler.
 void only_step(const Case& of, std::size_t steps);

@@ -23,8 +23,8 @@ std::string_view name(History history);
 
 /// Body `i` of the scene of free flight.
 BodyInit flying_body(std::size_t i);
-/// Makes `count` bodies, rounded down to whole chains or pairs; answers their handles, in the same order for every
-/// history.
+/// Makes `count` bodies, rounded down to whole chains or pairs; answers their handles,
+/// in the same order for every history.
 std::vector<Handle> build(SceneKind kind, std::size_t count, History history, Design& design);
 
 using StageTimes = std::array<double, stage_count>;  // [s]

@@ -1,5 +1,5 @@
-// Buoyancy and drag in water: a sphere and boxes go down as far as Archimedes says, and what is too heavy sinks at its
-// terminal speed.
+// Buoyancy and drag in water: a sphere and boxes go down as far as Archimedes says,
+// and what is too heavy sinks at its terminal speed.
 #include "pcphys/write_kernel.h"
 #include "show.h"
 

@@ -28,11 +28,11 @@ PCPHYS_KERNEL(cord,
 constexpr double g = 9.81, rest = 20, stiffness = 120;  // [m/s^2], [m], [N/m]
 constexpr double jumper = 80, light = 40, heavy = 60;   // [kg]
 
-/// How far apart ends are that fly apart from nothing at `speed`, under an acceleration `pull` apart: slack, taut,
-/// slack again.
+/// How far apart ends are that fly apart from nothing at `speed`, under an acceleration `pull` apart:
+/// slack, taut, slack again.
 double distance(double pull, double speed, double mass, double t) {
   const double taut_speed = std::sqrt(speed * speed + 2 * pull * rest), rate = std::sqrt(stiffness / mass);
-  // when it is taut; where it would hang
+  // When it is taut, and where it would hang.
   const double slack = 2 * rest / (speed + taut_speed), sag = pull / (rate * rate);
   const double swing = std::hypot(sag, taut_speed / rate), angle = std::atan2(sag, taut_speed / rate);
   const double taut = (std::numbers::pi + 2 * angle) / rate;

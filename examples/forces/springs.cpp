@@ -1,5 +1,5 @@
-// Springs, made twice: by a kernel of one's own, which pulls a body to its home, and by the library's springs between
-// two points.
+// Springs, made twice: by a kernel of one's own, which pulls a body to its home,
+// and by the library's springs between two points.
 #include "pcphys/write_kernel.h"
 #include "show.h"
 

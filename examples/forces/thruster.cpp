@@ -1,5 +1,5 @@
-// A rocket whose fuel is a property of one's own, and whose mass falls as it burns: Tsiolkovsky's equation, then free
-// flight.
+// A rocket whose fuel is a property of one's own, and whose mass falls as it burns: Tsiolkovsky's equation,
+// then free flight.
 #include "pcphys/write_kernel.h"
 #include "show.h"
 

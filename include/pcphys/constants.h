@@ -11,8 +11,8 @@ inline constexpr unsigned largest_hull_vertices = 64, largest_hull_face = 16;
 /// Points are flat, and make no hull, where it is less wide across one of its faces than this share of the distance of
 /// the two vertices that are farthest apart.
 inline constexpr double hull_flatness = 1e-4;
-/// Vertices nearer to a plane or line than this share of how far the hull's points reach lie in it: triangles merge
-/// into faces.
+/// Vertices nearer to a plane or line than this share of how far the hull's points reach lie in it:
+/// triangles merge into faces.
 inline constexpr double hull_planarity = 1e-5;
 /// Coordinates, velocities and other inputs beyond this are refused: their squares leave float32's range.
 inline constexpr double largest_input = 1e15;
@@ -71,8 +71,8 @@ inline constexpr double contact_share = 0.01;
 /// contact how far, over the body's size (twice the radius of gyration), it is pressed in by as many bodies of its own
 /// kind as the island is high, and by as many again as it is higher than wide (plan/columns.h); of a joint with limits
 /// the host's pull over the body's size, or its spin where it hangs on what does not answer; of one that closes a loop
-/// the frequency of what swings under its tension, of half the sub-step; of a tree that nothing touches how much a spin
-/// changes.
+/// the frequency of what swings under its tension, of half the sub-step;
+/// of a tree that nothing touches how much a spin changes.
 inline constexpr double largest_give = 0.01;
 /// And by one body at least so many times as heavy (plan/loads.h) a contact is to be pressed in by less than this
 /// share: it sinks where the other rows of its manifold do not.
@@ -98,8 +98,8 @@ inline constexpr double loop_give = 1e-4;
 inline constexpr double joint_push_speed = 8;
 
 /// What is this many roundings (of relative size epsilon) below what it is a difference of is rounding: a velocity
-/// below what the contact's impulse that holds the body would give it, what Newton's method for a net of springs
-/// leaves.
+/// below what the contact's impulse that holds the body would give it, what Newton's method for a net
+/// of springs leaves.
 inline constexpr double roundings = 32;
 
 /// What is sought round by round gets so many at most: impacts in a sub-step, since what one hands on, the next body

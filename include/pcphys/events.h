@@ -1,5 +1,5 @@
-// What happened in a step, for those who ask (StepSettings): who touched, who let go, who hit whom, who moved, slept or
-// woke. docs/events.md
+// What happened in a step, for those who ask (StepSettings): who touched, who let go, who hit whom, who moved,
+// slept or woke. docs/events.md
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,7 +1,7 @@
 // Typed generational ids. An id is an index, a generation and its world; the generation changes when the index is
 // used again, so an id that outlived its object, or is of another world, is recognised and reported as stale, never
-// followed. Index and generation are assigned by the sequence of create and destroy calls alone: the smallest free
-// index first.
+// followed. Index and generation are assigned by the sequence of create and destroy calls alone:
+// the smallest free index first.
 #pragma once
 #include <compare>
 #include <cstdint>

@@ -16,8 +16,8 @@ struct KernelRows {
   const std::size_t* strides;  // and bytes from row to row; 0 of a parameter
   const std::uint32_t* rows;   // null: begin to end themselves
   std::uint32_t begin, end;
-  // in place of `rows`, of joints with their bodies: three by three the rows of the joint, of its body a and of its
-  // body b
+  // in place of `rows`, of joints with their bodies:
+  // three by three the rows of the joint, of its body a and of its body b
   const std::uint32_t* joined = nullptr;
   const std::uint8_t* of_three = nullptr;  // and of each argument which of them: 0, 1 or 2
 };
@@ -78,8 +78,8 @@ struct KernelDef {
   /// Of pairs of bodies: only those whose positions are no further apart [m]. Without one, all.
   std::optional<double> cutoff = {};
   /// Names of kernels of the same moment that run before this one. What follows by itself: of a property first the one
-  /// that writes it anew, then those that change it, then those that read it; and else the order in which they were
-  /// added.
+  /// that writes it anew, then those that change it, then those that read it;
+  /// and else the order in which they were added.
   std::vector<std::string> follows = {};
 };
 

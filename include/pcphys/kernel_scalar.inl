@@ -1,5 +1,5 @@
-// What the text of a kernel means in C++ for one element of PC_SCALAR (float or double); included by kernel_text.h in a
-// namespace.
+// What the text of a kernel means in C++ for one element of PC_SCALAR (float or double);
+// included by kernel_text.h in a namespace.
 using uint = std::uint32_t;
 using Real = PC_SCALAR;
 using Mask = bool;

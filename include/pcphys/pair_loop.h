@@ -1,6 +1,6 @@
 // The C++ side of pair kernels (write_kernel.h): loops over bodies and, of each, over the others, in an order of sums
-// that the GPU keeps too. Lanes are bodies side by side, for the compiler to vectorise; each lane sums in the order of
-// one alone.
+// that the GPU keeps too. Lanes are bodies side by side, for the compiler to vectorise;
+// each lane sums in the order of one alone.
 #pragma once
 #include <algorithm>
 #include <array>

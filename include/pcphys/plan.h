@@ -13,8 +13,8 @@ namespace pcphys {
 enum class Place : std::uint8_t { cpu, gl };
 const char* name(Place place);
 
-/// The parts of a sub-step that are put on a place each, and what comes after the last where islands are found on a
-/// device (StepSettings::islands).
+/// The parts of a sub-step that are put on a place each, and what comes after the last where islands are found
+/// on a device (StepSettings::islands).
 enum class Stage : std::uint8_t { integrate, joints, impulses, islands };
 std::string_view name(Stage stage);
 
@@ -38,7 +38,7 @@ enum class Domain : std::uint8_t;
 struct OwnKernel;
 
 struct PlanEntry {
-  /// collide: the narrow phase of a sub-step, on the host
+  /// `collide`: the narrow phase of a sub-step, on the host.
   enum class Kind : std::uint8_t { kernel, upload, download, collide };
   Kind kind = Kind::kernel;
   Place place = Place::cpu;
@@ -48,9 +48,9 @@ struct PlanEntry {
   bool barrier = false;       // uses what a kernel before it wrote, or writes what one read, on the same device
   std::uint32_t substep = 0;  // of the octave's
   std::uint8_t octave = 0;    // of the islands that a kernel is for; octave_count more for those of fourth order
-  /// a kernel of the host's own, in place of `kernel`; of a transfer, one that uses the buffer
+  /// A kernel of the host's own, in place of `kernel`; of a transfer, one that uses the buffer.
   const OwnKernel* own = nullptr;
-  /// runs only while the kernel's run before struck something, and at most so often; 0: once, always
+  /// It runs only while the kernel's run before struck something, and at most so often; 0: once, always.
   std::uint32_t again = 0;
   /// Of a transfer that `Stepper::plan_for` names: the whole buffer, in that world. 0 in plans of no world
   /// (`Stepper::plan`), which stand for steps of any size.

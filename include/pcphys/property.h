@@ -14,16 +14,16 @@
 
 namespace pcphys {
 
-/// What a property holds of each object. `real`: float or double, as the world was made; vectors and matrices are of
-/// such reals.
+/// What a property holds of each object. `real`: float or double, as the world was made;
+/// vectors and matrices are of such reals.
 enum class PropertyType : std::uint8_t { real, vec3, quat, sym3, vec4, mat3, float32, float64, int32, uint32 };
 std::string_view name(PropertyType type);
 /// Numbers in a value.
 std::uint32_t components(PropertyType type);
 
 /// input: the host writes it; state: what snapshots and the hash hold; derived: follows from others; scratch: means
-/// nothing between steps; host: what a host hangs on its objects. Snapshots hold that, and the hash since a kernel has
-/// named it.
+/// nothing between steps; host: what a host hangs on its objects.
+/// Snapshots hold that, and the hash since a kernel has named it.
 enum class Role : std::uint8_t { input, state, derived, scratch, host };
 std::string_view name(Role role);
 

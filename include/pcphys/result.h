@@ -46,8 +46,8 @@ namespace detail {
 [[noreturn]] void moved_from(const char* what, const char* call);
 /// Of a call that answers with a value and has no memory for it.
 [[noreturn]] void no_memory_for(const char* call);
-/// An error in memory of its own; where there is none for it, the one that says so, which was made when the process
-/// began.
+/// An error in memory of its own; where there is none for it, the one that says so,
+/// which was made when the process began.
 std::shared_ptr<const Error> keep(Error error) noexcept;
 }  // namespace detail
 

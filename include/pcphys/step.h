@@ -30,7 +30,7 @@ struct StepSettings {
   std::uint32_t order = 2;
   /// Most by which a step may multiply the sub-steps of an island that needs it (docs/substeps.md); 1: never.
   std::uint32_t refinement = 16;
-  /// of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is, or fewer where those are enough
+  /// Lanes of the CPU: 1, 4, 8 (f32) or 1, 4 (f64); 0: the widest there is, or fewer where those are enough.
   std::uint32_t lanes = 0;
   std::uint32_t threads = 1;  // of the CPU, up to 256; 0: as many as the processor runs at a time
   NarrowPhase narrow = NarrowPhase::native;
@@ -42,8 +42,8 @@ struct StepSettings {
   bool resident = false;
   bool timings = true;  // clock the step and each stage (StepReport); on GL this waits for the device after each
 
-  /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md). A step with it off wakes what
-  /// sleeps.
+  /// Islands at rest stop being stepped until something wakes them (docs/sleeping.md).
+  /// A step with it off wakes what sleeps.
   bool sleep = false;
   /// Where who is in which island is found after a step: by union-find on the CPU, or by label propagation on the
   /// device. The result is the same.
@@ -54,7 +54,7 @@ struct StepSettings {
 
   double push_speed = 3;               // at which an overlap is undone, at most (docs/limits.md) [m/s]
   double restitution_threshold = 0.5;  // approach speeds below it do not bounce [m/s]; 0 switches it off
-  /// contacts are kept up to this gap [m]; 0: up to constants::contact_share of the smaller shape
+  /// Contacts are kept up to this gap [m]; 0: up to constants::contact_share of the smaller shape.
   double contact_margin = 0;
   std::size_t max_pairs = 1u << 24;  // more is an error that says how many there are
 
@@ -85,8 +85,8 @@ struct StepReport {
   std::uint32_t asleep = 0, islands_asleep = 0;  // bodies that sleep after this step, and how many islands they make
   std::uint32_t fell_asleep = 0, woke = 0;       // bodies, in this step
   /// What the direct solve of joint trees does not carry: joints with angles that close a loop beside another joint of
-  /// the same bodies, joints that do in a net, and contacts of trees with more than 64 bodies. They are solved as rows
-  /// (docs/joint-trees.md).
+  /// the same bodies, joints that do in a net, and contacts of trees with more than 64 bodies.
+  /// They are solved as rows (docs/joint-trees.md).
   std::uint32_t joints_as_rows = 0, tree_contacts_as_rows = 0;
   std::uint64_t transfer_bytes = 0;                    // between host and device
   std::uint64_t upload_bytes = 0;                      // of them, to the device
@@ -123,8 +123,8 @@ class Stepper {
   /// Moves the world on by dt [s]. The report stands until the next call.
   const StepReport& step(World& world, double dt);
 
-  /// What happened in the last step, of what the settings ask for; empty if it failed. It stands until the next call of
-  /// `step`.
+  /// What happened in the last step, of what the settings ask for; empty if it failed.
+  /// It stands until the next call of `step`.
   StepEvents events() const;
 
   /// A kernel of the host's own runs in every step of this world from now on; a stepper has kernels of one world at a

@@ -139,9 +139,9 @@ struct AngularSpring {
   Quat rest;
 };
 
-/// A spring and damper along the line between a point of a and one of b: tension = stiffness * (distance - rest_length)
-/// + damping * (rate of the distance). It pulls and pushes, at any stiffness: what a sub-step is too long to resolve is
-/// damped.
+/// A spring and damper along the line between a point of a and one of b:
+/// tension = stiffness * (distance - rest_length) + damping * (rate of the distance).
+/// It pulls and pushes, at any stiffness: what a sub-step is too long to resolve is damped.
 struct SpringDef {
   BodyId a, b;              // a may be `World::ground()`
   Vec3 anchor_a, anchor_b;  // in each body's frame [m]
@@ -159,8 +159,8 @@ struct JointDef {
   AngularSpring spring;
   bool collide = false;  // whether a and b may collide; adjacent bones do not
   /// Of the pin, above 0; what pulls harder draws it open, and it closes again. Infinite: it never gives way, so a
-  /// kinematic body tears what it drags through what stands. Such a pin is solved as a row, beside the trees ([N];
-  /// World::grab).
+  /// kinematic body tears what it drags through what stands.
+  /// Such a pin is solved as a row, beside the trees ([N]; World::grab).
   double largest_force = std::numeric_limits<double>::infinity();
   bool yields() const { return largest_force < std::numeric_limits<double>::infinity(); }
 };
@@ -173,7 +173,7 @@ struct BoneDef {
   Vec3 joint;       // where it is pinned to its parent, ragdoll's frame
   Quat joint_axes;  // of the joint frames, ragdoll's frame
   AngleFreedom freedom;
-  /// torque against the joint's turning, per angular velocity [N m s/rad]; without any, what hangs free swings on
+  /// Torque against the joint's turning, per angular velocity [N m s/rad]; without any, what hangs free swings on.
   double damping = 0;
 };
 
@@ -183,8 +183,8 @@ struct RagdollDef {
   double density = 1000;
   Material material;
 
-  /// The original's human: 12 capsules, 11 joints, root at the hips, feet at y = 0. Its joints have a damping of 0.3 N
-  /// m s/rad, so that limbs that hang free come to rest.
+  /// The original's human: 12 capsules, 11 joints, root at the hips, feet at y = 0.
+  /// Its joints have a damping of 0.3 N m s/rad, so that limbs that hang free come to rest.
   static RagdollDef human();
   /// Gives all joints this damping [N m s/rad].
   void set_damping(double damping);

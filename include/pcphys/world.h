@@ -28,7 +28,7 @@ class World;
 /// A manifold between two bodies, as the last step left it. World axes, SI units.
 struct Contact {
   struct Point {
-    /// on the light body's surface, midway between equal ones; as found, from a where a is now [m]
+    /// On the light body's surface, midway between equal ones; as found, from a where a is now [m].
     Vec3 position;
     double separation = 0;  // negative when the shapes overlap [m]
     double impulse = 0;     // along the normal, of the last sub-step [N s]
@@ -44,8 +44,8 @@ struct WorldDef {
 };
 
 using ForceId = Id<struct ForceTag>;
-/// Evaluated once a step, before anything moves. It may read the world, not change it. What it throws makes the step
-/// fail.
+/// Evaluated once a step, before anything moves. It may read the world, not change it.
+/// What it throws makes the step fail.
 using ForceCallback = std::function<Wrench(const World&, BodyId)>;
 
 class World {
@@ -114,8 +114,8 @@ class World {
   /// Whether it sleeps: its step left it out, and so will the next (docs/sleeping.md).
   Result<bool> is_asleep(BodyId body) const;
   /// Wakes its island at the next step, and lets no body rest on what it was before. What the functions of this class
-  /// change wakes by itself; this is for what they do not see, such as a change of what a kernel of the host's own
-  /// does.
+  /// change wakes by itself; this is for what they do not see, such as a change of what a kernel
+  /// of the host's own does.
   Status wake(BodyId body);
   Result<bool> can_sleep(BodyId body) const;
   Status set_can_sleep(BodyId body, bool can_sleep);
@@ -136,8 +136,8 @@ class World {
   /// The shapes as they were given at creation.
   Result<std::vector<ShapeDef>> shapes(BodyId body) const;
   Status set_filter(BodyId body, const Filter& filter);
-  /// Whether two bodies may never collide, besides what joints and filters say. Twice the same body is
-  /// ErrorCode::bad_argument.
+  /// Whether two bodies may never collide, besides what joints and filters say.
+  /// Twice the same body is ErrorCode::bad_argument.
   Status set_collide(BodyId a, BodyId b, bool collide);
   Result<JointDef> joint(JointId joint) const;
   /// From the next step on. Speed in [rad/s], torque in [N m]; a torque below zero is ErrorCode::bad_joint.
@@ -165,8 +165,8 @@ class World {
   // ---- tables ----------------------------------------------------------------------------------------
   Precision precision() const;
   /// A view of a property by name: "position", "angular_momentum", ... (docs/properties.md lists all), or one of the
-  /// host's own. Valid until an object of its table is created or destroyed. Row 0 is the padding row; `row_of` finds a
-  /// body's.
+  /// host's own. Valid until an object of its table is created or destroyed. Row 0 is the padding row;
+  /// `row_of` finds a body's.
   Result<PropertyView> view(std::string_view property) const;
   Result<std::uint32_t> row_of(BodyId body) const;
   Result<std::uint32_t> row_of(JointId joint) const;
@@ -180,8 +180,8 @@ class World {
   /// double, std::int32_t, std::uint32_t, Vec3, Vec4, Quat, Mat3 or SymMat3. Every row, present and to come, starts
   /// with `initial`. Until a kernel of some stepper names it, it is the host's alone: to set it wakes nobody, and the
   /// hash does not hold it unless its role is `state`. Snapshots hold it if its role is `host` or `state`. The name
-  /// must be one that a kernel's text can use: letters, digits and underscores, not that of another property
-  /// (ErrorCode::name_taken).
+  /// must be one that a kernel's text can use: letters, digits and underscores,
+  /// not that of another property (ErrorCode::name_taken).
   template <PropertyValue T>
   Result<Property<T>> add_property(std::string_view name, const T& initial = {}, std::string_view unit = "1",
                                    TableId table = body_table, Role role = Role::host) {
@@ -206,8 +206,8 @@ class World {
     const PropertyNumbers numbers(value);
     return write({property.index, property.generation, property.world}, object, numbers.x);
   }
-  /// All of them, the library's first, then the host's own in the order of their handles. Names stand as long as the
-  /// properties.
+  /// All of them, the library's first, then the host's own in the order of their handles.
+  /// Names stand as long as the properties.
   std::vector<PropertyInfo> properties() const;
 
   /// A table of the host's own with rows 1 to `rows`, at most 2^28; row 0 pads, as in every table.

@@ -35,8 +35,8 @@
 //   })
 //   stepper.add_kernel(world, {.text = bond::text(), .over = joint_table});
 //
-// Of all rows to one value: PC_SUM, PC_MIN, PC_MAX in a PCPHYS_KERNEL name properties of a table of one row.
-// docs/own-kernels.md
+// Of all rows to one value: PC_SUM, PC_MIN, PC_MAX in a PCPHYS_KERNEL name properties
+// of a table of one row. docs/own-kernels.md
 //
 // Not part of pcphys.h: kernels' text needs macros of short names (precise, PC_REAL, ...).
 #pragma once

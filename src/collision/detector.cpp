@@ -288,8 +288,8 @@ template <class Scalar> bool Detector::passes_unseen(std::uint32_t shape, const 
   return false;
 }
 
-// A body that went its reach and half of its thickness is at most half sunk into what it never saw: the next step finds
-// it.
+// A body that went its reach and half of its thickness is at most half sunk into what it never saw:
+// the next step finds it.
 template <class Scalar> bool Detector::collect_strays(const WorldState& s, const Scalar* before) {
   const Scalar* now = s.tables.data<Scalar>(Buffer::pose);
   bool found = false;

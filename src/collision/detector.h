@@ -329,9 +329,8 @@ class Detector {
   bool strays_ = false;               // some body has
   std::vector<std::uint32_t> trees_;  // by body row: the joint tree that it is free in, or 0
   std::vector<float> fastest_;        // of trees, by that number: the speed of their fastest body [m/s]
-  // of bodies: how far others of their tree may send them in this step; 0: no further
+  // of bodies: how far others of their tree may send them in this step; 0: no further than they go by themselves [m]
   std::vector<float> drawn_;
-  // than they go by themselves [m]
   bool draws_ = false;  // some are
   PairCache pairs_;
   std::vector<std::uint32_t> near_;  // numbers of pairs

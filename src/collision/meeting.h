@@ -83,8 +83,8 @@ void back_to_start(const TwistOf<Scalar>& a, const TwistOf<Scalar>& b, const Sca
   }
 }
 
-/// How two shapes stand at a time of the sub-step, and the manifold there (left as it was where they are too far apart
-/// for one).
+/// How two shapes stand at a time of the sub-step, and the manifold there (left as it was where they are too far
+/// apart for one).
 template <class Scalar, class Find> struct Approach {
   Mover<Scalar> a, b;
   const Scalar* apart;
@@ -125,8 +125,8 @@ struct Met {
 
 /// Conservative advancement from t on to the instant within h [s] at which the shapes come within `near` [m] of each
 /// other, with the manifold there; else that of `seen`, when they were looked at last. As long as they are apart along
-/// the normal that was found last they need no look for another. Bounded: it creeps where shapes turn fast for how they
-/// come together.
+/// the normal that was found last they need no look for another.
+/// Bounded: it creeps where shapes turn fast for how they come together.
 template <class Scalar, class Find>
 Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, Manifold<Scalar>& m, double& seen) {
   constexpr int looks = 16, along = 8;
@@ -147,8 +147,8 @@ Advanced advance(Approach<Scalar, Find>& way, double near, double h, double& t, 
   return Advanced::creeps;
 }
 
-/// When the spheres inside two shapes meet, by when the shapes have; below 0 where they do not. Turning does not move
-/// them.
+/// When the spheres inside two shapes meet, by when the shapes have; below 0 where they do not.
+/// Turning does not move them.
 template <class Scalar, class Find>
 double cores_meet(const Approach<Scalar, Find>& of, double t, double near, double h) {
   ShapeView<Scalar> cores[2] = {*of.a.view, *of.b.view};
@@ -169,8 +169,8 @@ double cores_meet(const Approach<Scalar, Find>& of, double t, double near, doubl
 
 /// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there;
 /// or that of when they were looked at last on ways on which they do not. Where advancement creeps, halving finds an
-/// instant before they overlap at the end, or before what is inside of them meets. What is missed all the same the next
-/// sub-step sees.
+/// instant before they overlap at the end, or before what is inside of them meets.
+/// What is missed all the same the next sub-step sees.
 template <class Scalar, class Find>
 Met meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near, double from, double h,
                 Find&& find, Manifold<Scalar>& m) {

@@ -19,8 +19,8 @@ template <class Scalar> struct ShapeView {
 };
 
 /// Points whose separation is at most `margin` [m]; none when the shapes are farther apart (then the normal means
-/// nothing). `hint` is 0 at first and then what the last call for this pair left there; it saves time and changes
-/// nothing else.
+/// nothing). `hint` is 0 at first and then what the last call for this pair left there;
+/// it saves time and changes nothing else.
 void narrow(const ShapeView<float>& a, const ShapeView<float>& b, float margin, std::uint32_t& hint,
             Manifold<float>& out);
 void narrow(const ShapeView<double>& a, const ShapeView<double>& b, double margin, std::uint32_t& hint,

@@ -23,8 +23,8 @@ template <class Scalar> struct PairBatch {
 };
 
 /// Writes the manifolds of pairs within their margins, as seen from a's body, and their places in the batch, in
-/// ascending order; returns how many. One without points: the pair is for `narrow`. `out` and `places` have room for
-/// all pairs.
+/// ascending order; returns how many. One without points: the pair is for `narrow`.
+/// `out` and `places` have room for all pairs.
 template <class Scalar>
 using NarrowBatch = std::uint32_t (*)(const PairBatch<Scalar>&, Manifold<Scalar>* out, std::uint32_t* places);
 

@@ -65,8 +65,8 @@ bool Neighbours::find_pairs(std::span<const std::uint32_t> moving, double cutoff
   });
 }
 
-/// Lists in the order of ids, by two counting sorts: of pairs by the place of the other, then by the body whose list it
-/// is.
+/// Lists in the order of ids, by two counting sorts: of pairs by the place of the other,
+/// then by the body whose list it is.
 void Neighbours::list(std::span<const std::uint32_t> places) {
   const std::size_t count = then_.size();
   const auto each = [&](const auto& visit) {

@@ -1,5 +1,5 @@
-// Pairs of the narrow phase that go in lanes, gathered by kind, and their manifolds, found by the pair's place in its
-// batch.
+// Pairs of the narrow phase that go in lanes, gathered by kind, and their manifolds,
+// found by the pair's place in its batch.
 #pragma once
 #include <algorithm>
 #include <array>

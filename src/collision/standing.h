@@ -27,8 +27,8 @@ struct Standing {
   std::uint8_t together = 0;
 };
 
-/// The motion of a contact's bodies since the step began (buffer `delta`): b's displacement against a's, and how each
-/// turned.
+/// The motion of a contact's bodies since the step began (buffer `delta`): b's displacement against a's,
+/// and how each turned.
 struct Moved {
   std::array<double, 3> apart{}, turned_a{}, turned_b{};
 };

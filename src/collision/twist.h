@@ -10,8 +10,8 @@ namespace pcphys {
 inline constexpr float wild_turn = 100, largest_turn = 2;
 
 template <class Real> struct TwistOf {
-  // velocity of the centre [m/s], angular velocity [rad/s], world axes; |v|, |w|, and the part of w across the body's y
-  // axis
+  // velocity of the centre [m/s], angular velocity [rad/s], world axes;
+  // |v|, |w|, and the part of w across the body's y axis
   Real v[3] = {}, speed = 0, w[3] = {}, turn = 0, across = 0;
   Real unused[3] = {};  // three quads: narrow_lanes.h fills them
 

@@ -80,8 +80,8 @@ void place_shape(const Scalar* row, ShapeKind kind, const HullData* hull, bool c
   view.q[3] = q[3] * l[3] - q[0] * l[0] - q[1] * l[1] - q[2] * l[2];
 }
 
-/// A hull's box about `centre` (of its body), by its vertices, grown by `more`. Boxes of other shapes:
-/// narrow_bounds.inl.
+/// A hull's box about `centre` (of its body), by its vertices, grown by `more`.
+/// Boxes of other shapes: narrow_bounds.inl.
 template <class Scalar> Aabb box_of_hull(const ShapeView<Scalar>& view, Vec3 centre, float more) {
   const float x = float(view.q[0]), y = float(view.q[1]), z = float(view.q[2]), w = float(view.q[3]);
   const float r[3][3] = {{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},

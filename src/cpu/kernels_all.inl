@@ -54,8 +54,8 @@ using element_island_labels = uint;
 #undef PC_WRITE
 #undef PC_KERNEL
 
-// each kernel's text in the namespace of its name; written by pcphys_list_kernels, as C++ cannot include by a macro
-// list
+// each kernel's text in the namespace of its name; written by pcphys_list_kernels,
+// as C++ cannot include by a macro list
 #include "kernel_texts.inl"
 
 // loops, by domain

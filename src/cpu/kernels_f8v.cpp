@@ -1,5 +1,5 @@
-// The kernels for eight lanes of float with AVX-512VL: twice the registers, and masks of their own (no fused
-// multiply-add).
+// The kernels for eight lanes of float with AVX-512VL: twice the registers,
+// and masks of their own (no fused multiply-add).
 #ifdef PCPHYS_HAVE_X86_LANES
 #define PC_SCALAR float
 #define PC_LANES 8

@@ -8,8 +8,8 @@
 namespace pcphys {
 
 /// A text of one line with each statement in a line of its own. The texts of PCPHYS_KERNEL are one line: the
-/// preprocessor joins them, and only where something is to be said of them their own lines are looked up
-/// (plan/kernel_lines.h).
+/// preprocessor joins them, and only where something is to be said of them their own lines are
+/// looked up (plan/kernel_lines.h).
 std::string by_statement(std::string_view line);
 /// What the name of a file ends in whose lines are such statements.
 inline constexpr std::string_view counted_by_statement = " statement by statement";

@@ -46,8 +46,8 @@ std::uint32_t limit(GLenum name) {
   return std::uint32_t(value);
 }
 
-/// `notified`: a reset of the device is told (glGetGraphicsResetStatus); otherwise results would go on as if nothing
-/// was.
+/// `notified`: a reset of the device is told (glGetGraphicsResetStatus);
+/// otherwise results would go on as if nothing was.
 EGLContext create_context(EGLDisplay display, EGLConfig config, int major, int minor, bool notified) {
   std::vector<EGLint> wanted;
   if (major != 0)

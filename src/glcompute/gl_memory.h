@@ -1,5 +1,5 @@
-// What programs bind: storage buffers, and the blocks of numbers that kernels are told besides. The context must be
-// current.
+// What programs bind: storage buffers, and the blocks of numbers that kernels are told besides.
+// The context must be current.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -65,8 +65,8 @@ std::string row_of(const OwnKernel& k, Buffer list) {
 std::string four_of(const std::string& number_type) {
   return number_type == "Real" ? "Real4" : (number_type == "float" ? "" : number_type.substr(0, 1)) + "vec4";
 }
-/// What each invocation reads of another row, four numbers of a type side by side: one access to shared memory fetches
-/// them.
+/// What each invocation reads of another row, four numbers of a type side by side:
+/// one access to shared memory fetches them.
 class Tile {
  public:
   explicit Tile(const OwnKernel& k) : k_(k) {}
@@ -105,8 +105,8 @@ class Tile {
   const OwnKernel& k_;
 };
 
-/// Sums over one tile. In most tiles, which are full and do not hold the row itself, nothing need be asked of each
-/// pair.
+/// Sums over one tile. In most tiles, which are full and do not hold the row itself,
+/// nothing need be asked of each pair.
 std::string sum_tile(const OwnKernel& k, const Tile& tile) {
   const OwnText own(k);
   std::string pair;

@@ -1,5 +1,5 @@
-// Text of what stands between the two programs of a kernel of the host's own: sums in variables, and in a block of
-// their own.
+// Text of what stands between the two programs of a kernel of the host's own: sums in variables,
+// and in a block of their own.
 #pragma once
 #include <functional>
 #include <string>

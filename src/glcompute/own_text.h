@@ -16,8 +16,8 @@ class OwnText {
   std::string blocks(std::span<const Access> accesses) const;
   /// Uniforms of the parameters, and what the kernel's text writes as variables.
   std::string variables() const;
-  /// The head of the function with the host's text: what it reads is const, what it writes stands outside and is
-  /// precise.
+  /// The head of the function with the host's text: what it reads is const, what it writes stands outside
+  /// and is precise.
   std::string function() const;
   /// A call of it; what it reads has the names that `load` gave it.
   std::string call() const;

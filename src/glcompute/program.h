@@ -34,8 +34,8 @@ Result<OwnProgram> load_kernel(const OwnKernel& kernel, const SourceOptions& opt
 Result<KernelProgram> load_kernel(Kernel kernel, const SourceOptions& options, const ProgramCache& cache);
 
 /// Runs the program that is bound over [begin, end), in pieces of as many work groups as the device takes; pieces need
-/// no barrier. `range_location`: of its pc_range; `rows`: work groups in the second dimension; `each`: how many a work
-/// group does.
+/// no barrier. `range_location`: of its pc_range; `rows`: work groups in the second dimension;
+/// `each`: how many a work group does.
 void dispatch(std::int32_t range_location, std::uint32_t begin, std::uint32_t end, const GlLimits& limits,
               std::uint32_t rows = 1, std::uint32_t each = gl_work_group);
 

@@ -73,9 +73,8 @@ std::string SourceText::literal(double value) const {
   char digits[64];
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const double scaled = std::ldexp(value, 10);
-  const bool plain =
-      // exact in few digits
-      (bits >> 52 & 0x7ffu) < 1073u && static_cast<double>(static_cast<std::int64_t>(scaled)) == scaled;
+  // exact in few digits
+  const bool plain = (bits >> 52 & 0x7ffu) < 1073u && static_cast<double>(static_cast<std::int64_t>(scaled)) == scaled;
   if (precision_ == Precision::f64 && plain) {
     std::string text(digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed).ptr);
     if (text.find('.') == text.npos) text += ".0";

@@ -28,7 +28,7 @@ PC_FN Quaternion pc_free_rotation(Quaternion q, Vec3 l, Quad inverse, Real h) {
 
 #include "turned.inl"
 
-// Of the orientation: what it was, and what was added to it.
+// `before` and `change` are of the orientation: what it was, and what was added to it.
 struct Moved {
   Vec3 step;
   Quaternion before;

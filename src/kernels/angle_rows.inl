@@ -1,5 +1,7 @@
-// What the angle rows of single joints and of trees share: the nearer of two limits, and the speed that is asked of a
-// row. Sign: +1 at the lower limit, -1 at the upper one.
+// What the angle rows of single joints and of trees share: the nearer of two limits,
+// and the speed that is asked of a row.
+
+// `sign`: +1 at the lower limit, -1 at the upper one.
 struct NearerLimit {
   Real slack;
   Real sign;

@@ -1,5 +1,5 @@
-// What kernels that move a body hold of it: rows of motion and the last two of velocity_parts; of pose; what acts on
-// it.
+// What kernels that move a body hold of it: rows of motion and the last two of velocity_parts; of pose;
+// what acts on it.
 struct BodyMotion {
   Quad linear;
   Quad angular;

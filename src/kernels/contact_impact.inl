@@ -293,8 +293,8 @@ PC_FN FourRows pc_stopping_impulses(PC_IO Slot m, Closings c, Mask hits) {
                  pc_select(hits, j.r3, zero));
 }
 
-// When the rows close, by the mean of their impulses j of the sum `whole`. None comes before one that a body of it had
-// already.
+// When the rows close, by the mean of their impulses j of the sum `whole`.
+// None comes before one that a body of it had already.
 PC_FN Real pc_instant(PC_IO Encounter x, Closings c, FourRows j, Real whole) {
   precise Real late = j.r0 * c.c0.t + j.r1 * c.c1.t + j.r2 * c.c2.t + j.r3 * c.c3.t;
   precise Real mean = late * pc_inverse_or_zero(whole);

@@ -1,6 +1,6 @@
 // pc_apply, but where one body stands, or is by far the heavier, what rounding drops from velocities stays in their low
-// parts, as of forces: what slides or rests takes up the same share of its speed each sub-step, rounded the same way
-// each time.
+// parts, as of forces: what slides or rests takes up the same share of its speed each sub-step,
+// rounded the same way each time.
 PC_FN void pc_kick(PC_IO Index i, PC_INOUT(BodyState) b, Vec3 impulse, Vec3 torque, Real sign, Mask uneven) {
   precise Real mass = b.inverse_mass * sign;
   precise Real response = b.response * sign;

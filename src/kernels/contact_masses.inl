@@ -15,10 +15,11 @@ struct Responses {
   Mask these;  // others keep theirs
 #endif
   Sym3 l;  // of (v1, v2, vn) to impulses along t1, t2, n
+  // of the turning about t1, t2 and n to the same impulses; and of (v1, v2, vn) to couples
   Vec3 w1;
   Vec3 w2;
-  Vec3 wn;  // of the turning about t1, t2 and n to the same impulses; and of (v1, v2, vn) to couples
-  Sym3 a;   // of the turning to couples
+  Vec3 wn;
+  Sym3 a;  // of the turning to couples
 };
 
 // The smaller of the responses along the normal and along the tangents, of which it is the harmonic mean, whichever way

@@ -1,6 +1,6 @@
 #include "contact_carried.inl"
-// How the sides of a contact move against each other, without what is pending in trees. Needs contact_arms.inl,
-// contact_twist.inl, contact_shift.inl.
+// How the sides of a contact move against each other, without what is pending in trees.
+// Needs contact_arms.inl, contact_twist.inl, contact_shift.inl.
 struct Meeting {
   BodyState a;
   BodyState b;

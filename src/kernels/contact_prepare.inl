@@ -215,8 +215,8 @@ PC_FN void pc_store_ways(PC_IO Slot m, Anew anew, Quad material, Real weight) {
   pc_st_new(PC_PASS m, anew.rows, ROW_ACTS, pc_select(flies, zero, pc_select(anew.of_step, PC_REAL(1.0), sent)));
 }
 
-// How fast a point approached, for restitution: the fastest of the step. What contact_impact has put in its place
-// stays.
+// How fast a point approached, for restitution: the fastest of the step.
+// What contact_impact has put in its place stays.
 PC_FN void pc_keep_approach(PC_IO Slot m, uint i, Anew anew, Real approach) {
   Real before = pc_select(anew.of_step, PC_REAL(0.0), PC_LD(contact_rows, m, ROW_APPROACH + i));
   Real fastest = pc_min(pc_min(approach, PC_REAL(0.0)), before);
@@ -305,8 +305,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad moved_b = PC_GATHER(delta, ib, 0u);
   BodyState a = pc_body_state(PC_PASS ia);
   BodyState b = pc_body_state(PC_PASS ib);
-  // what came apart keeps the rows that it was struck by (contact_touch), but in trees, where all rows with mass are
-  // solved
+  // what came apart keeps the rows that it was struck by (contact_touch), but in trees,
+  // where all rows with mass are solved
   Mask jointed = material.s < zero;
   anew.over = seen.s > PC_REAL(1.0);
   anew.rows = pc_and(anew.all, pc_or(anew.of_step, pc_or(jointed, seen.s < PC_REAL(2.0))));

@@ -1,5 +1,5 @@
-// Fills contact_reach, and sums up answers (`turns`: 1 for couples, 0 for impulses). Needs tree_reach.inl,
-// node_operator.inl.
+// Fills contact_reach, and sums up answers (`turns`: 1 for couples, 0 for impulses).
+// Needs tree_reach.inl, node_operator.inl.
 PC_FN Six pc_reach_joint(PC_IO Slot s, uint row, Link n, Six x) {
   Vec3 t = pc_on_joint(n, x);
   pc_st3_reach(PC_PASS s, row * 3u, pc_lower_mul(n.factor, t));

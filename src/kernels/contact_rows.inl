@@ -19,13 +19,13 @@ const uint ROW_SHARE = 35u;  // of body a in what the arms must shift by, see pc
 const uint ROW_APPROACH = 36u;
 // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
 const uint ROW_K = 40u;
-// 1 where its rows are visited, 2 where in this sub-step joints have sent its shapes together, 0 where they are left
-// alone for now
+// 1 where its rows are visited, 2 where in this sub-step joints have sent its shapes together,
+// 0 where they are left alone for now
 const uint ROW_ACTS = 41u;
 // the same place until contact_warm, where shapes meet in flight: when in this sub-step they did; 0 before
 const uint ROW_MET = 41u;
-// contact_impact's: below 0 none of it (-1: a body hangs on joints, -2: it acts no longer), 0 where it bounces, above 0
-// always
+// contact_impact's: below 0 none of it (-1: a body hangs on joints, -2: it acts no longer),
+// 0 where it bounces, above 0 always
 const uint ROW_IMPACT = 42u;
 const uint ROW_PATH = 43u;  // b's way against a since the step began, when the rows were found: arms are of there
 #ifndef PC_FRICTIONLESS     // what follows is friction's: where nothing has any, rows end here (frictionless_rows)
@@ -37,8 +37,8 @@ const uint ROW_TWIST = 53u;   // effective mass of the twist
 const uint ROW_C = 54u;       // response of V_n, W_1, W_2 to friction 1, 2 and twist
 const uint ROW_RADIUS = 63u;  // lever of the twist friction: root mean square distance of the points
 #endif
-// impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7, largest normal impulses of the step
-// 8..11
+// impulses: normal 0..3, friction 4 5, twist 6, load of the sub-step before 7,
+// largest normal impulses of the step 8..11
 #ifdef PC_FRICTIONLESS
 const uint IMPULSES = 4u;
 #else

@@ -70,8 +70,8 @@ PC_FN Real pc_settled_row(PC_IO Real v, Real s, Real mass, Real now, Real pace, 
   precise Real next = now + (pc_normal_row(PC_PASS v, s, mass, now, loose) - now) * pace;
   return pc_snap(next);
 }
-// One round of the normal rows, which so far have changed by `e` since the visit began. `v`: the twist before that,
-// after friction.
+// One round of the normal rows, which so far have changed by `e` since the visit began.
+// `v`: the twist before that, after friction.
 PC_FN FourRows pc_settle_normals(PC_IO Slot m, Settling r, Twist v, FourRows gap, Real loose, FourRows now,
                                  FourRows e) {
   FourRows own = r.own;

@@ -11,8 +11,8 @@
 #else
 #define PC_MOST_PUSH PC_INFO(row_push_speed)
 #endif
-// Of what would close a gap within the sub-step, what is more than rounding: than a millionth of what gravity closes in
-// one.
+// Of what would close a gap within the sub-step, what is more than rounding:
+// than a millionth of what gravity closes in one.
 PC_FN Real pc_beyond_rounding(PC_IO Real gap_rate) {
   precise Real beyond = gap_rate - PC_INFO(least_load) * PC_LITTLE;
   return beyond;
@@ -41,8 +41,8 @@ PC_FN Real pc_row_room(PC_IO Real vn, Real s, Real mass, Real impulse, Real loos
 // close the gap within this sub-step. Closed ones push the overlap out, as a soft constraint: they let go of a share of
 // their impulse. Where one body stands, or one hangs on joints, that is a share of what the manifold's load goes beyond
 // a few weights of what answers it (`loose`), so that what lies alone does not sink, also where one side of it carries
-// more; and together of no more than twice the load of the sub-step before: what has just come is a blow, which is
-// stopped.
+// more; and together of no more than twice the load of the sub-step before: what has just come is a blow,
+// which is stopped.
 PC_FN Real pc_row_change(PC_IO Real vn, Real s, Real mass, Real impulse, Real loose) {
   precise Real gap_rate = s * PC_INFO(inverse_h);
   // (what the row lets go of and what it pushes out, together no faster than the push: any load is held)

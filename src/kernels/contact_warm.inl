@@ -1,5 +1,5 @@
-// Start of a sub-step's impulses between free bodies: what lasts of the last ones acts again (warm start), at the
-// present arms.
+// Start of a sub-step's impulses between free bodies: what lasts of the last ones acts again (warm start),
+// at the present arms.
 #include "contact_rows.inl"
 #include "contact_response.inl"
 #include "contact_warming.inl"

@@ -1,17 +1,14 @@
-// Springs and dampers of motors and joints as rows: an impulse P = -(push + gamma u'), u' the velocity that the solve
-// finds.
+// Springs and dampers of motors and joints as rows: an impulse P = -(push + gamma u'),
+// u' the velocity that the solve finds.
 //
-// With k the stiffness, c the damping, x how far from rest, u the velocity of the last sub-step, m the inertia that the
-// row feels:
-//   P = -h k (x + beta h u') - h c (u + u' + sigma (u' - u)) / 2,   beta = s^2 / (1 + s^2), s = h^2 k / m,   sigma
-//                                                                   likewise of h c / m Where the sub-step resolves the
-//                                                                   spring this is the leapfrog with a trapezoidal
-//                                                                   damper, of second order; where it does not it is
-//                                                                   the implicit Euler method, which takes energy out
-//                                                                   at any stiffness. Stable for all s, since s (1 - 2
-//                                                                   beta) < 4. `kick` is h; h / 2 in the first sub-step
-//                                                                   after a velocity was set, since stored velocities
-//                                                                   lag half a sub-step.
+// With k the stiffness, c the damping, x how far from rest, u the velocity of the last sub-step,
+// m the inertia that the row feels:
+//   P = -h k (x + beta h u') - h c (u + u' + sigma (u' - u)) / 2,
+//   beta = s^2 / (1 + s^2), s = h^2 k / m,   sigma likewise of h c / m
+// Where the sub-step resolves the spring this is the leapfrog with a trapezoidal damper, of second order; where it does
+// not it is the implicit Euler method, which takes energy out at any stiffness. Stable for all s, since
+// s (1 - 2 beta) < 4. `kick` is h; h / 2 in the first sub-step after a velocity was set, since stored velocities lag
+// half a sub-step.
 struct DriveRow {
   Real gamma;
   Real push;

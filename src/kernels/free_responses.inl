@@ -24,8 +24,8 @@ PC_FN Responses pc_free_responses(BodyState a, BodyState b, Vec3 ra, Vec3 rb, Ve
   Vec3 h2 = pc_add(ha2, hb2);
   Vec3 hn = pc_add(han, hbn);
 
-  // responses in the contact frame: of the centre's velocity to impulses, of the turning to impulses, of the turning to
-  // couples
+  // responses in the contact frame: of the centre's velocity to impulses, of the turning to impulses,
+  // of the turning to couples
   precise Real k11 = k + pc_dot(ga1, ha1) + pc_dot(gb1, hb1);
   precise Real k12 = pc_dot(ga1, ha2) + pc_dot(gb1, hb2);
   precise Real k22 = k + pc_dot(ga2, ha2) + pc_dot(gb2, hb2);

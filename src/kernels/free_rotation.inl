@@ -5,13 +5,13 @@
 // rest; the other two are rotations about body axes, c about that of the smallest moment. They are composed in fourth
 // order where both turn by more than PC_FINE_TURN, and below, where no more than rounding is to be had, as half a, c,
 // half a (Strang). L is exact. Two equal moments: the middle one is among them, one term vanishes and the motion is
-// exact; three equal moments: one rotation. (McLachlan and Quispel, Splitting methods, Acta Numerica 11, 2002, section
-// 3.) A body that turns against its middle axis by more than a radian does so in up to 16 such parts: the splitting
-// alone keeps
-// |L| but finds other axes there, and a box gained half its energy. Beyond 8 radians, where a pose no longer tells how
-// far it turned, it moves along its polhode as if it were 8. What a turn of more than PC_KEPT_TURN is off in energy is
-// turned back. Of smaller ones the energy only oscillates, by parts in 1e9 (single: 1e6), and to turn roundings back
-// would be a drift.
+// exact; three equal moments: one rotation. (McLachlan and Quispel, Splitting methods, Acta Numerica 11, 2002,
+// section 3.)
+// A body that turns against its middle axis by more than a radian does so in up to 16 such parts: the splitting alone
+// keeps |L| but finds other axes there, and a box gained half its energy. Beyond 8 radians, where a pose no longer
+// tells how far it turned, it moves along its polhode as if it were 8. What a turn of more than PC_KEPT_TURN is off in
+// energy is turned back. Of smaller ones the energy only oscillates, by parts in 1e9 (single: 1e6), and to turn
+// roundings back would be a drift.
 
 // The squares of these angles: 1e-5 and 0.02 rad, and 1.4e-3 and 0.1 in single precision; and what counts as rounding.
 #ifdef PC_DOUBLE
@@ -26,8 +26,8 @@
 // Of a fast turn, how far it is told [rad], and in how many parts it is made at most.
 #define PC_FASTEST_TURN PC_REAL(8.0)
 #define PC_MOST_PARTS PC_REAL(16.0)
-// Shares of the fourth-order composition (pc_composed_turns), in the names of its authors, and how many pairs of turns
-// it has.
+// Shares of the fourth-order composition (pc_composed_turns), in the names of its authors,
+// and how many pairs of turns it has.
 #define PC_FINE_XI PC_REAL(0.1786178958448091)
 #define PC_FINE_CHI PC_REAL(-0.06626458266981849)
 #define PC_FINE_LAMBDA PC_REAL(-0.2123418310626054)

@@ -1,8 +1,8 @@
 // Angles between the two frames of a joint (section 9.4 of the original): R = axes_a* axes_b is split into a swing and
 // a roll about x, R = swing * roll:
 //   roll = 2 atan(R_x / R_w); swing = 2 atan(|S_yz| / S_w) (S_y, S_z) / |S_yz| = (pitch, yaw).
-// A cone limits the angle between the two x axes. Each angle grows at the rate of its axis times the relative angular
-// velocity.
+// A cone limits the angle between the two x axes. Each angle grows at the rate of its axis times
+// the relative angular velocity.
 #include "roll_axis.inl"
 // Half of 154 degrees has this cosine.
 #define PC_LEAST_HALF_COSINE PC_REAL(0.2236)

@@ -28,8 +28,8 @@ PC_FN Real pc_soft_change(PC_IO Slot m, uint i, Real u, Real total) {
   precise Real all = PC_REAL(1.0) + gamma * PC_LD(joint_rows, m, JOINT_DRIVE_ANSWER + i);
   return -pc_div(lack, all);
 }
-// The spring's three rows, then the motor's, from the relative angular velocity w; answers their couple. `both`: how w
-// answers one.
+// The spring's three rows, then the motor's, from the relative angular velocity w; answers their couple.
+// `both`: how w answers one.
 PC_FN Vec3 pc_drive_steps(PC_IO Slot m, Vec3 w, Sym3 both) {
   Real kind = PC_LD(joint_rows, m, JOINT_DRIVE);
   Mask driven = pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));

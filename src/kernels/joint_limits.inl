@@ -35,8 +35,8 @@ PC_FN AngleStep pc_angle_step(PC_IO Slot m, uint row, Vec3 w, Real remembered, S
   s.w = pc_add(w, pc_sym_mul(both, s.couple));
   return s;
 }
-// All three, one after the other, from relative angular velocity w; impulses in `angle`. `both`: how w answers a
-// couple.
+// All three, one after the other, from relative angular velocity w; impulses in `angle`.
+// `both`: how w answers a couple.
 PC_FN Vec3 pc_angle_steps(PC_IO Slot m, Vec3 w, Sym3 both, PC_INOUT(Quad) angle) {
   AngleStep s0 = pc_angle_step(PC_PASS m, 0u, w, angle.v.x, both);
   AngleStep s1 = pc_angle_step(PC_PASS m, 1u, s0.w, angle.v.y, both);

@@ -7,11 +7,12 @@
 // and tree_contact are those without and with a body of a tree, free_joint and tree_joint the same of joints that close
 // loops), tree (a joint tree a lane, blocks of trees of one shape; tree_nodes where a work group may share one that
 // stands alone, see nodes.inl), net (a net of springs a lane, blocks of nets of one shape), row (every row of bodies),
-// edge (two bodies that act on each other). stage: whose backend runs it; islands: a device's, in place of the host's
-// union-find (plan/islands.h). accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in GLSL;
-// PC_WRITE(buffer) allows both directions. At most eight of them (the GL 4.3 minimum). Buffers beside those of
-// properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of a slot), `<domain>_order` (a slot's
-// table row), and the slots' scratch listed below.
+// edge (two bodies that act on each other).
+// stage: whose backend runs it; islands: a device's, in place of the host's union-find (plan/islands.h).
+// accesses: PC_READ(buffer) gives `const T*` in C++ and `readonly` in GLSL; PC_WRITE(buffer) allows both directions.
+// At most eight of them (the GL 4.3 minimum).
+// Buffers beside those of properties.inl: `bodies` (rows to visit), `<domain>_ends` (the two body rows of a slot),
+// `<domain>_order` (a slot's table row), and the slots' scratch listed below.
 //
 //   PC_ROWS(domain, buffer, reals)            array of structures of arrays, the backend's width; contact_reach has
 //                                             slots for the steps of a contact's way through trees (tree_reach.inl)

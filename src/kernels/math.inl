@@ -38,8 +38,8 @@ PC_FN Quaternion pc_quaternion(Vec3 v, Real w) {
 PC_FN Vec3 pc_zero3() { return Vec3(PC_REAL(0.0), PC_REAL(0.0), PC_REAL(0.0)); }
 
 // ---- numbers ------------------------------------------------------------------------------------------
-// Kernels hold 0, 0.5, 1 and 2 bare. Every other number has a name: here, or in the one file that needs it
-// (tools/check_kernels.py).
+// Kernels hold 0, 0.5, 1 and 2 bare. Every other number has a name:
+// here, or in the one file that needs it (tools/check_kernels.py).
 #define PC_THIRD PC_REAL(0.333333333333333333)
 #define PC_SIXTH PC_REAL(0.16666666666666666667)
 #define PC_TWELFTH PC_REAL(0.083333333333333333)

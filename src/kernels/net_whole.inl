@@ -1,5 +1,5 @@
 // A net as one rigid body: where its centre is, and how it answers.
-// Light: 1 / mass; loose: inverse inertia, in units of 1 / unit.
+// `light`: 1 / mass; `loose`: inverse inertia, in units of 1 / unit.
 struct Whole {
   Vec3 centre;
   Real light;

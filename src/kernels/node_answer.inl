@@ -19,12 +19,14 @@ PC_FN Sym6 pc_response_at(Sym6 g, Vec3 r) {
   Sym6 p;
   p.c = pc_mat3(pc_add(g.c.a, Vec3(k0.x, k1.x, k2.x)), pc_add(g.c.b, Vec3(k0.y, k1.y, k2.y)),
                 pc_add(g.c.c, Vec3(k0.z, k1.z, k2.z)));
+  // columns of B c^T
   Vec3 b0 = pc_cross(g.c.a, r);
   Vec3 b1 = pc_cross(g.c.b, r);
-  Vec3 b2 = pc_cross(g.c.c, r);  // columns of B c^T
+  Vec3 b2 = pc_cross(g.c.c, r);
+  // rows of c' B^T
   Vec3 f0 = pc_cross(p.c.a, r);
   Vec3 f1 = pc_cross(p.c.b, r);
-  Vec3 f2 = pc_cross(p.c.c, r);  // rows of c' B^T
+  Vec3 f2 = pc_cross(p.c.c, r);
   precise Real xx = g.l.xx + b0.x + f0.x;
   precise Real xy = g.l.xy + b1.x + f0.y;
   precise Real xz = g.l.xz + b2.x + f0.z;

@@ -1,5 +1,5 @@
-// What is pending in a tree comes down to a body, and impulses on it go up to the root. Needs tree_path.inl,
-// node_operator.inl.
+// What is pending in a tree comes down to a body, and impulses on it go up to the root.
+// Needs tree_path.inl, node_operator.inl.
 #include "node_push.inl"
 
 PC_FN Six pc_pending(PC_IO Way w, Slot m, uint side) {

@@ -1,5 +1,5 @@
-// How the two sides of a slot answer impulses, through the ways of tree_path.inl. Needs node_operator.inl,
-// body_state.inl.
+// How the two sides of a slot answer impulses, through the ways of tree_path.inl.
+// Needs node_operator.inl, body_state.inl.
 #include "node_answer.inl"
 
 // Of one side, at its arm: as a body among joints, or a free one; a body of a tree answers nothing but with it.

@@ -53,7 +53,7 @@ PC_FN Motion pc_hinged(Hinge g, Motion start, Way way) {
 
 // A hinge's limit that it comes to within the sub-step stops it, or throws it back, at the instant at which it is there
 // (tree_prepare keeps its row from the solve until then).
-// Sense: +1 where the slack grows with the angle, else -1; back: restitution.
+// `sense`: +1 where the slack grows with the angle, else -1; `back`: restitution.
 struct Stop {
   Real slack;
   Real sense;

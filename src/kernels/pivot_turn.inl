@@ -6,8 +6,8 @@
 //
 // Stored velocities are half a kick behind the pose, as everywhere, but u is w x r at the pose's time and not the mean
 // of the sub-step: L + m r x u is then the momentum about the pin at any time, whatever impulses came, and what
-// rounding loses of it stays in the low part. `advance` is given nothing to do; pivot_settle brings the velocities
-// back.
+// rounding loses of it stays in the low part. `advance` is given nothing to do;
+// pivot_settle brings the velocities back.
 #define PC_NO_PARENTS
 #include "tree_rows.inl"
 #undef PC_NO_PARENTS
@@ -41,8 +41,8 @@ PC_FN Vec3 pc_about_pin(Pivot p, Vec3 r, Vec3 u, Vec3 l) {
   Vec3 orbit = pc_cross(r, u);
   return pc_madd(l, orbit, p.mass);
 }
-// The same with what the sum rounds away: it is formed anew in every sub-step, and what it lost would be lost a million
-// times.
+// The same with what the sum rounds away: it is formed anew in every sub-step,
+// and what it lost would be lost a million times.
 PC_FN TwoSum pc_sum_about_pin(Pivot p, Vec3 r, Vec3 u, Vec3 l) {
   return pc_two_sum(pc_scale(pc_cross(r, u), p.mass), l);
 }
@@ -95,8 +95,8 @@ PC_FN Motion pc_kick(Motion m, Vec3 torque, Real time) {
   return o;
 }
 PC_FN Quaternion pc_facing(Motion m) { return pc_quaternion(m.at.q.v, m.at.q.s); }
-// The frame is that of the principal axes about the pin; what the turns change of it is summed, and brought to its
-// length once.
+// The frame is that of the principal axes about the pin; what the turns change of it is summed,
+// and brought to its length once.
 PC_FN Motion pc_swing_on(Pivot p, Motion start, Real h) {
   Motion m = start;
   Quad about = pc_quad(p.inverse, p.middle);
@@ -159,8 +159,8 @@ PC_FN Pivot pc_pivot(PC_IO Slot n, Index body, Index joint, Real inverse_mass) {
   return p;
 }
 
-// How far a hinge is turned out of its locked angles, as a rotation vector that turns it back; of it what may be closed
-// now.
+// How far a hinge is turned out of its locked angles, as a rotation vector that turns it back;
+// of it what may be closed now.
 PC_FN Vec3 pc_straightening(PC_IO Slot n) {
   Vec3 tilt = pc_zero3();
   if (!PC_ANY(pc_has_rows(PC_PASS n))) return tilt;  // lint: allow (zeros otherwise)
@@ -294,8 +294,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Vec3 axis = pc_hinge_axis(p, q);
   Vec3 torque = pc_turning_torque(p, r, axis);
   Vec3 given = pc_given(PC_PASS body, p, r);
-  // in phase with the pose: it has had a whole kick and was half a one behind
   precise Real half_h = h * PC_REAL(0.5);
+  // in phase with the pose: it has had a whole kick and was half a one behind
   precise Real back = -half_h;
   Motion start = pc_kick(pc_pivot_start(PC_PASS n, body, p, r, given), torque, back);
   Real pressed = PC_REAL(0.0);

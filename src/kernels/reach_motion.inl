@@ -1,6 +1,6 @@
 // What is pending in trees moves a contact's rows, and its impulses push the trees, through contact_reach. Needs
-// tree_reach.inl. `turning`: how far behind a slot that of its couples stands; 0 where they do not matter
-// (reach_turning.inl).
+// tree_reach.inl. `turning`: how far behind a slot that of its couples stands;
+// 0 where they do not matter (reach_turning.inl).
 #include "node_push.inl"
 
 PC_FN Vec3 pc_rows_rate(PC_IO Slot s, Vec3 z) {
@@ -34,10 +34,10 @@ PC_FN Six pc_with_pending(PC_IO Way w, Slot m, uint side, uint turning, Six v) {
   return v;
 }
 PC_FN Vec3 pc_pending_now(PC_IO Slot s, Index node, uint k, bool again) {
-  if (again) {
+  if (again) {  // lint: allow (the same for all lanes)
     Quad z = PC_GATHER(node_pending, node, k);
     return z.v;
-  }  // lint: allow (the same for all lanes)
+  }
   return pc_ld3_reach(PC_PASS s, REACH_PENDING);
 }
 PC_FN Vec3 pc_with_rows(PC_IO Slot s, Vec3 z, Vec3 f) {

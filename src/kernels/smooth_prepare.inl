@@ -21,8 +21,8 @@ PC_FN void pc_smooth_mass(PC_IO Slot n) {
   PC_SCATTER_IF(moments.s > PC_REAL(0.0), velocity_parts, body, 3u, low);
 }
 PC_FN void pc_smooth_joint(PC_IO Tree t, Slot n, uint k) {
-  // quads of joint_solved: 0 of body a, 2 of body b
   Index joint = PC_ENDS(tree_ends, n, 1u);
+  // quads of joint_solved: 0 of body a, 2 of body b
   uint b = pc_is_flipped(PC_PASS t, k);
   uint c_at = (1u - b) * 2u;
   uint p_at = b * 2u;

@@ -204,8 +204,8 @@ PC_FN Vec3 pc_smooth_swing(Turn turn, Vec3 r) {
   precise Vec3 d = s * turn.q.w + pc_cross(turn.q.v, s);
   return d;
 }
-// How far a node moves: with its parent, by what both arms swing, and by what closes the gap. Its arms and velocity at
-// the end.
+// How far a node moves: with its parent, by what both arms swing, and by what closes the gap.
+// Its arms and velocity at the end.
 PC_FN void pc_smooth_follow(PC_IO Slot n, Slot up) {
   Index body = PC_ENDS(tree_ends, n, 0u);
   Index above = PC_ENDS(tree_ends, up, 0u);

@@ -1,5 +1,5 @@
-// The stored velocity u is half a sub-step behind the position. With F the drag, a the acceleration, phi and phi2 of F
-// h (1 and 1/2 without drag) and e = e^(-F h), motion between impulses has
+// The stored velocity u is half a sub-step behind the position. With F the drag, a the acceleration, phi and phi2
+// of F h (1 and 1/2 without drag) and e = e^(-F h), motion between impulses has
 //   u = v + h (phi2 - phi) / e (a - F v),   v = u + h (phi - phi2) / phi (a - F u)
 // where v is the velocity in phase with the position: then the first sub-step's u' = e u + a h phi is its exact mean
 // velocity phi v + a h phi2 (without drag u = v - a h / 2, the half kick; Hairer, Lubich, Wanner, Geometric
@@ -7,10 +7,8 @@
 // * A velocity that was just set is in phase.
 // * When the sub-step changes from h0 to h: back into phase by h0, out of it by h; and what impulses changed in
 //   the last sub-step shifts by (h0 - h) / (2 h0). Where a step is divided into more sub-steps (by_forces), what joints
-//   did
-//   does not shift unless a contact holds the body: the next solve gives what is due at this pose, and the change of
-//   the last sub-step is half a
-//   sub-step old.
+//   did does not shift unless a contact holds the body: the next solve gives what is due at this pose, and the change
+//   of the last sub-step is half a sub-step old.
 // * The original's scheme (PC_SEED) knows no phase: p - p_last goes on as it is, also where the sub-step changes.
 // By how much the stored velocity changes; `half_change` is half of what the last sub-step changed in it.
 #ifdef PC_SEED

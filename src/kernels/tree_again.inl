@@ -157,10 +157,10 @@ PC_FN Push pc_begin_push(PC_IO Slot m, Tree t, Real noise, Real begun) {
     pc_st3_tree(PC_PASS n, TREE_C, pc_madd(opened, pc_closing(PC_PASS gap), here));
     push.turned = pc_max(push.turned, pc_push_angles(PC_PASS n, PC_NODE(m, t.first + pc_parent(PC_PASS t, k)), moves));
   }
-  if (pc_is_pivot(PC_PASS t) == 1u) {
+  if (pc_is_pivot(PC_PASS t) == 1u) {  // pivot_turn closes it
     push.open = PC_REAL(0.0);
     push.turned = PC_REAL(0.0);
-  }  // pivot_turn closes it
+  }
   push.open = pc_max(push.open, push.turned);
   PC_MOST(push.open);
   PC_MOST(push.turned);
@@ -182,8 +182,8 @@ PC_FN Real pc_crossing_rates(PC_IO Slot n, Slot up, Real goes) {
   return crossed;
 }
 // Where it turns, the arms' arcs open gaps again, and limits are crossed: those are closed with it, as long as less is
-// left than at first (`most`, a speed squared). Run after pc_tree_residual. `much`: 1 where that is more than 4e-5 of
-// an arm.
+// left than at first (`most`, a speed squared). Run after pc_tree_residual.
+// `much`: 1 where that is more than 4e-5 of an arm.
 struct Rest {
   Real much;
   Real most;

@@ -51,8 +51,7 @@ PC_FN Sym6 pc_node_response(PC_IO Slot n, Sym3 d_inverse, Vec3 d, Vec3 rc, Sym6 
   precise Vec3 cb = e.c.b - zl.b + Vec3(n0.y, n1.y, n2.y);
   precise Vec3 cc = e.c.c - zl.c + Vec3(n0.z, n1.z, n2.z);
   g.c = pc_mat3(ca, cb, cc);
-  // linear: E - R Z_l^T + (R M - Z_l) R^T
-  // columns of R M
+  // linear: E - R Z_l^T + (R M - Z_l) R^T, of which r are the columns of R M, s those of R Z_l^T
   Vec3 r0 = pc_cross(rc, pc_row0(m));
   Vec3 r1 = pc_cross(rc, pc_row1(m));
   Vec3 r2 = pc_cross(rc, pc_row2(m));
@@ -61,7 +60,7 @@ PC_FN Sym6 pc_node_response(PC_IO Slot n, Sym3 d_inverse, Vec3 d, Vec3 rc, Sym6 
   Vec3 q2 = pc_cross(rc, pc_sub(Vec3(r0.z, r1.z, r2.z), zl.c));
   Vec3 s0 = pc_cross(rc, zl.a);
   Vec3 s1 = pc_cross(rc, zl.b);
-  Vec3 s2 = pc_cross(rc, zl.c);  // columns of R Z_l^T
+  Vec3 s2 = pc_cross(rc, zl.c);
   precise Real xx = e.l.xx - s0.x + q0.x;
   precise Real xy = e.l.xy - s1.x + q0.y;
   precise Real xz = e.l.xz - s2.x + q0.z;

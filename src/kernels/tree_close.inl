@@ -29,8 +29,8 @@ PC_FN Real pc_is_driven(PC_IO Slot root) {
   Real most = pc_max(pc_largest(PC_GATHER(motion, body, 0u).v), pc_largest(PC_GATHER(motion, body, 1u).v));
   return pc_select(pc_and(pc_nonzero(most), PC_LD(tree_rows, root, TREE_MASS) < PC_LEAST), PC_REAL(1.0), PC_REAL(0.0));
 }
-// 1 where a gap is more than rounding, and none so wide that the push has it. Gaps are kept where the tree `may` close
-// them.
+// 1 where a gap is more than rounding, and none so wide that the push has it.
+// Gaps are kept where the tree `may` close them.
 PC_FN Real pc_to_close(PC_IO Slot m, Tree t, Mask may) {
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
   Real open = PC_REAL(0.0);

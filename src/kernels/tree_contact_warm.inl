@@ -1,5 +1,5 @@
-// contact_warm with bodies of trees: their impulses go into the solve of the tree (tree_collect), as it would answer
-// them.
+// contact_warm with bodies of trees: their impulses go into the solve of the tree (tree_collect),
+// as it would answer them.
 #include "tree_math.inl"
 #include "contact_way.inl"
 #include "node_push.inl"
@@ -12,8 +12,8 @@
 #include "row_approach.inl"
 #include "contact_recalled.inl"
 
-// How fast rows that may bounce approach before anything remembered acts: what that drives together has not come
-// together.
+// How fast rows that may bounce approach before anything remembered acts:
+// what that drives together has not come together.
 PC_FN void pc_keep_approach(PC_IO Way w, Slot m, Index ia, Index ib) {
   if (!PC_ANY(PC_LD(contact_rows, m, ROW_E) > PC_REAL(0.0))) return;  // lint: allow (others have no use for it)
   Vec3 n = pc_ld3_rows(PC_PASS m, ROW_N);

@@ -11,8 +11,8 @@ PC_FN Mask pc_drive_moves(PC_IO Slot n) {
   return pc_and(kind > PC_REAL(0.5), kind < PC_REAL(2.0));
 }
 
-// A joint with a motor or a spring, not in its first sub-step: what it turns would be slowed by a floor for pins of
-// unknown stiffness.
+// A joint with a motor or a spring, not in its first sub-step: what it turns would be slowed by a floor for pins
+// of unknown stiffness.
 PC_FN Mask pc_drive_lasts(PC_IO Slot n) {
   return pc_and(pc_has_drive(PC_PASS n), PC_LD(tree_drive_rows, n, DRIVE_FRESH) < PC_REAL(0.5));
 }

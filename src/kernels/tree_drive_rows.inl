@@ -1,5 +1,6 @@
 // What the tree solve keeps of a motor and a spring of the joint to the parent, of each node as tree_rows does
 // (tree_drive.inl); only where a tree has any.
+
 // 1 where there is one, 2 where it damps and does nothing else: its axes are then the world's
 const uint DRIVE_IS = 0u;
 const uint DRIVE_KICK = 1u;   // time over which it acts

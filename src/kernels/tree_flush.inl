@@ -56,8 +56,8 @@ PC_FN void pc_add_turn(PC_IO Slot n, Mask some) {
   Vec3 all = pc_add(pc_ld3_tree(PC_PASS n, TREE_X + 3u), before);
   pc_st3_tree(PC_PASS n, TREE_X + 3u, pc_select3(some, all, before));
 }
-// What undoes overlaps moves poses alone, later (tree_again.inl). TREE_X: of that and of what contacts have changed
-// before.
+// What undoes overlaps moves poses alone, later (tree_again.inl).
+// TREE_X: of that and of what contacts have changed before.
 PC_FN void pc_keep_push(PC_IO Slot n) {
   Vec3 turned_before = pc_ld3_tree(PC_PASS n, TREE_PUSH_TURN);
   pc_st3_tree(PC_PASS n, TREE_PUSH_SPEED, pc_ld3_tree(PC_PASS n, TREE_X));

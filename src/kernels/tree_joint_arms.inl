@@ -1,5 +1,5 @@
-// After the bodies have moved: arms from their places of now to one common point, where the impulses of the relax phase
-// act.
+// After the bodies have moved: arms from their places of now to one common point,
+// where the impulses of the relax phase act.
 #include "joint_way.inl"
 #include "joint_rows.inl"
 

@@ -1,6 +1,6 @@
 // Visits a joint that closes a loop of a tree, or joins trees, inside the space that the trees' joints leave, as
-// tree_contact_solve does: what is pending comes down to the bodies, the rows are solved, the impulse goes up to the
-// root.
+// tree_contact_solve does: what is pending comes down to the bodies, the rows are solved,
+// the impulse goes up to the root.
 //
 // The pin is rigid: its gap stays what it was over the whole sub-step (SHAKE), with the arms turned as the bodies will
 // turn, so no energy is lost to the chord; and a share of the gap is closed. The relax pass is this same text with

@@ -1,16 +1,17 @@
 // Small matrices of the tree solve: 3 x 3, and 6-vectors of a linear and an angular part.
-// Rows.
+
+// Its rows.
 struct Mat3 {
   Vec3 a;
   Vec3 b;
   Vec3 c;
 };
-// Linear, angular.
+// Linear and angular.
 struct Six {
   Vec3 l;
   Vec3 a;
 };
-// [l c; c^T a].
+// [l c; c^T a]
 struct Sym6 {
   Sym3 l;
   Mat3 c;
@@ -109,14 +110,16 @@ PC_FN Sym3 pc_sym_outer(Sym3 a, Vec3 x, Real s) {
 PC_FN Sym6 pc_sym6_inverse(Sym6 h) {
   Sym3 li = pc_sym_inverse(h.l);
   Mat3 ct = pc_transpose(h.c);
+  // columns of W
   Vec3 w0 = pc_sym_mul(li, ct.a);
   Vec3 w1 = pc_sym_mul(li, ct.b);
-  Vec3 w2 = pc_sym_mul(li, ct.c);  // columns of W
+  Vec3 w2 = pc_sym_mul(li, ct.c);
   Sym3 si = pc_sym_inverse(pc_sym_sub(h.a, pc_products(ct.a, ct.b, ct.c, w0, w1, w2)));
   Mat3 w = pc_transpose(pc_mat3(w0, w1, w2));
+  // rows of W S^-1
   Vec3 c0 = pc_sym_mul(si, w.a);
   Vec3 c1 = pc_sym_mul(si, w.b);
-  Vec3 c2 = pc_sym_mul(si, w.c);  // rows of W S^-1
+  Vec3 c2 = pc_sym_mul(si, w.c);
   return pc_sym6(pc_sym_add(li, pc_products(c0, c1, c2, w.a, w.b, w.c)),
                  pc_mat3(pc_negate(c0), pc_negate(c1), pc_negate(c2)), si);
 }

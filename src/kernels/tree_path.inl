@@ -1,6 +1,6 @@
 // The way between a tree's root and one of its bodies, for contacts and for joints that close loops: their impulses are
-// answered by the whole tree through its factor, so that its joints are never violated by them. Notation:
-// tree_sweep.inl.
+// answered by the whole tree through its factor, so that its joints are never violated
+// by them. Notation: tree_sweep.inl.
 //
 // Row 0 of node_operator passes everything on unchanged, so ways of different lengths can share lanes.
 //
@@ -42,8 +42,8 @@ PC_FN Way pc_way(PC_IO Slot m) {
   return w;
 }
 PC_FN uint pc_entry(Way w, uint k) { return w.at + k * PC_W; }
-// where the levels of a side begin, of the whole way and of what is below the common node; and those that both sides
-// share
+// where the levels of a side begin, of the whole way and of what is below the common node;
+// and those that both sides share
 PC_FN uint pc_levels(Way w, uint side) { return PATH_LEVELS + w.depth_a * side; }
 PC_FN uint pc_levels_below(Way w, uint side) { return PATH_LEVELS + w.depth_a + w.depth_b + w.below_a * side; }
 PC_FN uint pc_depth(Way w, uint side) { return w.depth_a * (1u - side) + w.depth_b * side; }

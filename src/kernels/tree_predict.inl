@@ -40,8 +40,8 @@ PC_FN Vec3 pc_mean_turn(PC_IO Slot n) {
 // An angle row over the sub-step: its axis as it is halfway, and the mean rate of its slack. Along that axis a limb
 // keeps its angle, where along that of now it would leave the rim of a cone on a tangent; and an impulse along it makes
 // no energy. All is as of now where the limit is out of reach of all turning (as it is in most joints), where a body
-// turns further than is seen, and where the axis turns by more than 60 degrees till then. `turn`: the relative angular
-// velocity.
+// turns further than is seen, and where the axis turns by more than 60 degrees till then.
+// `turn`: the relative angular velocity.
 struct Ahead {
   Vec3 axis;
   Real rate;
@@ -84,8 +84,8 @@ PC_FN Real pc_row_rate(PC_IO Slot n, Slot up, uint i, Vec3 turn, Real most) {
   return pc_max(pc_row_ahead(PC_PASS n, up, i, turn, most).rate, back);
 }
 
-// In the lanes that want it, right-hand sides of the pins at the predicted pose: rate at which the gap changes over the
-// sub-step.
+// In the lanes that want it, right-hand sides of the pins at the predicted pose:
+// rate at which the gap changes over the sub-step.
 PC_FN void pc_tree_predict(PC_IO Slot m, Tree t, Mask wanted, Real most) {
   Real h = PC_INFO(h);
   PC_MEET;

@@ -52,8 +52,8 @@ PC_FN void pc_tree_angle(PC_IO Slot n, uint row, Vec3 axis, Real flip, Real angl
   PC_ST(tree_rows, n, TREE_ON + row, pc_select(locked, one, pc_select(pc_and(exists, pressed > zero), one, zero)));
 }
 
-// A hinge that a body turns about comes to its limit at an instant that pivot_turn finds: no row acts before it is
-// there.
+// A hinge that a body turns about comes to its limit at an instant that pivot_turn finds:
+// no row acts before it is there.
 PC_FN void pc_keep_for_the_turn(PC_IO Slot n, Mask is_angles) {
   Mask locked =
       pc_and(PC_LD(tree_rows, n, TREE_KIND + 1u) > PC_REAL(1.0), PC_LD(tree_rows, n, TREE_KIND + 2u) > PC_REAL(1.0));
@@ -105,8 +105,8 @@ PC_FN void pc_tree_angles(PC_IO Slot n, uint b, uint pivot, Quaternion qc, Quate
 }
 
 // A pin that stands open between two bodies that move acts at one point, midway: impulses at two would turn the pair.
-// No further from the body's own end than its arm is long: the inertia of a small body is lost beside that of its mass
-// far away.
+// No further from the body's own end than its arm is long:
+// the inertia of a small body is lost beside that of its mass far away.
 PC_FN void pc_act_midway(PC_IO Slot n, Slot up, Vec3 rc, Vec3 rp, Vec3 gap) {
   precise Real noise = PC_INFO(rounding) * PC_INFO(rounding);
   Mask open = pc_and(pc_gap_over(PC_PASS n, gap, noise) > PC_REAL(0.5), PC_LD(tree_rows, up, TREE_MASS) > PC_REAL(0.0));

@@ -2,8 +2,8 @@
 // several are met at once, with shares of their own, or what one throws drives another that leans on its limit, that
 // may be more than there was. Such a throw, and one that would cross a limit within the sub-step (the other one of its
 // joint, or that of another), is late: the sub-step ends at the limits, and bodies have the throw once they have moved.
-// Of it no more comes back than the solve took, which stops all of them; what exceeds it is left out of the whole
-// throw.
+// Of it no more comes back than the solve took, which stops all of them;
+// what exceeds it is left out of the whole throw.
 
 const uint TREE_THROW = TREE_INERTIA;  // change of velocity and of angular momentum; tree_trust.inl is done with it
 

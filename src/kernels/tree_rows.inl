@@ -14,8 +14,8 @@ const uint TREE_ON = 27u;      // 1 where the row acts
 const uint TREE_SPRING = 30u;  // its stiffness in impulse per velocity
 const uint TREE_RATE = 33u;    // rate of slack that it undoes
 const uint TREE_C = 36u;       // right-hand side of the pin
-// impulses, collected on the way up; of a node that has passed them on, those that push its joint in place of the
-// torque
+// impulses, collected on the way up; of a node that has passed them on,
+// those that push its joint in place of the torque
 const uint TREE_F = 39u;
 const uint TREE_X = 45u;          // change of the velocities
 const uint TREE_H = 51u;          // articulated inertia, 21; of the root its inverse

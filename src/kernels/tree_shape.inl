@@ -1,5 +1,6 @@
 // Where a tree's nodes stand, and its topology.
-// At: of its lists (glcompute/team.glsl)
+
+// `at`: of its lists (glcompute/team.glsl).
 struct Tree {
   uint first;
   uint count;

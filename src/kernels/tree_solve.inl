@@ -76,8 +76,8 @@ PC_FN void pc_tree_rebounds(PC_IO Slot n, Slot up) {
     precise Real away = approach * PC_LD(tree_rows, n, TREE_REBOUND + i);
     Real kind = PC_LD(tree_rows, n, TREE_KIND + i);
     Mask meets = pc_and(approach > PC_INFO(restitution_threshold), kind < PC_REAL(2.0));
-    // (pivot_turn's)
     Real rate = pc_select(meets, pc_max(away, PC_REAL(0.0)), PC_REAL(0.0));
+    // (of no row it is pivot_turn's)
     PC_ST(tree_rows, n, TREE_REBOUND + i, pc_select(kind < PC_REAL(0.5), PC_LD(tree_rows, n, TREE_REBOUND + i), rate));
   }
 }

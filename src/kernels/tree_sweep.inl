@@ -44,8 +44,9 @@ PC_FN void pc_tree_sweep(PC_IO Slot m, Tree t, uint c, uint pin, Real limits) {
     Vec3 gap = pc_ld3_tree(PC_PASS n, c);
     Vec3 push = pc_joint_push(PC_PASS n, f, rc, limits);
     Six w = pc_w_mul(PC_PASS n, push);
+    // for the way down
     pc_st3_tree(PC_PASS n, TREE_F + 3u, push);
-    pc_st3_tree(PC_PASS n, TREE_X, w.l);  // for the way down
+    pc_st3_tree(PC_PASS n, TREE_X, w.l);
     precise Vec3 l = f.l - w.l + pc_sym_mul(pc_lds_tree(PC_PASS n, TREE_A), gap);
     precise Vec3 a = f.a - w.a + pc_mat_tmul(pc_ldm_tree(PC_PASS n, TREE_A + 6u), gap);
     Vec3 d = pc_sub(pc_ld3_tree(PC_PASS n, TREE_RP), rc);

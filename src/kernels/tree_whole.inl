@@ -1,5 +1,5 @@
-// A free tree as one rigid body, once the places of its bodies are known (TREE_PLACE): for tree_momentum.inl. Needs
-// tree_gap.inl.
+// A free tree as one rigid body, once the places of its bodies are known (TREE_PLACE):
+// for tree_momentum.inl. Needs tree_gap.inl.
 //
 // Where the host has opened a pin by more than a tenth of its arm, the tree is not turned (inverse inertia 0): impulses
 // at the two ends are a couple, and so is what closes the gap. To take that back would be work: two bodies a metre

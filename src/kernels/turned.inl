@@ -29,8 +29,8 @@ PC_FN Turned pc_righted(Turned t) {
 }
 PC_FN Turned pc_turned(Quaternion q, Quad turned_low, Quaternion change) {
   Real lack = pc_select(pc_turns(change), pc_lack_of_unit(q, turned_low), PC_REAL(0.0));
-  // the correction of length is along the turned quaternion: along the old one it would grow what turns by half a
-  // circle
+  // the correction of length is along the turned quaternion:
+  // along the old one it would grow what turns by half a circle
   precise Vec3 change_v = (turned_low.v + (q.v + change.v) * lack) + change.v;
   precise Real change_w = (turned_low.s + (q.w + change.w) * lack) + change.w;
   TwoSum v = pc_two_sum(q.v, change_v);

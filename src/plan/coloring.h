@@ -68,8 +68,8 @@ class Colouring {
   static constexpr std::uint32_t mask_colours = 64;
 
   void sort_by_priority(std::span<const std::uint32_t> priorities);
-  /// Colours the constraints of a group with a fixed unit, or those without, from `first` on; the first colour above
-  /// them.
+  /// Colours the constraints of a group with a fixed unit, or those without, from `first` on;
+  /// the first colour above them.
   std::uint32_t choose(std::uint32_t unit_count, std::span<const std::uint32_t> units,
                        std::span<const std::uint16_t> kinds, bool with_fixed, bool leads, std::uint32_t first);
   std::uint32_t choose_above(std::uint32_t a, std::uint32_t b, std::uint32_t unit_count);

@@ -14,8 +14,8 @@ namespace {
 constexpr std::uint32_t none = ~0u;
 
 /// How far its mass extends along a direction: twice the radius of gyration for bodies of equal moments, and by the
-/// second moment of mass along the direction, tr(I) / 2 - u I u, for others. A beam that lies is as high as it is
-/// thick.
+/// second moment of mass along the direction, tr(I) / 2 - u I u, for others.
+/// A beam that lies is as high as it is thick.
 double size_along(const WorldState& state, std::uint32_t row, Vec3 up) {
   const Vec3 u = rotate(conjugate(state.orientation(row)), up), m = state.tables.get3(Buffer::mass, row, 0);
   const double second = 0.5 * (m.x + m.y + m.z) - (m.x * u.x * u.x + m.y * u.y * u.y + m.z * u.z * u.z);

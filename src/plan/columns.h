@@ -19,8 +19,8 @@ class Columns {
  public:
   /// Follows a change of contacts.
   void forget() { listed_ = false; }
-  /// Adds what sub-steps of `h` need, up to `highest_octave`: a function of the present state, whatever was measured
-  /// before.
+  /// Adds what sub-steps of `h` need, up to `highest_octave`: a function of the present state,
+  /// whatever was measured before.
   void want(const WorldState& state, const TreeNodes& trees, double h, std::uint8_t highest_octave, Islands& islands,
             std::vector<Wanted>& wanted);
   std::size_t memory_bytes() const { return bytes_of(bodies_, columns_, column_of_); }

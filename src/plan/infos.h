@@ -38,8 +38,8 @@ struct InfoInputs {
   friend bool operator==(const InfoInputs&, const InfoInputs&) = default;
 };
 
-/// One block a phase, by Phase, for islands of an octave. What is remembered from step to step is of the world's
-/// sub-step.
+/// One block a phase, by Phase, for islands of an octave.
+/// What is remembered from step to step is of the world's sub-step.
 template <class Scalar>
 void fill_infos(const InfoInputs& from, InfoOf<Scalar> (&infos)[phase_count], unsigned octave = 0);
 

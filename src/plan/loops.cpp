@@ -11,8 +11,8 @@ namespace pcphys {
 namespace {
 
 /// Omega^2 of a body that a force pulls at this arm, over the force, as pc_swing_ratio (joint_prepare.inl): what
-/// answers couples across the arm, both directions' sum, times the arm. Inverse moments are principal, the arm in the
-/// body.
+/// answers couples across the arm, both directions' sum, times the arm.
+/// Inverse moments are principal, the arm in the body.
 double swing_ratio(Vec3 inverse_moments, Vec3 arm) {
   const double r2 = dot(arm, arm);
   if (r2 == 0) return 0;

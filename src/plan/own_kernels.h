@@ -96,8 +96,8 @@ Status set(OwnKernel& kernel, const KernelParameter& parameter);
 /// The kernels of a world in the order in which those of one moment run.
 class OwnKernels {
  public:
-  /// Errors: name_taken, and bad_argument where two write the same anew or the order goes in a circle; nothing is added
-  /// then.
+  /// Errors: name_taken, and bad_argument where two write the same anew or the order goes in a circle;
+  /// nothing is added then.
   Status add(std::shared_ptr<OwnKernel> kernel);
   Status remove(std::string_view name);
   OwnKernel* find(std::string_view name) const;

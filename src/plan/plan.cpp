@@ -61,8 +61,8 @@ void look_at_drives(PlanBuilder& b, const PlanSignature& s, Phase phase, std::ui
 void look_at_inertia(PlanBuilder& b, const PlanSignature& s, std::uint32_t substep) {
   if (s.joints() || s.solves_trees() || s.contacts()) b.kernel(Kernel::inertia, Phase::biased, substep);
 }
-/// Which act in the sub-step, and where; in the sent phase, which of limbs that contacts and joints have sent
-/// elsewhere.
+/// Which act in the sub-step, and where; in the sent phase, which of limbs that contacts
+/// and joints have sent elsewhere.
 void look_at_contacts(PlanBuilder& b, const PlanSignature& s, Phase phase, std::uint32_t substep) {
   if (!s.contacts()) return;
   b.collide(phase, substep);
@@ -203,8 +203,8 @@ void substeps(PlanBuilder& b, const PlanSignature& s, std::uint8_t octave) {
   b.own(Stage::impulses, true, last, count, true);
 }
 
-/// All sub-steps of the islands of an octave that move in fourth order: joint trees alone, and nothing else acts on
-/// them.
+/// All sub-steps of the islands of an octave that move in fourth order: joint trees alone,
+/// and nothing else acts on them.
 void smooth_substeps(PlanBuilder& b, const PlanSignature& s, unsigned octave) {
   const std::uint32_t count = s.substeps << octave, last = count - 1;
   b.enter(std::uint8_t(octave_count + octave));

@@ -59,8 +59,8 @@ struct PlanSignature {
   friend bool operator==(const PlanSignature&, const PlanSignature&) = default;
 };
 
-/// Whether each body moves by itself: nothing holds or meets it, and no kernel of the host's own looks at it between
-/// sub-steps.
+/// Whether each body moves by itself: nothing holds or meets it, and no kernel of the host's own looks
+/// at it between sub-steps.
 bool in_flight(const PlanSignature& signature, OwnKernels::Ordered own);
 
 /// `own`: kernels of the host's own, in the order in which those of one moment run.

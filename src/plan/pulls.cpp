@@ -9,8 +9,8 @@ namespace pcphys {
 
 namespace {
 
-/// How far a sub-step of `h` would take the body: in sizes of it (twice its radius of gyration), or radians, whichever
-/// is more.
+/// How far a sub-step of `h` would take the body: in sizes of it (twice its radius of gyration), or radians,
+/// whichever is more.
 double pull(const WorldState& state, std::uint32_t row, double h) {
   const double size = state.size(row);
   if (!(size > 0)) return 0;  // it does not rotate: no joint holds it by an angle

@@ -1,6 +1,6 @@
 // Who sleeps (docs/sleeping.md): whole islands, once all of their bodies have been slow for a time, until something
-// wakes them. Decided on the host from the tables, whatever the places of the stages, so it is the same for all of
-// them.
+// wakes them. Decided on the host from the tables, whatever the places of the stages,
+// so it is the same for all of them.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -66,8 +66,8 @@ class Sleepers {
   std::uint32_t wake_touched(WorldState& state, std::span<const std::uint32_t> touched);
   /// After a step of `dt`: how long each of the bodies that moved has been slow, and which islands fall asleep.
   /// `before`: the poses that the step began with; null where velocities tell enough, of bodies in flight. `labels`: by
-  /// body row the lowest row of its island, where a device has found them; empty: they are found here. Reports who
-  /// sleeps.
+  /// body row the lowest row of its island, where a device has found them; empty: they are found here.
+  /// Reports who sleeps.
   void follow(WorldState& state, std::span<const std::uint32_t> moved, const AlignedBytes* before, double dt,
               const StepSettings& settings, std::span<const std::uint32_t> labels, StepReport& report);
   /// What the next `follow` is to know: by body row who is not at rest, however slow (empty: nobody), and whether all

@@ -1,5 +1,5 @@
-// What the solver holds of joints: each as it was made, but of several between the same two bodies one joint in their
-// place.
+// What the solver holds of joints: each as it was made, but of several between the same two bodies one joint
+// in their place.
 #pragma once
 #include <cstdint>
 #include <unordered_map>

@@ -23,17 +23,16 @@ struct Range {
 };
 
 /// One run of a kernel over ranges, one after the other: each may read what the one before wrote (the colours of a
-/// constraint graph). Of joints with their bodies two: of joints in `joined`, and of the bodies that take their sums in
-/// `bodies`.
+/// constraint graph). Of joints with their bodies two: of joints in `joined`,
+/// and of the bodies that take their sums in `bodies`.
 struct KernelRun {
   Kernel kernel;
   bool barrier;         // it also reads what an earlier run wrote
   std::uint32_t info;   // which of the blocks of `set_infos`
   std::uint32_t lanes;  // one of `width_for`
   std::span<const Range> ranges;
-  const OwnKernel* own =
-      // a kernel of the host's own in its place; over rows themselves where its table is not of bodies
-      nullptr;
+  // a kernel of the host's own in its place; over rows themselves where its table is not of bodies
+  const OwnKernel* own = nullptr;
   std::uint32_t others = 0;  // of pairs: all rows of the table; of joints with their bodies: all joints
 };
 
@@ -101,9 +100,8 @@ std::uint32_t gl_width_for(Domain domain, std::uint32_t count);
 /// Tests and benchmarks change it: the bits are the same.
 struct GlTeam {
   std::uint32_t size;  // 1: none share; 0: 32, but in software none. At first what PCPHYS_GL_TEAM says, or 0
-  bool scattered =
-      // in another order: where a barrier is missing, a device that runs them one after the other has other bits
-      false;
+  // in another order: where a barrier is missing, a device that runs them one after the other has other bits
+  bool scattered = false;
 };
 GlTeam& gl_team();
 

@@ -12,8 +12,8 @@ bool of_moment(const OwnKernel& k) {
 }
 bool changed(const OwnKernel& k) { return !k.parameters_before.empty() && k.parameters_before != k.parameters; }
 
-/// What the library gives to kernels, in this order: gravity, then h of those of each sub-step and of those of each
-/// step.
+/// What the library gives to kernels, in this order: gravity, then h of those of each sub-step
+/// and of those of each step.
 template <class Scalar> void fill(std::byte* given, Vec3 gravity, double h, double step) {
   const Scalar values[5] = {Scalar(gravity.x), Scalar(gravity.y), Scalar(gravity.z), Scalar(h), Scalar(step)};
   std::memcpy(given, values, sizeof values);

@@ -1,5 +1,5 @@
-// What a device finds islands from (plan/islands.h), and the labels that it leaves: of each body the lowest row of its
-// island.
+// What a device finds islands from (plan/islands.h), and the labels that it leaves:
+// of each body the lowest row of its island.
 #pragma once
 #include <array>
 #include <cstdint>

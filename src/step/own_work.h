@@ -8,8 +8,8 @@
 
 namespace pcphys {
 
-/// Whether what the kernel wrote, as it stands in the host's tables, is finite. Error: not_finite, naming kernel and
-/// object.
+/// Whether what the kernel wrote, as it stands in the host's tables, is finite.
+/// Error: not_finite, naming kernel and object.
 Status check_written(const WorldState& state, const OwnKernel& kernel);
 /// Whether what it reads is.
 bool reads_finite(const WorldState& state, const OwnKernel& kernel);
@@ -19,8 +19,8 @@ class OwnWork {
   /// Before a step of this world, and before a kernel is added: whether the kernels fit it still. Where forces are
   /// made, by this stepper or another, they begin anew in each (sub-)step with what constants and callbacks give
   /// (WorldState::gathered), which is a kernel too; where some are made once a step and others in each sub-step, these
-  /// begin with what those have made. Errors: bad_argument where they are of another world; stale_id where a property
-  /// was removed.
+  /// begin with what those have made. Errors: bad_argument where they are of another world;
+  /// stale_id where a property was removed.
   Status follow(WorldState& state);
   /// The same where nothing may change.
   Status check(const WorldState& state) const;

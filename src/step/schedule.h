@@ -32,8 +32,8 @@ class ColouredSlots {
  public:
   /// `ends`: two body rows by table row (row 0 pads). `kind` makes priorities of joints and contacts differ. Of all
   /// rows but 0, or of those in `rows`.
-  /// Constraints with bodies of `trees` come first, and whole trees are what answers them; but not those that are set
-  /// in `alone`.
+  /// Constraints with bodies of `trees` come first, and whole trees are what answers them;
+  /// but not those that are set in `alone`.
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,
               std::span<const Standing> standings, std::uint32_t kind, const TreeNodes& trees);
   void colour(const WorldState& state, std::span<const std::array<std::uint32_t, 2>> ends,

@@ -1,5 +1,5 @@
-// What holds of a schedule that is of a world's objects of now: who moves goes once, and each joint stands in one
-// place.
+// What holds of a schedule that is of a world's objects of now: who moves goes once,
+// and each joint stands in one place.
 #pragma once
 #include <string>
 

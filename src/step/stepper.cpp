@@ -231,8 +231,8 @@ void Stepper::Inside::tell(const PlanSignature& wanted, const Detector::Found& f
   report.colours = found.contacts ? schedule.contacts.colours() : 0;
 }
 
-/// Where there is no memory for a step the world is as it was, and what the stepper holds of it is made anew by the
-/// next.
+/// Where there is no memory for a step the world is as it was,
+/// and what the stepper holds of it is made anew by the next.
 void Stepper::Inside::step_within_memory(World& world, double dt) {
   WorldState& s = world.state();
   const double last_substep = s.last_substep, soft_substep = s.soft_substep, settling = s.settling;

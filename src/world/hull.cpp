@@ -206,8 +206,8 @@ bool closed(const std::vector<Polygon>& faces) {
          });
 }
 
-/// How far some vertex lies outside of a face: those that go one after the other may each have been near what the last
-/// one left.
+/// How far some vertex lies outside of a face: those that go one after the other may each have been near
+/// what the last one left.
 double sticks_out(const std::vector<Point>& points, const Polygon& vertices, const std::vector<Polygon>& faces) {
   double most = 0;
   for (const Polygon& face : faces) {

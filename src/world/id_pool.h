@@ -1,6 +1,6 @@
 // Hands out indices, smallest free first, and generations: which id an object gets depends only on the
-// sequence of calls. An index whose generations are used up is not used again. Also keeps each index's row in its
-// table.
+// sequence of calls. An index whose generations are used up is not used again.
+// Also keeps each index's row in its table.
 #pragma once
 #include <algorithm>
 #include <cstdint>

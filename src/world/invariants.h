@@ -18,8 +18,8 @@ void walk_invariants(WorldState& state, const char* call);
 /// marks there is no walk.
 void walk_when_due(WorldState& state, const char* call);
 
-/// In debug builds, where a call begins that changes the world, for what the one before left; where a step and a world
-/// end.
+/// In debug builds, where a call begins that changes the world, for what the one before left;
+/// where a step and a world end.
 inline void walk_in_debug([[maybe_unused]] WorldState& state, [[maybe_unused]] const char* call) {
 #ifndef NDEBUG
   walk_when_due(state, call);

@@ -67,8 +67,8 @@ Error unknown(std::string_view name) {
                                        "; docs/properties.md lists those of the library, World::properties all."};
 }
 
-/// Words of C++ and GLSL, and types of kernels, that a property could be called; of GLSL's samplers and images see
-/// check_name.
+/// Words of C++ and GLSL, and types of kernels, that a property could be called;
+/// of GLSL's samplers and images see check_name.
 constexpr std::string_view reserved_words[] = {"Mask",        "Mat3",         "Quad",
                                                "Quaternion",  "Real",         "Sym3",
                                                "Vec3",        "active",       "alignas",

@@ -109,8 +109,8 @@ constexpr bool one_by_one(Domain domain) {
 /// Whether they are of joint trees.
 constexpr bool of_trees(Domain domain) { return domain == Domain::tree || domain == Domain::tree_nodes; }
 
-/// Where a host's own property number k stands (World::add_property): behind all that kernels.inl and properties.inl
-/// name.
+/// Where a host's own property number k stands (World::add_property):
+/// behind all that kernels.inl and properties.inl name.
 constexpr Buffer own_buffer(std::size_t k) { return Buffer(buffer_count + k); }
 constexpr bool is_own(Buffer buffer) { return std::size_t(buffer) >= buffer_count; }
 /// Whether rows of some table stand in it, the host's own included.

@@ -1,5 +1,5 @@
-// Whether what a world counts is counted: what stands there is compared with what stood there when somebody last
-// looked.
+// Whether what a world counts is counted: what stands there is compared with what stood there when
+// somebody last looked.
 #pragma once
 #include <cstdint>
 

@@ -85,8 +85,8 @@ int middle_axis(Vec3 moments);
 inline constexpr double frozen_phase = -2;  // of a frozen body: what snapshots and hashes know it by
 /// Where its properties stand in a row of Buffer::rest.
 enum RestField : std::uint32_t { rest_quiet_time, rest_asleep, rest_stirred, rest_can_sleep, rest_fields };
-/// Whether a body sleeps, as far as what acts on it must do the same: not if it stands, nor if the next step wakes
-/// both.
+/// Whether a body sleeps, as far as what acts on it must do the same: not if it stands,
+/// nor if the next step wakes both.
 enum class Rest : std::uint8_t { awake, asleep, any };
 inline Rest rest_of(bool stands, bool stirred, bool asleep) {
   return stands || stirred ? Rest::any : asleep ? Rest::asleep : Rest::awake;

@@ -1,8 +1,8 @@
 // How bodies move, and the boxes of shapes: what comes before the pairs. Boxes hold their shapes wherever they can come
 // in the step; slack beyond rounding, also to single precision, is in them. Needs narrow_lines.inl.
 
-// of a shape's row: (place against the body's centre, first of its sizes), orientation, (the body's position, second
-// size), (its low part, third)
+// of a shape's row: (place against the body's centre, first of its sizes), orientation,
+// (the body's position, second size), (its low part, third)
 const uint quads_round = 4u;
 // Columns of a shape: the lever of turns across its body's y axis and of any; 1 where it may move; half extents, and a
 // radius besides; by how much its box is grown; how far a try of this step sent its body
@@ -14,7 +14,7 @@ const uint BOUND_ROUND = 6u;
 const uint BOUND_GROWN = 7u;
 const uint BOUND_WENT = 8u;
 
-// TwistOf.
+// As TwistOf (collision/twist.h).
 struct BodyMotion {
   Vec3 v;
   Vec3 w;

@@ -9,15 +9,18 @@ struct BoxPair {
   Axes b;
   Vec3 ha;
   Vec3 hb;
+  // centre of b from a: origin's axes, a's, b's
   Vec3 d;
   Vec3 da;
-  Vec3 db;  // centre of b from a: origin's axes, a's, b's
+  Vec3 db;
+  // b's axes in a's: r_i = (a_i . b_x, a_i . b_y, a_i . b_z)
   Vec3 rx;
   Vec3 ry;
-  Vec3 rz;  // b's axes in a's: r_i = (a_i . b_x, a_i . b_y, a_i . b_z)
+  Vec3 rz;
+  // their absolute values
   Vec3 ax;
   Vec3 ay;
-  Vec3 az;  // their absolute values
+  Vec3 az;
 };
 
 PC_FN BoxPair pc_box_pair(NarrowShape a, NarrowShape b) {
@@ -67,7 +70,7 @@ PC_FN Real pc_face_gap(BoxPair k, uint axis) {
   return gap;
 }
 
-// Separation = numerator / sqrt(squared)
+// The separation is numerator / sqrt(squared).
 struct EdgeGap {
   Real numerator;
   Real squared;

@@ -106,8 +106,8 @@ PC_FN_LARGE void pc_sharpen(PC_INOUT(Contact) k, Core a, Core b) {
 }
 
 // ---- points ---------------------------------------------------------------------------------------------
-// What of core b lies over face fa of core a; `n`: the normal from a to b, `flat_a`: the cosine between it and that of
-// the face.
+// What of core b lies over face fa of core a; `n`: the normal from a to b,
+// `flat_a`: the cosine between it and that of the face.
 PC_FN void pc_points_over(Core a, Face fa, Core b, Face fb, Vec3 n, Real flat_a, Real margin, uint side,
                           PC_INOUT(NarrowManifold) m) {
   Over o;

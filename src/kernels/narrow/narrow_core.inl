@@ -1,7 +1,7 @@
 // Convex shapes as a core with a radius: what GJK, EPA and the general manifold know of a shape.
 // D = A - B is the Minkowski difference of two cores; h(n) = max over D of n . w is their overlap along n.
 
-// Reach: radius of a ball around the core.
+// `reach`: radius of a ball around the core.
 struct Core {
   uint kind;
   Vec3 p;
@@ -11,7 +11,7 @@ struct Core {
   Real reach;
   HullRef hull;
 };
-// W = a - b.
+// w = a - b.
 struct Support {
   Vec3 w;
   Vec3 a;

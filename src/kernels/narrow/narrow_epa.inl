@@ -15,11 +15,11 @@ struct Polytope {
   Vec3 n[128];
   Real h[128];
   Real noise[128];
-  Vec3 inner;
-  Real rounding;
-  Real size;  // a point inside; rounding error of a vertex; of D
+  Vec3 inner;     // a point inside
+  Real rounding;  // error of a vertex
+  Real size;      // of D
 };
-// H(n) is least along n; a: the point of A there.
+// h(n) is least along n; a: the point of A there.
 struct Penetration {
   Vec3 n;
   Real h;

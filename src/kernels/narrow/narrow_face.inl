@@ -5,7 +5,7 @@
 #define PC_SIN_EIGHTH PC_REAL(0.38268343236508977)
 
 // A rectangle of half sides h1 and h2, a disc of that radius, which clips as an octagon, or face `id` of a hull.
-// Kind: of its core; sides: 0 for no face.
+// `kind`: of its core; `sides`: 0 for no face.
 struct Face {
   uint kind;
   uint sides;
@@ -107,7 +107,7 @@ PC_FN_LARGE Line pc_core_line(Core c, Vec3 d) {
 
 // ---- points ---------------------------------------------------------------------------------------------
 // Reference face and what lies over it, projected along n (from the reference to the other shape).
-// Slant = 1 / (n . fn)
+// `slant` is 1 / (n . fn).
 struct Over {
   Vec3 n;
   Vec3 fn;
@@ -264,8 +264,8 @@ PC_FN_LARGE void pc_line_over_face(Face reference, Line line, Over o, Pads pads,
   }
 }
 
-// Numbers of both faces, up to 127 each, beside the bits of corners (0 to 15) and of which shape has the reference (24,
-// 25).
+// Numbers of both faces, up to 127 each, beside the bits of corners (0 to 15) and of which shape has
+// the reference (24, 25).
 PC_FN uint pc_face_tag(Face reference, Face incident) {
   return ((reference.id & 15u) << 16u) | ((incident.id & 15u) << 20u) | ((reference.id >> 4u) << 26u) |
          ((incident.id >> 4u) << 29u);

@@ -1,7 +1,7 @@
 // Distance of two cores (E. Gilbert, D. Johnson, S. Keerthi, 1988): the point v of D nearest to the origin, by
 // simplices of support points. Stops when the gap between |v| and the lower bound v . w / |v| is rounding.
 
-// V = sum l w.
+// v = sum l w.
 struct Simplex {
   uint count;
   Vec3 w[4];
@@ -9,7 +9,7 @@ struct Simplex {
   Real l[4];
   Vec3 v;
 };
-// Separated: farther than asked; touching: use EPA.
+// `separated`: farther than asked; `touching`: use EPA.
 struct Distance {
   bool separated;
   bool touching;

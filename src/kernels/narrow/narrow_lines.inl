@@ -1,6 +1,6 @@
 // Points and segments with a radius: spheres and capsules against each other. Without branches on data, so that many
-// pairs may stand side by side in lanes (collision/narrow_lanes.inl): lanes of which something is not true keep what
-// they have.
+// pairs may stand side by side in lanes (collision/narrow_lanes.inl):
+// lanes of which something is not true keep what they have.
 
 // squared sine of 1.5 and 3 degrees: between them two lines pass from parallel (two points) to crossing (one)
 #define PC_PARALLEL_FULL PC_REAL(0.000685237)

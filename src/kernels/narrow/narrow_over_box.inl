@@ -56,8 +56,8 @@ PC_FN Real pc_closest_on_segment_to_box(Vec3 c, Vec3 u, Real h, Vec3 b) {
 #define PC_OVER_FACE_TAG PC_REAL(16.0)
 #define PC_TAG_Y PC_REAL(4.0)
 #define PC_TAG_Z PC_REAL(8.0)
-// Above a face, whose outward direction `out_` is: both ends of what of the axis lies over it. Directions in the box's
-// axes.
+// Above a face, whose outward direction `out_` is: both ends of what of the axis lies over it.
+// Directions in the box's axes.
 struct OverFace {
   Mask face;
   Mask first;

@@ -160,8 +160,8 @@ PC_FN void pc_cylinder_plane(NarrowShape a, NarrowShape b, Real margin, PC_INOUT
   }
   uint base = leans ? 8u : 0u;
   for (uint k = 0u; k < 4u; k++) {
-    // k = 0 lowest, 1 and 2 beside, 3 opposite; a leaning cylinder's other rim is nearer than its opposite side when it
-    // lies
+    // k = 0 lowest, 1 and 2 beside, 3 opposite; a leaning cylinder's other rim is nearer than its opposite
+    // side when it lies
     Real cx = k == 0u ? ux : (k == 1u ? -uz : (k == 2u ? uz : -ux));
     Real cz = k == 0u ? uz : (k == 1u ? ux : (k == 2u ? -ux : -uz));
     Real y = bottom;

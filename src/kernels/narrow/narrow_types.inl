@@ -23,8 +23,8 @@ const uint PC_PLANE = 5u;
 #define PC_CLIP_SLOP PC_REAL(2e-3)
 // gains below these are noise when four points are chosen (length and area, relative)
 #define PC_DEEPER_SLOP PC_REAL(1e-4)
-// the same of overlapping faces with many corners, since a loaded stack rocks by more: another choice loses the
-// impulses
+// the same of overlapping faces with many corners, since a loaded stack rocks by more:
+// another choice loses the impulses
 #define PC_FLAT_SLOP PC_REAL(1e-3)
 #define PC_WIDER_SLOP PC_REAL(1.01)
 
