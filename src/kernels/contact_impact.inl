@@ -317,7 +317,8 @@ PC_FN void pc_keep_met(PC_IO Slot m, Encounter x, Real t, Mask hits) {
   Vec3 relative = pc_sub(x.b.v, x.a.v);
   precise Real nearing = -pc_dot(x.n, relative);
   Real met = PC_LD(contact_rows, m, ROW_MET);
-  Mask anew = pc_or(met<PC_TINY, nearing> pc_noise(PC_PASS relative));
+  Mask unmet = met < PC_TINY;
+  Mask anew = pc_or(unmet, nearing > pc_noise(PC_PASS relative));
   PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, pc_impact_always(PC_PASS m)), anew), t, met));
 }
 // The impulses j at the instant of the impact, with friction.
