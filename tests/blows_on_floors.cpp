@@ -3,8 +3,8 @@
 // 2.4.
 #include <algorithm>
 
+#include "support_draws.h"
 #include "support_world.h"
-#include "wild/dice.h"
 
 using namespace worldtest;
 using wild::Dice;
@@ -44,9 +44,7 @@ double depth(Dice& dice) {
 }  // namespace
 
 TEST_CASE("blows on floors: what rests on a floor and is sent down stays where it is") {
-  Dice dice("sent down", 1);
-  double worst = 0;
-  for (int i = 0; i < 200; i++) worst = std::max(worst, depth(dice));
+  const double worst = worst_of("sent down", 200, depth);
   MESSAGE("deepest: ", worst);
   CHECK(worst < 1e-3);
 }

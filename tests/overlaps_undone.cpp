@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "support_draws.h"
 #include "support_world.h"
-#include "wild/dice.h"
 
 using namespace worldtest;
 using wild::Dice;
@@ -67,17 +67,13 @@ double thrown(Dice& dice) {
 }  // namespace
 
 TEST_CASE("overlaps: towers that get heavier upwards are pressed in by less than two hundredths of a box") {
-  Dice dice("heavier upwards", 1);
-  double worst = 0;
-  for (int i = 0; i < 40; i++) worst = std::max(worst, deepest(dice));
+  const double worst = worst_of("heavier upwards", 40, deepest);
   MESSAGE("deepest: ", worst);
   CHECK(worst < 0.02);
 }
 
 TEST_CASE("overlaps: a box that lies in a lighter one is not thrown as the two come apart") {
-  Dice dice("lies in a lighter one", 1);
-  double worst = 0;
-  for (int i = 0; i < 40; i++) worst = std::max(worst, thrown(dice));
+  const double worst = worst_of("lies in a lighter one", 40, thrown);
   MESSAGE("highest: ", worst, " m");
   CHECK(worst < 0.01);
 }
