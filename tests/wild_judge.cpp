@@ -9,6 +9,7 @@
 #include "wild/balance.h"
 #include "wild/closings.h"
 #include "wild/distance.h"
+#include "wild/overlaps.h"
 #include "wild/play.h"
 #include "wild/scene.h"
 #include "wild/shapes.h"
@@ -137,6 +138,35 @@ TEST_CASE("closings: a pin that the host opened may stretch springs of what it d
   // What springs gain beyond the way that the pin went is not its.
   closings.opened(0, 0.5);
   CHECK(closings.work(open, half, 50) == doctest::Approx(12.5));
+}
+
+TEST_CASE("overlaps: what touches to rounding is given nothing, what is made to overlap its weight and a push") {
+  const StepSettings settings;
+  const double dt = 1.0 / 60, weight = 9.81;
+  const auto given = [&](double depth) {
+    Eye eye;
+    Observation& seen = eye.seen();
+    seen.gravity = {0, -weight, 0};
+    for (int i = 0; i < 2; i++) {
+      BodyDef def;
+      def.shapes = {ShapeDef::box({0.5, 0.5, 0.5})};
+      eye.follow(MakeBody{i, def});
+      SeenBody& body = seen.bodies[std::size_t(i)];
+      body.there = true;
+      body.kind = i == 0 ? BodyKind::fixed : BodyKind::dynamic;
+      body.pose.position.y = i * (1 - depth);
+      body.mass.mass = 2;
+    }
+    Overlaps overlaps;
+    overlaps.made(eye);
+    const double energy = overlaps.undone(eye, settings, dt);
+    CHECK(overlaps.undone(eye, settings, dt) == 0);
+    return energy;
+  };
+  CHECK(given(-0.1) == 0);
+  CHECK(given(1e-8) < 1e-6);
+  const double push = settings.push_speed;
+  CHECK(given(0.1) == doctest::Approx(2 * (weight * 0.1 + 0.5 * push * push)).epsilon(1e-6));
 }
 
 TEST_CASE("a family and a seed are one scene, and the library takes its calls") {

@@ -3,9 +3,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "collision/narrow.h"
-#include "wild/distance.h"
 #include "wild/judge.h"
+#include "wild/overlaps.h"
 #include "wild/phantoms.h"
 #include "wild/play.h"
 #include "wild/shapes.h"
@@ -42,27 +41,6 @@ double counted_work(const StepReport& r, const StepSettings& settings, double bo
   return (1 + double(r.repeats)) * once / std::max(bodies, 1.0);
 }
 
-/// How deep two shapes overlap; 0 where they do not [m].
-double depth(const Placed& a, const Placed& b) {
-  const auto view = [&](const Placed& p) {
-    const Vec3 at = p.pose.position - a.pose.position;
-    const Quat q = p.pose.orientation;
-    ShapeView<double> v{
-        p.shape->kind, {p.shape->size.x, p.shape->size.y, p.shape->size.z}, {at.x, at.y, at.z}, {q.x, q.y, q.z, q.w}};
-    if (p.shape->kind != ShapeKind::hull) return v;
-    v.size[0] = p.shape->convex.radius();
-    v.size[1] = p.shape->convex.inner_radius();
-    v.hull = p.shape->convex.data();
-    return v;
-  };
-  std::uint32_t hint = 0;
-  Manifold<double> m;
-  narrow(view(a), view(b), 0, hint, m);
-  double deepest = 0;
-  for (std::uint32_t i = 0; i < m.count; i++) deepest = std::max(deepest, -m.points[i].separation);
-  return deepest;
-}
-
 class LibraryWatcher final : public Watcher {
  public:
   LibraryWatcher(const Scene& scene, const PlayOptions& options) : judge(scene, options.precision) {}
@@ -79,7 +57,7 @@ class LibraryWatcher final : public Watcher {
       begun_ = true;
       before_ = eye_.look(player);
       judge.begin(before_);
-      for (std::size_t i = 0; i < before_.bodies.size(); i++) allow_overlaps(player, int(i), false);
+      overlaps_.made(eye_);
       return;
     }
     if (!begun_ || !status) return;
@@ -87,20 +65,21 @@ class LibraryWatcher final : public Watcher {
     judge.changed(before_, after);
     before_ = after;
     if (const SetPose* moved = std::get_if<SetPose>(&call)) {
-      allow_overlaps(player, moved->body, true);
+      overlaps_.made(eye_, moved->body, true);
       for (std::size_t i = 0; i < after.joints.size(); i++)
         if (after.joints[i].a == moved->body || after.joints[i].b == moved->body) allow_gap(int(i));
     }
     if (const MakeJoint* made = std::get_if<MakeJoint>(&call)) allow_gap(made->joint);
-    if (const MakeBody* made = std::get_if<MakeBody>(&call)) allow_overlaps(player, made->body, true);
+    if (const MakeBody* made = std::get_if<MakeBody>(&call)) overlaps_.made(eye_, made->body, true);
     if (std::holds_alternative<Destroy>(call) || std::holds_alternative<SetFilter>(call) ||
         std::holds_alternative<SetCollide>(call))
-      for (std::size_t i = 0; i < after.bodies.size(); i++) allow_overlaps(player, int(i), false);
+      overlaps_.made(eye_);
   }
   bool after_step(const Player& player, double dt, const StepReport& report) override {
     const Observation& after = eye_.look(player);
     StepFacts facts;
     facts.dt = dt;
+    judge.allow(overlaps_.undone(eye_, player.settings(), dt));
     const bool traced = player.options().place == Place::cpu;
     if (traced) {
       facts.contact_work = trace.phantoms.driven_work();
@@ -121,31 +100,6 @@ class LibraryWatcher final : public Watcher {
   }
 
  private:
-  /// A body that overlaps others by the host's doing may be pushed out at push_speed, and lifted. With `others` what it
-  /// was put into counts too.
-  void allow_overlaps(const Player& player, int number, bool others) {
-    const Observation& seen = eye_.seen();
-    const SeenBody& body = seen.body(number);
-    if (!body.there) return;
-    for (std::size_t i = 0; i < seen.bodies.size(); i++) {
-      const SeenBody& other = seen.bodies[i];
-      if (int(i) == number || !other.there || (body.kind != BodyKind::dynamic && other.kind != BodyKind::dynamic))
-        continue;
-      double deepest = 0;
-      for (const ShapeDef& x : eye_.shapes(number))
-        for (const ShapeDef& y : eye_.shapes(int(i))) {
-          const Placed a = placed(x, body.pose), b = placed(y, other.pose);
-          if (distance(a, b) == 0) deepest = std::max(deepest, depth(a, b));
-        }
-      if (deepest == 0) continue;
-      if (body.kind == BodyKind::dynamic) allow(player, body, deepest);
-      if (others && other.kind == BodyKind::dynamic) allow(player, other, deepest);
-    }
-  }
-  void allow(const Player& player, const SeenBody& body, double deepest) {
-    const double push = player.settings().push_speed;
-    judge.allow(body.mass.mass * (length(eye_.seen().gravity) * deepest + 0.5 * push * push));
-  }
   /// Bodies of a joint that the host has opened may be lifted by its gap: it is closed by places alone.
   void allow_gap(int number) {
     const Observation& seen = eye_.seen();
@@ -176,6 +130,7 @@ class LibraryWatcher final : public Watcher {
   }
 
   Eye eye_;
+  Overlaps overlaps_;
   Observation before_;
   bool begun_ = false;
 };

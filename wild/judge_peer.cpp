@@ -6,6 +6,7 @@
 
 #include "peers/peer.h"
 #include "wild/judge.h"
+#include "wild/overlaps.h"
 #include "wild/play.h"
 
 namespace pcphys::wild {
@@ -41,6 +42,7 @@ class PeerEye {
     return i;
   }
   Observation& seen() { return eye_.seen(); }
+  const Eye& eye() const { return eye_; }
 
   const Observation& look(const peers::Peer& peer) {
     Observation& seen = eye_.seen();
@@ -101,6 +103,8 @@ Result<Verdict> judge_peer(const Scene& scene, std::string_view variant) {
 
   Judge judge(scene, precision_of(variant));
   judge.begin(eye.look(peer));
+  Overlaps overlaps;
+  overlaps.made(eye.eye());
   double seconds = 0;
   std::uint64_t failures = 0;
   for (std::size_t i = start.calls.size(); i < scene.calls.size(); i++) {
@@ -122,6 +126,7 @@ Result<Verdict> judge_peer(const Scene& scene, std::string_view variant) {
       }
       StepFacts facts;
       facts.dt = steps->dt;
+      judge.allow(overlaps.undone(eye.eye(), scene.settings, steps->dt));
       facts.frozen = std::size_t(peer.failures() - std::exchange(failures, peer.failures()));
       judge.stepped(before, eye.look(peer), facts);
     }

@@ -45,7 +45,7 @@ inline constexpr double moment_tolerance = 1e-6;
 /// (docs/impulses.md).
 inline constexpr double soft_frequency_times_h = 1.5, soft_damping_ratio = 1.8;
 /// Where sub-steps get shorter, soft rows get as much stiffer in so long [s] (docs/impulses.md).
-inline constexpr double stiffening_time = 1;
+inline constexpr double stiffening_time = 4;
 /// Soft contacts give way to what is beyond an impulse that makes so many times the velocity that gravity makes in a
 /// sub-step: what lies alone on what stands does not sink.
 inline constexpr double contact_preload = 1.75;
@@ -70,7 +70,7 @@ inline constexpr double contact_share = 0.01;
 /// An island gets as many sub-steps as bring (h omega)^2 of each of its rows below this (docs/substeps.md): of a
 /// contact how far, over the body's size (twice the radius of gyration), it is pressed in by as many bodies of its own
 /// kind as the island is high, and by as many again as it is higher than wide (plan/columns.h); of a joint with limits
-/// the host's pull over the body's size, or its spin where it hangs on what does not answer; of one that closes a loop
+/// the host's pull over the body's size, or its spin where nothing touches its tree; of one that closes a loop
 /// the frequency of what swings under its tension, of half the sub-step;
 /// of a tree that nothing touches how much a spin changes.
 inline constexpr double largest_give = 0.01;

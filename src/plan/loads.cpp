@@ -14,6 +14,8 @@ double inverse_mass(const WorldState& state, std::uint32_t row) { return state.t
 }  // namespace
 
 void Loads::find(const WorldState& state, const TreeNodes& trees, Islands& islands) {
+  listed_.clear();
+  if (state.contacts.ends.size() < 2) return;
   islands.build(state);
   masses_.assign(state.bodies.size(), {});
   for (std::uint32_t row = 1; row < state.bodies.size(); row++) {
@@ -23,17 +25,21 @@ void Loads::find(const WorldState& state, const TreeNodes& trees, Islands& islan
     of.lightest = std::max(of.lightest, inverse);
     of.heaviest = of.heaviest > 0 ? std::min(of.heaviest, inverse) : inverse;
   }
-  rests_.clear();
   for (std::uint32_t row = 1; row < state.contacts.ends.size(); row++) {
     const auto [a, b] = state.contacts.ends[row];
     if (trees.node(a) > 0 || trees.node(b) > 0 || state.asleep(a)) continue;
     const Masses& of = masses_[islands.root(state.responds(a) ? a : b)];
-    if (of.heaviest > 0 && of.lightest >= constants::uneven_masses * of.heaviest) rests_.push_back({row});
+    if (of.heaviest > 0 && of.lightest > of.heaviest)
+      listed_.push_back({row, of.lightest >= constants::uneven_masses * of.heaviest});
   }
 }
 
 void Loads::hand_down(const WorldState& state) {
   const Vec3 up = (-1 / length(state.gravity)) * state.gravity;
+  rests_.clear();
+  for (const Rest& rest : listed_)
+    if (rest.uneven || state.tables.get(Buffer::contact, rest.contact, 3) >= 2) rests_.push_back(rest);
+  if (rests_.empty()) return;
   held_.assign(state.bodies.size(), 0);
   for (Rest& rest : rests_) {
     const double rises = dot(state.tables.get3(Buffer::contact, rest.contact, 0), up);
@@ -55,8 +61,9 @@ void Loads::hand_down(const WorldState& state) {
 
 void Loads::want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
   const double g = length(state.gravity), frequency = constants::soft_frequency_times_h / h;
-  if (rests_.empty() || g == 0) return;
+  if (listed_.empty() || g == 0) return;
   hand_down(state);
+  if (rests_.empty()) return;
   const double give = g / (frequency * frequency);  // how far the weight of one body presses in one as heavy [m]
   for (std::uint32_t row = 1; row < carried_.size(); row++) {
     if (!(carried_[row] > 0) || !state.responds(row)) continue;

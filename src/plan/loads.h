@@ -18,11 +18,11 @@ class Loads {
   /// Follows a change of contacts: lists those that could carry something, in islands whose masses differ by more than
   /// constants::uneven_masses.
   void find(const WorldState& state, const TreeNodes& trees, Islands& islands);
-  void forget_contacts() { rests_.clear(); }
+  void forget_contacts() { listed_.clear(); }
   /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could
   /// rest on free bodies.
   void want(const WorldState& state, double h, std::uint8_t highest_octave, std::vector<Wanted>& wanted);
-  std::size_t memory_bytes() const { return bytes_of(masses_, rests_, held_, carried_); }
+  std::size_t memory_bytes() const { return bytes_of(masses_, listed_, rests_, held_, carried_); }
 
  private:
   struct Masses {
@@ -30,7 +30,9 @@ class Loads {
   };
   /// A contact whose upper body could rest on the lower one.
   struct Rest {
-    std::uint32_t contact, lower = 0, upper = 0;
+    std::uint32_t contact;
+    bool uneven;  // masses of its island differ by constants::uneven_masses
+    std::uint32_t lower = 0, upper = 0;
     double share = 0;   // of the normal that is along gravity
     double height = 0;  // of the upper one [m]
   };
@@ -38,7 +40,7 @@ class Loads {
   void hand_down(const WorldState& state);
 
   std::vector<Masses> masses_;          // by body row, of islands at their roots
-  std::vector<Rest> rests_;             // from the highest on
+  std::vector<Rest> listed_, rests_;    // all; those that count in this step, from the highest on
   std::vector<double> held_, carried_;  // by body row: shares of its contacts below; mass that could rest on it [kg]
 };
 

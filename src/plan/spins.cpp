@@ -76,10 +76,9 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.front().flipped) continue;  // turns on a pivot
-    // what swings on something that does not give way bends limits as a pull does (plan/pulls.h)
-    const bool whirls =
-        !state.responds(tree.front().body) && !was_touched<Scalar>(state.tables, tree) && has_limits(state, tree);
-    const double most = whirls ? std::sqrt(constants::largest_give) / h : spin_most;
+    // what swings bends limits as a pull does (plan/pulls.h)
+    const bool swings = has_limits(state, tree) && !was_touched<Scalar>(state.tables, tree);
+    const double most = swings ? std::sqrt(constants::largest_give) / h : spin_most;
     for (const TreeNode& node : tree) {
       const std::uint32_t row = node.body;
       if (!(bounds.spin(row) > most * most) || !state.responds(row)) continue;

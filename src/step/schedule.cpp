@@ -251,7 +251,7 @@ void Schedule::update_structure(const WorldState& state) {
     lightest = std::max(lightest, inverse_mass);
     heaviest = heaviest > 0 ? std::min(heaviest, inverse_mass) : inverse_mass;
   }
-  uneven = lightest >= constants::uneven_masses * heaviest && heaviest > 0;
+  uneven = lightest > heaviest && heaviest > 0;
   moving = std::uint32_t(rows_.size());
   joint_ends_.assign(state.joints.size(), {0, 0});
   for (std::uint32_t row = 1; row < state.joints.size(); row++)
