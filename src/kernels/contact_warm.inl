@@ -39,9 +39,7 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Quad moved_b = PC_GATHER(delta, ib, 0u);
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
-  Mask met = pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MET) > PC_REAL(0.0));
-  Real acts = pc_select(met, ACTS_MET, PC_REAL(1.0));
-  PC_ST(contact_rows, m, ROW_ACTS, pc_select(pushes, acts, PC_LD(contact_rows, m, ROW_ACTS)));
+  PC_ST(contact_rows, m, ROW_ACTS, pc_select(pushes, PC_REAL(1.0), PC_LD(contact_rows, m, ROW_ACTS)));
   precise Real both_move = a.inverse_mass * b.inverse_mass;
   pc_go_on(PC_PASS m, both_move, pushes);
   pc_keep_recalled(PC_PASS m, ia, ib, pushes);
