@@ -70,9 +70,8 @@ inline constexpr double contact_share = 0.01;
 /// An island gets as many sub-steps as bring (h omega)^2 of each of its rows below this (docs/substeps.md): of a
 /// contact how far, over the body's size (twice the radius of gyration), it is pressed in by as many bodies of its own
 /// kind as the island is high, and by as many again as it is higher than wide (plan/columns.h); of a joint with limits
-/// the host's pull over the body's size, or its spin where nothing touches its tree; of one that closes a loop
-/// the frequency of what swings under its tension, of half the sub-step;
-/// of a tree that nothing touches how much a spin changes.
+/// the host's pull over the body's size, or its spin where its tree is alone; of one that closes a loop the frequency
+/// of what swings under its tension, of half the sub-step; of a tree that nothing touches how much a spin changes.
 inline constexpr double largest_give = 0.01;
 /// And by one body at least so many times as heavy (plan/loads.h) a contact is to be pressed in by less than this
 /// share: it sinks where the other rows of its manifold do not.

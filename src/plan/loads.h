@@ -15,8 +15,7 @@ class TreeNodes;
 
 class Loads {
  public:
-  /// Follows a change of contacts: lists those that could carry something, in islands whose masses differ by more than
-  /// constants::uneven_masses.
+  /// Follows a change of contacts: lists those that could carry something, in islands whose masses differ.
   void find(const WorldState& state, const TreeNodes& trees, Islands& islands);
   void forget_contacts() { listed_.clear(); }
   /// Adds what sub-steps of `h`, as soft rows are made for, need, up to `highest_octave`, for the weights that could
@@ -40,7 +39,8 @@ class Loads {
   void hand_down(const WorldState& state);
 
   std::vector<Masses> masses_;          // by body row, of islands at their roots
-  std::vector<Rest> listed_, rests_;    // all; those that count in this step, from the highest on
+  // all; those of several points, or where masses are uneven, from the highest on
+  std::vector<Rest> listed_, rests_;
   std::vector<double> held_, carried_;  // by body row: shares of its contacts below; mass that could rest on it [kg]
 };
 

@@ -40,7 +40,7 @@ bool Octaves::choose(const WorldState& state, const Forest& forest, const TreeNo
   const double soft = soft_substep_length(state.soft_substep, h, dt);
   loads_.want(state, soft, beyond, wanted_);
   if (faces) columns_.want(state, trees, soft, beyond, islands_, wanted_);
-  want_for_spins(state, forest, h, beyond, wanted_);
+  want_for_spins(state, forest, islands_, h, beyond, wanted_);
   pulls_.want(state, forest, h, beyond, wanted_);
   for (Wanted& w : wanted_) {
     w.more = w.octave > highest;
@@ -99,7 +99,7 @@ void Octaves::count_limited() {
 
 bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
   wanted_.clear();
-  want_for_spins(state, forest, h_, highest_, wanted_);
+  want_for_spins(state, forest, islands_, h_, highest_, wanted_);
   loops_.want(state, h_, h_, highest_of_loops_, wanted_);
   const std::size_t before = again_.size();
   for (const Wanted& w : wanted_)

@@ -35,7 +35,7 @@ class Octaves {
                         std::span<const char> parallel) {
     loops_.find(state, joints, pulling, parallel);
   }
-  /// Follows a change of contacts. `uneven`: masses differ by more than constants::uneven_masses.
+  /// Follows a change of contacts. `uneven`: masses differ.
   void update_contacts(const WorldState& state, const TreeNodes& trees, bool uneven);
   /// Of a step of `dt`. `faces`: some contact has more than one point, so that something may stand on something. False:
   /// they are those of the step before. `fourth`: the trees of fourth order. `together`: all bodies act on each other,

@@ -5,6 +5,7 @@
 
 #include "pcphys/constants.h"
 #include "plan/forest.h"
+#include "plan/islands.h"
 #include "plan/spin_bounds.h"
 
 namespace pcphys {
@@ -18,36 +19,26 @@ template <class Scalar> bool was_touched(const Tables& t, std::span<const TreeNo
                              [&](const TreeNode& node) { return phases[node.body * reals_of(Buffer::motion)] > 0; });
 }
 
-/// Which contacts of this step have an end in a tree.
-class ContactsOf {
- public:
-  ContactsOf(const WorldState& state, std::span<const TreeNode> tree) : state_(state), tree_(tree) {
-    first_ = std::uint32_t(state.bodies.size());
-    for (const TreeNode& node : tree) {
-      if (!state.responds(node.body)) continue;
-      first_ = std::min(first_, node.body);
-      last_ = std::max(last_, node.body);
-    }
+/// Whether contacts could hold one in this step.
+bool meets_others(const WorldState& state, std::span<const TreeNode> tree) {
+  std::uint32_t first = std::uint32_t(state.bodies.size()), last = 0;
+  for (const TreeNode& node : tree) {
+    if (!state.responds(node.body)) continue;
+    first = std::min(first, node.body);
+    last = std::max(last, node.body);
   }
-  bool any() const {
-    return std::ranges::any_of(state_.contacts.ends,
-                               [&](const auto& ends) { return within(ends[0]) || within(ends[1]); });
-  }
-  /// To a body of another tree, or of none, that moves: its island is more than itself.
-  bool any_to_others() const {
-    return std::ranges::any_of(state_.contacts.ends, [&](const auto& ends) {
-      return within(ends[0]) != within(ends[1]) && state_.responds(ends[0]) && state_.responds(ends[1]);
-    });
-  }
+  const auto within = [&](std::uint32_t row) {
+    return row >= first && row <= last && std::ranges::find(tree, row, &TreeNode::body) != tree.end();
+  };
+  return std::ranges::any_of(state.contacts.ends, [&](const auto& ends) { return within(ends[0]) || within(ends[1]); });
+}
 
- private:
-  bool within(std::uint32_t row) const {
-    return row >= first_ && row <= last_ && std::ranges::find(tree_, row, &TreeNode::body) != tree_.end();
-  }
-  const WorldState& state_;
-  std::span<const TreeNode> tree_;
-  std::uint32_t first_, last_ = 0;  // rows of its bodies that respond
-};
+/// Whether the tree is all of its island.
+bool is_alone(const WorldState& state, std::span<const TreeNode> tree, Islands& islands) {
+  islands.build(state);
+  const auto belongs = [&](const TreeNode& node) { return !state.stands(node.body); };
+  return islands.size(islands.root(tree.back().body)) == std::ranges::count_if(tree, belongs);
+}
 
 /// The fastest spin of a tree's bodies, squared [1/s^2]; 0 where that is below `least`.
 struct Fastest {
@@ -100,22 +91,22 @@ std::uint8_t octave_for_whip(const WorldState& state, const SpinBounds<Scalar>& 
   if (was_touched<Scalar>(state.tables, tree)) return 0;
   const double most = constants::largest_give / h;
   const std::uint8_t octave = octave_for(largest_change(state, bounds, tree, most), most, highest);
-  return octave > 0 && !ContactsOf(state, tree).any() && !at_limit(state, tree) ? octave : 0;
+  return octave > 0 && !meets_others(state, tree) && !at_limit(state, tree) ? octave : 0;
 }
 
 template <class Scalar>
-void want(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
+void want(const WorldState& state, const Forest& forest, Islands& islands, double h, std::uint8_t highest_octave,
           std::vector<Wanted>& wanted) {
   const SpinBounds<Scalar> bounds(state.tables);
   const double spin_most = constants::largest_joint_turn / h, swing_most = std::sqrt(constants::largest_give) / h;
   for (std::size_t i = 0; i < forest.trees(); i++) {
     const std::span<const TreeNode> tree = forest.tree(i);
     if (tree.front().flipped) continue;  // turns on a pivot
-    // what swings bends limits as a pull does (plan/pulls.h)
-    const bool may_swing = has_limits(state, tree) && !was_touched<Scalar>(state.tables, tree);
-    const Fastest fastest = fastest_of(state, bounds, tree, may_swing ? swing_most : spin_most);
-    if (fastest.square > 0) {
-      const double most = may_swing && !ContactsOf(state, tree).any_to_others() ? swing_most : spin_most;
+    if (const Fastest fastest = fastest_of(state, bounds, tree, swing_most); fastest.square > 0) {
+      // what swings bends limits as a pull does (plan/pulls.h); others would pay for it in one island
+      const bool swings =
+          has_limits(state, tree) && !was_touched<Scalar>(state.tables, tree) && is_alone(state, tree, islands);
+      const double most = swings ? swing_most : spin_most;
       if (const std::uint8_t octave = octave_for(fastest.square, most * most, highest_octave); octave > 0)
         wanted.push_back({fastest.body, octave});
     }
@@ -126,11 +117,11 @@ void want(const WorldState& state, const Forest& forest, double h, std::uint8_t 
 
 }  // namespace
 
-void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                    std::vector<Wanted>& wanted) {
+void want_for_spins(const WorldState& state, const Forest& forest, Islands& islands, double h,
+                    std::uint8_t highest_octave, std::vector<Wanted>& wanted) {
   if (forest.trees() == 0) return;
-  state.tables.precision() == Precision::f32 ? want<float>(state, forest, h, highest_octave, wanted)
-                                             : want<double>(state, forest, h, highest_octave, wanted);
+  state.tables.precision() == Precision::f32 ? want<float>(state, forest, islands, h, highest_octave, wanted)
+                                             : want<double>(state, forest, islands, h, highest_octave, wanted);
 }
 
 }  // namespace pcphys

@@ -11,12 +11,13 @@
 namespace pcphys {
 
 class Forest;
+class Islands;
 
 /// Adds what bodies in trees need that would turn by more than constants::largest_joint_turn in a sub-step of `h` [s],
-/// up to `highest_octave`; in trees with limits that nothing touches, and that no contact links to another that moves,
-/// by the root of constants::largest_give. And what trees that nothing touches need of which a body's spin changed by
+/// up to `highest_octave`; in trees with limits that nothing touches, and that are an island of their own, by the root
+/// of constants::largest_give. And what trees that nothing touches need of which a body's spin changed by
 /// more than constants::largest_give / h in the last sub-step. Bodies on pivots turn exactly.
-void want_for_spins(const WorldState& state, const Forest& forest, double h, std::uint8_t highest_octave,
-                    std::vector<Wanted>& wanted);
+void want_for_spins(const WorldState& state, const Forest& forest, Islands& islands, double h,
+                    std::uint8_t highest_octave, std::vector<Wanted>& wanted);
 
 }  // namespace pcphys

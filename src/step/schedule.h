@@ -213,7 +213,7 @@ class Schedule {
   std::span<const std::uint32_t> moving_bodies() const { return std::span(bodies).first(body_ranges_.back().end); }
   bool drag = false, gyroscopic = false;  // some body that moves has drag, or unequal moments
   bool rotates = false;                   // some body that moves rotates
-  bool uneven = false;                    // masses differ by more than constants::uneven_masses
+  bool uneven = false;                    // masses differ
   std::uint64_t bodies_version = 0;
   ColouredSlots joints, contacts;  // joints: those that stand in no tree
   TreeSlots trees;
