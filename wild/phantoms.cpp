@@ -72,12 +72,15 @@ double Phantoms::gap_of(const WorldState& state, double h, const TracedContact& 
   double least =
       std::min(distance(placed(*a, a1.pose), placed(*b, b1.pose)), distance(placed(*a, a0.pose), placed(*b, b0.pose)));
   if (least <= near) return 0;
-  const Vec3 fall = state.gravity * h;
-  const auto pulled = [&](const Body& body, std::uint32_t row) {
-    return state.responds(row) ? body.velocity + fall : body.velocity;
+  const auto on_its_way = [&](const ShapeDef* shape, const Body& body, std::uint32_t row) {
+    Moving way{shape, body.pose, body.velocity, body.angular_velocity};
+    if (!state.responds(row)) return way;
+    way.velocity =
+        way.velocity + h * (state.gravity + state.tables.get(Buffer::motion, row, 3) * state.given_force(row));
+    way.angular_velocity = way.angular_velocity + h * state.spin_of(row, state.given_torque(row));
+    return way;
   };
-  const Moving to_a{a, a0.pose, pulled(a0, rows[0]), a0.angular_velocity},
-      to_b{b, b0.pose, pulled(b0, rows[1]), b0.angular_velocity};
+  const Moving to_a = on_its_way(a, a0, rows[0]), to_b = on_its_way(b, b0, rows[1]);
   least = std::min(least, least_distance(to_a, to_b, h, near));
   if (least <= near) return 0;
   const Moving from_a{a, a1.pose, -a1.velocity, -a1.angular_velocity},

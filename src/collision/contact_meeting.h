@@ -213,27 +213,28 @@ template <class Scalar> struct Detector::Meeting {
     const double far = std::sqrt(double(apart[0] * apart[0] + apart[1] * apart[1] + apart[2] * apart[2]));
     const double near = near_of(thick, far, double(std::numeric_limits<Scalar>::epsilon()));
     c.touches = c.gap <= (!quick && (c.acts || settles(m)) ? seam_share * thick : near);
-    Met met{c.touches, 0};
+    double met = 0;
     if (!c.touches) {
       if (c.gap > goes) return stand_aside();
       const auto look_there = [&](const ShapeView<Scalar>& x, const ShapeView<Scalar>& y, Manifold<Scalar>& z) {
         look_at(x, y, z);
       };
-      met = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, m);
-      if (!met.together) return stand_aside();
+      const auto at = meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, 0.0, h, look_there, m);
+      if (!at) return stand_aside();
+      met = *at;
     }
-    if (sent && !sinks(m, met.t)) {
+    if (sent && !sinks(m, met)) {
       c.touches = false;
       return;
     }
     find_together(m, c.touches ? seam_share * thick : near);
     to_light_side(m, share);
-    if (!c.touches) back_to_start(ta, tb, apart, share, met.t, m);
+    if (!c.touches) back_to_start(ta, tb, apart, share, met, m);
     // (what meets on its way overlaps nothing: rows of trees stop it there, and push nothing out)
     if (!c.touches && c.jointed)
       for (std::uint32_t i = 0; i < m.count; i++) m.points[i].separation = std::max(m.points[i].separation, Scalar(0));
     c.struck = !c.jointed && (!c.touches || quick);
-    write(m, met.t, c.jointed ? -1 : c.struck ? std::max(met.t, 1e-9 * h) : 0);
+    write(m, met, c.jointed ? -1 : c.struck ? std::max(met, 1e-9 * h) : 0);
   }
 
   /// Of shapes that were apart, whose bodies were struck elsewhere at `from` [s]: whether they meet after that.
@@ -249,18 +250,18 @@ template <class Scalar> struct Detector::Meeting {
       look_at(x, y, z);
     };
     Manifold<Scalar> m;
-    const Met met =
+    const auto met =
         meet_within(mover(pa, a, ta), mover(pb, b, tb), apart, near, std::max(from, 1e-9 * h), h, look_there, m);
-    if (!met.together) return false;
+    if (!met) return false;
     find_together(m, near);
     to_light_side(m, share);
-    back_to_start(ta, tb, apart, share, met.t, m);
+    back_to_start(ta, tb, apart, share, *met, m);
     c.struck = true;
-    write(m, met.t, std::max(met.t, 1e-9 * h));
+    write(m, *met, std::max(*met, 1e-9 * h));
     return true;
   }
   static Mover<Scalar> mover(const Proxy& p, const ShapeView<Scalar>& shape, const TwistOf<Scalar>& t) {
-    return {&shape, t, float(spin(t, p)), p.centred, float(lever(p)), p.inner / 2};
+    return {&shape, t, float(spin(t, p)), p.centred, float(lever(p))};
   }
 
   /// Impacts remember nothing. `t`: when the manifold was found [s].
