@@ -25,7 +25,7 @@ TEST_CASE("octaves: where nobody moves all is of octave 0") {
   octaves.begin();
   CHECK(choose() == 1);
   for (const BodyId link : links) must(world.set_angular_velocity(link, {300, 0, 0}));
-  REQUIRE(octaves.find_tighter(state, schedule.trees.forest()));
+  REQUIRE(octaves.find_tighter(state, schedule.trees.forest(), nullptr));
   CHECK(choose() > 1);
   for (const BodyId link : links) state.freeze(must(world.row_of(link)));
   CHECK(choose() == 1);

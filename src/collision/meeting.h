@@ -109,8 +109,8 @@ bool stay_apart(Approach<Scalar, Find>& way, TurningNormal normal, double gap, d
 }
 
 /// The instant from `from` to h [s] at which the shapes come within `near` [m] of each other, and the manifold there,
-/// by conservative advancement. `m`: that of the start, where `from` is 0. As long as they are apart along a normal they
-/// need no look for another. From the second look on it goes on turning as it did since the one before.
+/// by conservative advancement. `m`: that of the start, where `from` is 0. As long as they are apart along a normal no
+/// look for another is needed. From the second look on it goes on turning as it did since the one before.
 /// Bounded: what is missed the next sub-step sees.
 template <class Scalar, class Find>
 std::optional<double> meet_within(const Mover<Scalar>& a, const Mover<Scalar>& b, const Scalar* apart, double near,

@@ -45,7 +45,7 @@ template <class Scalar> InfoOf<Scalar> biased_info(const InfoInputs& from, doubl
   info.row_push_speed = Scalar(std::min(from.push_speed, std::max(gravity, from.push_speed) * step));
   info.tree_push_speed = Scalar(std::min(from.push_speed, gravity * step));
   info.joint_push_speed = Scalar(constants::joint_push_speed);
-  info.limit_give = Scalar(constants::largest_give);
+  info.limit_give = Scalar(constants::largest_give / double(1u << octave));
   info.loop_give = Scalar(constants::loop_give);
   info.spin_floor = Scalar(constants::tree_spin_floor);
   info.rounds = constants::rounds;

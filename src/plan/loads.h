@@ -38,7 +38,7 @@ class Loads {
   /// Hands all weights down from body to body, each in shares to what it could rest on.
   void hand_down(const WorldState& state);
 
-  std::vector<Masses> masses_;          // by body row, of islands at their roots
+  std::vector<Masses> masses_;  // by body row, of islands at their roots
   // all; those of several points, or where masses are uneven, from the highest on
   std::vector<Rest> listed_, rests_;
   std::vector<double> held_, carried_;  // by body row: shares of its contacts below; mass that could rest on it [kg]

@@ -6,6 +6,7 @@
 #include "plan/forest.h"
 #include "plan/infos.h"
 #include "plan/island_class.h"
+#include "plan/passed_limits.h"
 #include "plan/spins.h"
 
 namespace pcphys {
@@ -97,14 +98,17 @@ void Octaves::count_limited() {
   for (const std::uint32_t root : limits_) limited_ += islands_.size(root);
 }
 
-bool Octaves::find_tighter(const WorldState& state, const Forest& forest) {
+bool Octaves::find_tighter(const WorldState& state, const Forest& forest, const AlignedBytes* poses) {
+  const auto made = [&](const Wanted& w) { return of_bodies_.empty() ? 0u : octave_of(of_bodies_[w.body]); };
   wanted_.clear();
+  constexpr std::uint8_t most = 2;  // so that the step takes five times what it did at most
+  if (poses && again_.empty()) want_for_passed_limits(state, forest, *poses, std::min(highest_, most), wanted_);
+  for (Wanted& w : wanted_) w.octave = std::uint8_t(std::min<unsigned>(highest_, made(w) + w.octave));
   want_for_spins(state, forest, islands_, h_, highest_, wanted_);
   loops_.want(state, h_, h_, highest_of_loops_, wanted_);
   const std::size_t before = again_.size();
   for (const Wanted& w : wanted_)
-    if (const unsigned made = of_bodies_.empty() ? 0 : octave_of(of_bodies_[w.body]); w.octave > made)
-      again_.push_back(w);
+    if (w.octave > made(w)) again_.push_back(w);
   return again_.size() > before;
 }
 

@@ -334,7 +334,8 @@ struct Stepper::Inside {
                    "The device found no end of the islands of this world; find them on the CPU "
                    "(StepSettings::islands). The world "
                    "is as it was."};
-    tighter = once_more(octaves.find_tighter(s, schedule.trees.forest()));
+    const AlignedBytes* before = runner.before(Buffer::pose);
+    tighter = once_more(octaves.find_tighter(s, schedule.trees.forest(), before));
     if (tighter) return {};
     const bool left = plan->flight && runner.left();
     if (!plan->flight) find_outside(s, schedule.moving_bodies(), outside);
@@ -343,7 +344,6 @@ struct Stepper::Inside {
     if (suspect || !written) return {};
     if (!outside.empty()) return {};
     // what others sent further than it was looked for is looked for anew
-    const AlignedBytes* before = runner.before(Buffer::pose);
     strayed = once_more(before && find_strays(s, *before));
     if (strayed) return {};
     if (left) freeze_left(s);
