@@ -45,7 +45,7 @@ class Octaves {
 
   /// Before the first try of a step.
   void begin() { again_.clear(); }
-  /// After a try: whether the step is to be made again, with more sub-steps. `poses`: those before it, if they were kept.
+  /// After a try: whether the step is to be made again, with more sub-steps. `poses`: those before it, if kept.
   bool find_tighter(const WorldState& state, const Forest& forest, const AlignedBytes* poses);
 
   /// By body row its class; empty: all are of octave 0.
