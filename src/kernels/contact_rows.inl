@@ -20,8 +20,9 @@ const uint ROW_APPROACH = 36u;
 // smallest response of the three directions at the centre; 0: contact_solve leaves this one alone
 const uint ROW_K = 40u;
 // 1 where its rows are visited, 2 where in this sub-step joints have sent its shapes together,
-// 0 where they are left alone for now
+// 4 where in this sub-step its shapes have met in flight, 0 where they are left alone for now
 const uint ROW_ACTS = 41u;
+#define ACTS_MET PC_REAL(4.0)
 // the same place until contact_warm, where shapes meet in flight: when in this sub-step they did; 0 before
 const uint ROW_MET = 41u;
 // contact_impact's: below 0 none of it (-1: a body hangs on joints, -2: it acts no longer),

@@ -29,7 +29,14 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   // (between bodies that move there is none: balls that touch without an overlap meet anew in each sub-step)
   precise Real both = a.inverse_mass * b.inverse_mass;
   Real preload = pc_select(both > PC_REAL(0.0), PC_REAL(0.0), PC_INFO(contact_preload));
-  Twist now = pc_carried(PC_PASS pc_twist(a, b, arms, n, t1, t2), a, b, arms, t1, t2);
+  // What has met in flight is seen at the instant at which it did, as contact_impact sees it (pc_impact_path): at an
+  // earlier or later one the spins that the impact left would look like an approach, and a couple of the two visits
+  // would stay.
+  Mask met = PC_LD(contact_rows, m, ROW_ACTS) > PC_REAL(2.0);
+  Arms seen;
+  seen.a = pc_select3(met, pc_ld3_rows(PC_PASS m, ROW_ARM_A), arms.a);
+  seen.b = pc_select3(met, pc_ld3_rows(PC_PASS m, ROW_ARM_B), arms.b);
+  Twist now = pc_carried(PC_PASS pc_twist(a, b, seen, n, t1, t2), a, b, arms, t1, t2);
   // (none bounces here: what free bodies bounce is contact_impact's)
   Visit r = pc_visit(PC_PASS m, now, shift, n, t1, t2, preload, pushes, pc_no_rows());
   pc_spare(a, pushes);
