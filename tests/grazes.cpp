@@ -33,18 +33,18 @@ Graze draw_graze(Dice& dice) {
 }
 
 struct After {
-  Vec3 spin, velocity;
+  Vec3 spin, velocity;  // of the first and of the second
   double energy;
 };
-After play(const Graze& g, unsigned substeps) {
-  World world(WorldDef{.gravity = {}});
+After play(const Graze& g, unsigned substeps, Precision precision = Precision::f32) {
+  World world(WorldDef{.precision = precision, .gravity = {}});
   StepSettings settings;
   settings.substeps = substeps;
   Stepper stepper(settings);
   const BodyId first = must(world.create_body(g.first));
-  (void)must(world.create_body(g.second));
+  const BodyId second = must(world.create_body(g.second));
   for (int i = 0; i < 3; i++) REQUIRE(stepper.step(world, frame));
-  return {*world.angular_velocity(first), *world.velocity(first), world.kinetic_energy()};
+  return {*world.angular_velocity(first), *world.velocity(second), world.kinetic_energy()};
 }
 
 /// How much the spin after it hangs on the sub-step, and how much energy it makes, as shares.
@@ -57,10 +57,29 @@ double worst_share(Dice& dice) {
   return std::max(length(one.spin - many.spin) / most, std::max(one.energy, many.energy) / before - 1);
 }
 
+/// The same of what the first does to the second, where the host spins it.
+double worst_change(Dice& dice, Precision precision) {
+  Graze g = draw_graze(dice);
+  g.first.kind = BodyKind::kinematic;
+  g.first.angular_velocity = dice.by_ratio(10, 300) * dice.direction();
+  const Vec3 before = g.second.velocity, one = play(g, 1, precision).velocity, many = play(g, 16, precision).velocity;
+  return length(one - many) / std::max(length(many - before), 1e-3 * length(before));
+}
+
 }  // namespace
 
 TEST_CASE("grazes: spins after an impact in flight are the same whatever the sub-step, and no energy is made") {
   const double worst = worst_of("graze", 100, worst_share);
   MESSAGE("worst: ", worst);
   CHECK(worst < 0.01);
+}
+
+// In double a millionth of an arm by which the instant is off was an approach once, and the pair was struck again as it
+// lay at another time: one that met at 56 m/s left with 139 at one sub-step, 65 at four and 40 at 256.
+TEST_CASE("grazes: what the host spins sends others on alike, whatever the sub-step") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const double worst = worst_of("spun", 100, [&](Dice& dice) { return worst_change(dice, precision); });
+    MESSAGE("worst: ", worst);
+    CHECK(worst < 0.01);
+  }
 }

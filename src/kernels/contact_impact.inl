@@ -124,11 +124,15 @@ PC_FN Mask pc_impact_mine(PC_IO Slot m) {
   return pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(-0.5), pc_or(pc_impact_always(PC_PASS m), bounces));
 }
 
-#define PC_IMPACT_NOISE PC_REAL(64.0)
-// An approach up to this is what rounding leaves of one: of the impulses that stop it and of the sweeps that look
-// again, 64 times what counts as rest.
-PC_FN Real pc_noise(PC_IO Vec3 relative) {
-  precise Real r = PC_INFO(rounding) * PC_IMPACT_NOISE * pc_sqrt(pc_dot(relative, relative));
+// An approach up to this share of the speeds of both and of their surfaces is none. Shapes have met within a millionth
+// of their thickness, or what rounding leaves of the way, so the arms of that instant are off by as much, and with them
+// what the impulse leaves.
+#define PC_IMPACT_NOISE PC_REAL(3e-5)
+PC_FN Real pc_noise(PC_IO Slot m, BodyState a, BodyState b) {
+  Vec3 relative = pc_sub(b.v, a.v);
+  precise Real surface_a = pc_length(pc_angular_velocity(a)) * pc_length(pc_ld3_rows(PC_PASS m, ROW_ARM_A));
+  precise Real surface_b = pc_length(pc_angular_velocity(b)) * pc_length(pc_ld3_rows(PC_PASS m, ROW_ARM_B));
+  precise Real r = PC_IMPACT_NOISE * (pc_length(relative) + surface_a + surface_b);
   return r;
 }
 
@@ -136,14 +140,15 @@ PC_FN Real pc_noise(PC_IO Vec3 relative) {
 // those of the way that was really gone would answer otherwise than masses say, and make energy.) Two that have met,
 // and that nothing has brought together again since, are seen at that instant: at an earlier or later one the point of
 // their impact has moved on with one and not with the other, and their spins would look like an approach.
-PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, Vec3 relative, Vec3 come) {
+PC_FN Vec3 pc_impact_path(PC_IO Slot m, Vec3 n, BodyState a, BodyState b, Vec3 come) {
+  Vec3 relative = pc_sub(b.v, a.v);
   Real nearest = pc_min(pc_min(PC_LD(contact_rows, m, ROW_S), PC_LD(contact_rows, m, ROW_S + 1u)),
                         pc_min(PC_LD(contact_rows, m, ROW_S + 2u), PC_LD(contact_rows, m, ROW_S + 3u)));
   precise Real nearing = -pc_dot(n, relative);
   precise Real gap = nearest + pc_dot(n, come);
   precise Real flight = pc_max(gap, PC_REAL(0.0)) * pc_inverse_or_zero(nearing);
   Real since = pc_select(pc_impact_always(PC_PASS m), PC_LD(contact_rows, m, ROW_MET), PC_REAL(0.0));
-  Mask stays = pc_and(since > PC_REAL(0.0), nearing < pc_noise(PC_PASS relative));
+  Mask stays = pc_and(since > PC_REAL(0.0), nearing < pc_noise(PC_PASS m, a, b));
   Real until = pc_select(stays, since, pc_min(flight, PC_INFO(h)));
   return pc_madd(come, relative, until);
 }
@@ -174,7 +179,7 @@ PC_FN Encounter pc_encounter(PC_IO Slot m) {
   x.n = pc_ld3_rows(PC_PASS m, ROW_N);
   x.t1 = pc_ld3_rows(PC_PASS m, ROW_T);
   x.t2 = pc_cross(x.n, x.t1);
-  Vec3 path = pc_impact_path(PC_PASS m, x.n, pc_sub(x.b.v, x.a.v), pc_sub(x.moved_b.v, x.moved_a.v));
+  Vec3 path = pc_impact_path(PC_PASS m, x.n, x.a, x.b, pc_sub(x.moved_b.v, x.moved_a.v));
   x.arms = pc_arms(PC_PASS m, pc_zero3(), path);
   x.v = pc_twist(x.a, x.b, x.arms, x.n, x.t1, x.t2);
   x.shift = pc_shift_of(PC_PASS m, x.n, x.t1, x.t2, x.moved_a, x.moved_b, PC_GATHER(delta, x.ia, 1u),
@@ -318,7 +323,7 @@ PC_FN void pc_keep_met(PC_IO Slot m, Encounter x, Real t, Mask hits) {
   precise Real nearing = -pc_dot(x.n, relative);
   Real met = PC_LD(contact_rows, m, ROW_MET);
   Mask unmet = met < PC_TINY;
-  Mask anew = pc_or(unmet, nearing > pc_noise(PC_PASS relative));
+  Mask anew = pc_or(unmet, nearing > pc_noise(PC_PASS m, x.a, x.b));
   PC_ST(contact_rows, m, ROW_MET, pc_select(pc_and(pc_and(hits, pc_impact_always(PC_PASS m)), anew), t, met));
 }
 // The impulses j at the instant of the impact, with friction.
