@@ -7,8 +7,8 @@
 #include <optional>
 #include <type_traits>
 
-#include "collision/narrow.h"
 #include "collision/mover.h"
+#include "collision/narrow.h"
 #include "collision/support_gap.h"
 
 namespace pcphys {

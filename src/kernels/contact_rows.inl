@@ -52,6 +52,11 @@ const uint IMPULSE_LAST = 12u;  // normal impulses as they lasted in the sub-ste
 
 // Whether they push at all: those of shapes that are apart, or that an impact has to itself, do not.
 PC_FN Mask pc_pushes(PC_IO Slot m) { return PC_LD(contact_rows, m, ROW_K) > PC_REAL(0.0); }
+// The largest effective mass of its points but the first: 0 where there is one point.
+PC_FN Real pc_mass_of_others(PC_IO Slot m) {
+  return pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u),
+                pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
+}
 PC_FN Vec3 pc_ld3_rows(PC_IO Slot m, uint f) {
   return Vec3(PC_LD(contact_rows, m, f), PC_LD(contact_rows, m, f + 1u), PC_LD(contact_rows, m, f + 2u));
 }

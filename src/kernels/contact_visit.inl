@@ -93,9 +93,8 @@ PC_FN Found pc_found(PC_IO Slot m, Shift shift) {
   r.apart = pc_gap(PC_PASS m, 0u, shift);
   r.gap = pc_four(r.apart, r.apart, r.apart, r.apart);
   // where no manifold of the block has a second point, the rows of the others are zeros
-  Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u),
-                       pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
-  r.several = pc_max(others, pc_max(r.impulse.r1, pc_max(r.impulse.r2, r.impulse.r3))) > PC_REAL(0.0);
+  r.several =
+      pc_max(pc_mass_of_others(PC_PASS m), pc_max(r.impulse.r1, pc_max(r.impulse.r2, r.impulse.r3))) > PC_REAL(0.0);
   if (PC_ANY(r.several)) {  // lint: allow (as said)
     r.gap.r1 = pc_gap(PC_PASS m, 1u, shift);
     r.gap.r2 = pc_gap(PC_PASS m, 2u, shift);

@@ -40,10 +40,8 @@ PC_FN void pc_kernel(PC_IO Slot m) {
   Arms arms = pc_arms(PC_PASS m, moved_a.v, moved_b.v);
   Mask far = pc_or(pc_turns_far(PC_PASS a, moved_a), pc_turns_far(PC_PASS b, moved_b));
   // of one point: what meets by several turns by what each of them stops, and comes together elsewhere
-  Real others = pc_max(PC_LD(contact_rows, m, ROW_MASS + 1u),
-                       pc_max(PC_LD(contact_rows, m, ROW_MASS + 2u), PC_LD(contact_rows, m, ROW_MASS + 3u)));
   Mask met = pc_and(PC_LD(contact_rows, m, ROW_IMPACT) > PC_REAL(0.0), PC_LD(contact_rows, m, ROW_MET) > PC_REAL(0.0));
-  met = pc_and(met, others < PC_TINY);
+  met = pc_and(met, pc_mass_of_others(PC_PASS m) < PC_TINY);
   Real acts = pc_select(met, ACTS_MET, PC_REAL(1.0));
   PC_ST(contact_rows, m, ROW_ACTS, pc_select(pushes, acts, PC_LD(contact_rows, m, ROW_ACTS)));
   precise Real both_move = a.inverse_mass * b.inverse_mass;

@@ -1,6 +1,7 @@
 #include "plan/passed_limits.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pcphys/constants.h"
 #include "plan/forest.h"
